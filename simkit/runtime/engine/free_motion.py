@@ -6,9 +6,10 @@ An arm with servos or damping is not affected. The kinematic trees without dampi
 method of fourth order, in substeps that follow the fastest joint. This needs a second `MjData` if there are other
 trees. Trees without constraint forces do not depend on each other, so all other trees keep their bits.
 
-A contact or a joint limit needs the engine's integrator, so a tree with such a force is left to it in that step. One
-case is an exception: a mechanism whose base rests on its contacts. A very large armature then holds the base, and only
-the joints above it are integrated here.
+A contact or a joint limit needs the engine's integrator, so a tree with such a force is left to it in that step. Two
+cases are exceptions. A mechanism may have a base that rests on its contacts: a very large armature then holds the base,
+and only the joints above it are integrated here. A single body may spin while it touches something: the forces of the
+step change its velocities, and `RigidRotation` then moves it.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ import numpy.typing as npt
 
 from simkit.compiler.state_transfer import JOINT_WIDTHS
 from simkit.linear_algebra import squared_length
+from simkit.runtime.contact.rigid_rotation import RigidRotation
 
 MIN_CHAIN_LENGTH: Final = 2
 """Least number of passive joints in a row that make a tree a chain."""
@@ -45,6 +47,12 @@ MAX_SUBSTEP_DECAY: Final = 0.2
 
 MAX_SUBSTEPS: Final = 16
 
+MIN_GYROSCOPIC_ERROR: Final = 1e-4
+"""Least error of the engine's integrator at which a body in contact is integrated here, relative to its spin [1/s].
+
+The error is the change of the gyroscopic acceleration within a step. A cylinder that rolls straight ahead has none.
+"""
+
 MAX_RESTING_SPEED: Final = 1e-3
 """Largest speed [m/s, rad/s] of a base that rests on its contacts."""
 
@@ -63,6 +71,7 @@ _SLEEP: Final = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
 _RUNGE_KUTTA: Final = int(mujoco.mjtIntegrator.mjINT_RK4)
 _ORDER: Final = 4
 _HOLDING_ARMATURE: Final = 1e12  # [kg, kg m²] of the six degrees of freedom of a base that rests
+_BODY, _SITE = int(mujoco.mjtObj.mjOBJ_BODY), int(mujoco.mjtObj.mjOBJ_SITE)
 _EQUAL: Final = 1e-6  # relative difference of moments of inertia that counts as none
 _FREE, _BALL, _HINGE = (
     int(kind) for kind in (mujoco.mjtJoint.mjJNT_FREE, mujoco.mjtJoint.mjJNT_BALL, mujoco.mjtJoint.mjJNT_HINGE)
@@ -98,6 +107,7 @@ class PassiveTree:
         bodies: numbers of the bodies.
         may_touch: True for a tree that is integrated here only while it flies.
         substeps: least number of substeps, for its springs and its damping.
+        rotation: motion without forces of a tree that is a single free body without loop joints; otherwise None.
     """
 
     def __init__(self, model: mujoco.MjModel, number: int, length: int, may_touch: bool) -> None:
@@ -122,6 +132,8 @@ class PassiveTree:
             inner = int(model.jnt_dofadr[first + 1])
             self.base = slice(dofs.start, inner)
             self.mechanism = JointGroup(slice(inner, dofs.stop), slice(int(model.jnt_qposadr[first + 1]), end))
+        is_single = kinds[0] == _FREE and len(self.bodies) == 1 and not _is_joined(model, int(self.bodies[0]))
+        self.rotation = RigidRotation(model, first) if is_single else None
         weights = model.dof_invweight0[dofs]
         frequency = math.sqrt(max(0.0, float((model.jnt_stiffness[joints] * weights).max())))
         decay = float((model.dof_damping[dofs] * weights).max())
@@ -148,7 +160,7 @@ class FreeMotionIntegrator:
         self._unloaded = [False] * len(trees)
         self._min_speed = min(tree.min_speed for tree in trees)
         self._can_sleep = bool(model.opt.enableflags & _SLEEP)
-        self._count, self._bases = 1, list[slice]()
+        self._count, self._bases, self._touching = 1, list[slice](), list[RigidRotation]()
 
     @classmethod
     def of(cls, model: mujoco.MjModel) -> FreeMotionIntegrator | None:
@@ -207,6 +219,7 @@ class FreeMotionIntegrator:
             integrate: integrator of the engine, for all other trees.
         """
         moving = self._find_moving(data)
+        spinning = [(one, *found) for one in self._touching if (found := self._kick_and_drift(data, one))]
         if not moving:
             integrate(model, data)
         elif len(moving) == model.ntree and not self._bases:
@@ -223,9 +236,25 @@ class FreeMotionIntegrator:
                 velocities, positions = own.qvel[dofs], own.qpos[at]
                 if np.isfinite(velocities).all() and np.isfinite(positions).all():
                     data.qvel[dofs], data.qpos[at] = velocities, positions
+        for one, position, velocity in spinning:
+            data.qpos[one.coordinates], data.qvel[one.dofs] = position, velocity
+
+    def _kick_and_drift(self, data: mujoco.MjData, rotation: RigidRotation) -> tuple[list[float], list[float]] | None:
+        """Return coordinates and velocities of a body in contact after the step; None if the engine integrates it."""
+        step, position = float(self.model.opt.timestep), data.qpos[rotation.coordinates].tolist()
+        velocity, acceleration = data.qvel[rotation.dofs].tolist(), data.qacc[rotation.dofs].tolist()
+        spin, gyroscopic = velocity[3:], rotation.gyroscopic_acceleration(position[3:], velocity[3:])
+        error = step * math.hypot(*rotation.gyroscopic_rate(spin, acceleration[3:]))
+        if not (error > MIN_GYROSCOPIC_ERROR * math.hypot(*spin) and rotation.is_resolved(spin, step)):
+            return None
+        kicked = [v + step * (a - g) for v, a, g in zip(velocity, acceleration, gyroscopic, strict=True)]
+        if not all(map(math.isfinite, kicked)):
+            return None
+        return rotation.moved(position, kicked, step)
 
     def _find_moving(self, data: mujoco.MjData) -> list[JointGroup]:
-        """Return the joints to integrate in this step; set the number of substeps and the bases to hold."""
+        """Return the joints to integrate in this step; set the substeps, the bases to hold and the touching bodies."""
+        self._touching = []
         if not self.is_needed(data):
             return []
         step = float(self.model.opt.timestep)
@@ -238,6 +267,9 @@ class FreeMotionIntegrator:
         moving, count, self._bases = [], 1, []
         for tree, speed, is_loaded in zip(self.trees, speeds, loaded, strict=True):
             if not tree.min_speed < speed < math.inf or (asleep is not None and asleep[tree.number] >= 0):
+                continue
+            if is_loaded and tree.rotation is not None:
+                self._touching.append(tree.rotation)
                 continue
             if is_pushed and not tree.needs_accuracy and self._is_pushed(data, tree):
                 continue
@@ -343,6 +375,16 @@ def _may_spin(model: mujoco.MjModel, tree: int) -> bool:
     inertia = model.body_inertia[body]
     is_alone = np.count_nonzero(model.body_treeid == tree) == 1 and not model.body_ipos[body].any()
     return bool((kinds == _FREE).any()) and not (is_alone and np.ptp(inertia) <= _EQUAL * inertia.max())
+
+
+def _is_joined(model: mujoco.MjModel, body: int) -> bool:
+    """Check whether a loop joint of the model acts on a body."""
+    for kind, *ends in zip(model.eq_objtype.tolist(), model.eq_obj1id.tolist(), model.eq_obj2id.tolist(), strict=True):
+        if kind == _SITE:
+            ends = [int(model.site_bodyid[end]) for end in ends]
+        if kind in (_SITE, _BODY) and body in ends:
+            return True
+    return False
 
 
 def _driven_trees(model: mujoco.MjModel) -> set[int]:

@@ -377,7 +377,7 @@ def _step_fields(model: mujoco.MjModel) -> list[bytes]:
     geoms = model.geom_contype, model.geom_conaffinity, model.geom_solref
     joints = model.jnt_range, model.jnt_limited, model.jnt_stiffness
     dofs = model.dof_damping, model.dof_frictionloss, model.dof_armature, model.dof_invweight0
-    bodies = model.body_inertia, model.body_ipos
+    bodies = model.body_inertia, model.body_ipos, model.body_iquat
     return [field.tobytes() for field in (*geoms, *joints, *dofs, *bodies)]
 
 
