@@ -23,7 +23,7 @@ the normal. It then stops a body so that the distance stays the same over the st
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Final, NamedTuple
 
 import mujoco
@@ -100,6 +100,18 @@ class _Motion(NamedTuple):
 _AT_REST: Final = _Motion((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
+class _FreeMotions(NamedTuple):
+    """Motions of bodies without forces.
+
+    Attributes:
+        gyroscopic: accelerations, by body.
+        ends: coordinates and velocities at the end of the step.
+    """
+
+    gyroscopic: dict[int, _Motion]
+    ends: list[tuple[RigidRotation, list[float], list[float]]]
+
+
 class ContactPointCorrection:
     """Shifted references and velocities of the rows of contacts.
 
@@ -152,7 +164,7 @@ class ContactPointCorrection:
 
 
 class ContactPointMotion:
-    """Contacts of the free bodies of one compiled model with each other and with static geoms.
+    """Contacts of the free bodies of one compiled model.
 
     Args:
         model: MuJoCo's model.
@@ -162,11 +174,15 @@ class ContactPointMotion:
         self._model = model
         self._data: mujoco.MjData | None = None
         self._spinning = SpinningBodies(model)
-        self._body_of = model.geom_bodyid.copy()
+        trees = model.body_treeid
+        self._body_of: list[int] = model.geom_bodyid.tolist()
+        self._roots: list[int] = model.body_rootid.tolist()
+        self._moves: list[bool] = (trees >= 0).tolist()
+        self._is_free: list[bool] = np.isin(trees, list(self._spinning.joints)).tolist()
         self._tree_of = np.append(
             model.body_treeid[model.geom_bodyid], -1
         )  # the last item is for flexes without a geom
-        single = np.bincount(model.body_treeid[model.body_treeid >= 0], minlength=model.ntree) == 1
+        single = np.bincount(trees[trees >= 0], minlength=model.ntree) == 1
         joints = [joint for tree, joint in self._spinning.joints.items() if single[tree]]
         self._rotations = {int(model.jnt_bodyid[joint]): RigidRotation(model, joint) for joint in joints}
 
@@ -191,11 +207,11 @@ class ContactPointMotion:
         numbers = spinning[trees].any(axis=1).nonzero()[0].tolist()
         if len(numbers) > MAX_CONTACTS:
             return []
-        free, rows, aref = self._spinning.joints.keys() | {-1}, contact.efc_address, data.efc_aref
+        rows, aref = contact.efc_address, data.efc_aref
         found = []
         for number in numbers:
             row = rows.item(number)
-            if row < 0 or contact.dim[number] < 3 or not free.issuperset(trees[number].tolist()):
+            if row < 0 or contact.dim[number] < 3:
                 continue
             if math.hypot(aref.item(row + 1), aref.item(row + 2)) <= MAX_REFERENCE:
                 found.append(number)
@@ -223,108 +239,112 @@ class ContactPointMotion:
             data: MuJoCo's data with velocities up to date.
             numbers: numbers of the contacts.
         """
-        model, step, contact = self._model, float(self._model.opt.timestep), data.contact
-        geoms, rows, bodies = contact.geom.tolist(), contact.efc_address.tolist(), self._body_of
-        gyroscopic = self._gyroscopic_accelerations(
-            data, {body for number in numbers for body in bodies[geoms[number]].tolist()}
-        )
-        later = self._at_end_of_step(data, gyroscopic)
-        places = later.contact.pos.tolist()
+        step, contact, body_of = float(self._model.opt.timestep), data.contact, self._body_of
+        geoms, rows = contact.geom.tolist(), contact.efc_address.tolist()
+        places, frames, distances = contact.pos.tolist(), contact.frame.tolist(), contact.dist.tolist()
+        bodies = dict.fromkeys(body_of[geom] for number in numbers for geom in geoms[number])
+        now = {body: self._velocities(data, body) for body in bodies}
+        own = self._free_motions(data, bodies)
+        end = self._at_end_of_step(data, own)
+        then = {body: self._velocities(end, body) for body in bodies}
+        places_then, frames_then = end.contact.pos.tolist(), end.contact.frame.tolist()
         candidates: dict[tuple[int, int], list[int]] = {}
-        for number, (first, second) in enumerate(later.contact.geom.tolist()):
+        for number, (first, second) in enumerate(end.contact.geom.tolist()):
             candidates.setdefault((first, second), []).append(number)
         found = []
         for number in numbers:
-            first, second = geoms[number]
-            same, place = candidates.get((first, second)), contact.pos[number].tolist()
-            bounces = contact.solref.item(number, 0) <= 0.0
-            if contact.dist.item(number) > MARGIN or bounces or not same:
+            (first, second), place = geoms[number], places[number]
+            one, other, same = body_of[first], body_of[second], candidates.get((first, second))
+            if distances[number] > MARGIN or not same or contact.solref.item(number, 0) <= 0.0:  # open, or bouncing
                 continue
-            pair = bodies[[first, second]].tolist()
-            nearest = min(same, key=lambda k: math.dist(places[k], place))
-            radius = max(math.dist(place, data.xipos[body].tolist()) for body in pair if model.body_treeid[body] >= 0)
-            if math.dist(places[nearest], place) > MAX_TURN * radius:
+            nearest = min(same, key=lambda k: math.dist(places_then[k], place))
+            later = places_then[nearest]
+            radius = max(math.dist(place, now[body].origin) for body in (one, other) if self._is_free[body])
+            if math.dist(later, place) > MAX_TURN * radius:
                 continue
             same.remove(nearest)
-            now = _difference(*(self._velocities(data, body).at(place) for body in pair))
-            then = _difference(*(self._velocities(later, body).at(places[nearest]) for body in pair))
-            turning = _difference(*(gyroscopic.get(body, _AT_REST).at(place) for body in pair))
-            frame, normal = contact.frame[number].tolist(), later.contact.frame[nearest, :3].tolist()
-            own = _dot(frame[:3], turning), _dot(frame[3:6], turning), _dot(frame[6:], turning)
-            found.append(ContactPointTerm(rows[number], _changes(frame, normal, now, then, step), own))
+            before, after = _difference(now, one, other, place), _difference(then, one, other, later)
+            changes = _changes(frames[number], frames_then[nearest], before, after, step)
+            turning, frame = _difference(own.gyroscopic, one, other, place), frames[number]
+            gyroscopic = _dot(frame[:3], turning), _dot(frame[3:6], turning), _dot(frame[6:], turning)
+            found.append(ContactPointTerm(rows[number], changes, gyroscopic))
         return found
 
-    def _gyroscopic_accelerations(self, data: mujoco.MjData, bodies: set[int]) -> dict[int, _Motion]:
-        """Return the accelerations without forces of those bodies whose rotation a step resolves."""
-        found, step = {}, float(self._model.opt.timestep)
-        for body in sorted(bodies & self._rotations.keys()):
-            one = self._rotations[body]
-            spin = data.qvel[one.dofs].tolist()[3:]
-            if one.is_resolved(spin, step):
-                quaternion = data.qpos[one.coordinates].tolist()[3:]
-                x, y, z, *turning = one.gyroscopic_acceleration(quaternion, spin)
+    def _free_motions(self, data: mujoco.MjData, bodies: Iterable[int]) -> _FreeMotions:
+        """Return the motion without forces of those bodies whose rotation a step resolves."""
+        found, step = _FreeMotions({}, []), float(self._model.opt.timestep)
+        for body in bodies:
+            one = self._rotations.get(body)
+            if one is None:
+                continue
+            position, velocity = data.qpos[one.coordinates].tolist(), data.qvel[one.dofs].tolist()
+            if one.is_resolved(velocity[3:], step):
+                x, y, z, *turning = one.gyroscopic_acceleration(position[3:], velocity[3:])
                 p, q, r = data.xpos[body].tolist()
                 u, v, w = (_dot(row, turning) for row in data.xmat[body].reshape(3, 3).tolist())
-                found[body] = _Motion((p, q, r), (x, y, z), (u, v, w))
+                found.gyroscopic[body] = _Motion((p, q, r), (x, y, z), (u, v, w))
+                found.ends.append((one, *one.moved(position, velocity, step)))
         return found
 
-    def _at_end_of_step(self, data: mujoco.MjData, turning: Collection[int]) -> mujoco.MjData:
+    def _at_end_of_step(self, data: mujoco.MjData, own: _FreeMotions) -> mujoco.MjData:
         """Return data with the contacts and velocities to which the motion without forces leads at the end of the step.
 
         Args:
             data: MuJoCo's data with velocities up to date.
-            turning: bodies that turn by `RigidRotation`; all other velocities stay.
+            own: motions of bodies that turn; all other velocities stay.
         """
         model, option = self._model, self._model.opt
         if self._data is None:
             self._data = mujoco.MjData(model)
-        own, step = self._data, float(option.timestep)
-        own.qpos[:], own.qvel[:] = data.qpos, data.qvel
+        end = self._data
+        end.qpos[:], end.qvel[:] = data.qpos, data.qvel
         if model.nmocap:
-            own.mocap_pos[:], own.mocap_quat[:] = data.mocap_pos, data.mocap_quat
-        mujoco.mj_integratePos(model, own.qpos, data.qvel, step)
-        for body in turning:
-            one = self._rotations[body]
-            moved = one.moved(data.qpos[one.coordinates].tolist(), data.qvel[one.dofs].tolist(), step)
-            own.qpos[one.coordinates], own.qvel[one.dofs] = moved
+            end.mocap_pos[:], end.mocap_quat[:] = data.mocap_pos, data.mocap_quat
+        mujoco.mj_integratePos(model, end.qpos, data.qvel, option.timestep)
+        for one, position, velocity in own.ends:
+            end.qpos[one.coordinates], end.qvel[one.dofs] = position, velocity
         enabled, margin = option.enableflags, option.o_margin
         # a body that sleeps may have been moved; a contact may open within the step
         option.enableflags, option.o_margin = (enabled & ~_SLEEP) | _OVERRIDE, MARGIN
         try:
-            mujoco.mj_kinematics(model, own)
-            mujoco.mj_comPos(model, own)
-            mujoco.mj_collision(model, own)
-            mujoco.mj_comVel(model, own)
+            mujoco.mj_kinematics(model, end)
+            mujoco.mj_comPos(model, end)
+            mujoco.mj_collision(model, end)
+            mujoco.mj_comVel(model, end)
         finally:
             option.enableflags, option.o_margin = enabled, margin
-        return own
+        return end
 
     def _velocities(self, data: mujoco.MjData, body: int) -> _Motion:
-        """Return the velocities of a body in data with velocities up to date."""
+        """Return the velocities of a body, about the centre of mass of its kinematic tree."""
+        if not self._moves[body]:
+            return _AT_REST
         u, v, w, x, y, z = data.cvel[body].tolist()
-        a, b, c = data.subtree_com[self._model.body_rootid[body]].tolist()
+        a, b, c = data.subtree_com[self._roots[body]].tolist()
         return _Motion((a, b, c), (x, y, z), (u, v, w))
 
 
-def _difference(one: Point, other: Point) -> Point:
-    """Return the second vector minus the first one."""
-    return other[0] - one[0], other[1] - one[1], other[2] - one[2]
+def _difference(motions: Mapping[int, _Motion], one: int, other: int, place: Point) -> Point:
+    """Return the velocity or acceleration of a body relative to another one at a place."""
+    (x, y, z), (u, v, w) = motions.get(one, _AT_REST).at(place), motions.get(other, _AT_REST).at(place)
+    return u - x, v - y, w - z
 
 
 def _dot(one: Sequence[float], other: Sequence[float]) -> float:
     return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
 
 
-def _changes(frame: list[float], normal: list[float], now: Point, then: Point, step: float) -> Point:
+def _changes(frame: list[float], frame_then: list[float], now: Point, then: Point, step: float) -> Point:
     """Return the changes of the velocities along normal and tangents, per time [m/s²].
 
     Args:
         frame: normal and tangents now, shape (9,).
-        normal: normal at the end of the step.
+        frame_then: the same at the end of the step.
         now: relative velocity of both bodies at the contact now [m/s].
         then: relative velocity at the contact at the end of the step [m/s].
         step: length of the step [s].
     """
+    normal = frame_then[:3]
     opening = _dot(normal, then)
     x, y, z = then[0] - opening * normal[0], then[1] - opening * normal[1], then[2] - opening * normal[2]
     across, along = (_dot(axis, (x, y, z)) - _dot(axis, now) for axis in (frame[3:6], frame[6:]))
