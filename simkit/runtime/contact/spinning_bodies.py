@@ -21,7 +21,7 @@ straight ahead has no term.
 MAX_BODIES: Final = 8
 """Largest number of free bodies that turn at all: more of them make a heap, where some spin in nearly all steps.
 
-A body that sleeps has no velocity. The data of a reader do not contain the sleep itself.
+Balls do not count. A body that sleeps has no velocity. The data of a reader do not contain the sleep itself.
 """
 
 _FREE: Final = int(mujoco.mjtJoint.mjJNT_FREE)
@@ -49,18 +49,17 @@ class SpinningBodies:
         self.joints: dict[int, int] = dict(zip(trees[alone].tolist(), joints[alone].tolist(), strict=True))
         collides = (model.geom_contype | model.geom_conaffinity) != 0
         trees_of_geoms = model.body_treeid[model.geom_bodyid]
-        limits, axes = [], []
-        for tree in self.joints:
+        found: list[tuple[int, int, float, list[float]]] = []
+        for tree, joint in self.joints.items():
             reach, axis = _reach_and_axis(model, np.flatnonzero((trees_of_geoms == tree) & collides).tolist())
-            limits.append(MIN_ACCELERATION / reach if reach > 0.0 else math.inf)
-            axes.append(axis)
-        self._limits, self._trees = np.array(limits), np.array(list(self.joints), np.intp)
-        self._axes = np.array(axes).T
-        self._least = min(limits, default=math.inf)
-        self.can_spin = self._least < math.inf
-        firsts = model.jnt_dofadr[list(self.joints.values())].astype(np.intp)
-        self._spins = (firsts[:, None] + np.arange(3, 6)).reshape(-1)
-        self._plain = list(zip(self.joints, (firsts + 3).tolist(), limits, axes, strict=True))
+            if reach > 0.0:
+                found.append((tree, int(model.jnt_dofadr[joint]) + 3, MIN_ACCELERATION / reach, axis))
+        self._plain, self.can_spin = found, bool(found)
+        self._trees = np.array([tree for tree, _, _, _ in found], np.intp)
+        self._spins = np.array([start + axis for _, start, _, _ in found for axis in range(3)], np.intp)
+        self._limits = np.array([limit for _, _, limit, _ in found])
+        self._axes = np.array([axis for _, _, _, axis in found]).T
+        self._least = min((limit for _, _, limit, _ in found), default=math.inf)
 
     def find(self, data: mujoco.MjData) -> npt.NDArray[np.bool_] | None:
         """Return a mask of the trees that spin fast, with False for static bodies at its end; None if there are none.
