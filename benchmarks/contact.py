@@ -30,7 +30,7 @@ from contact_scene import Case, Table
 from contact_sliding import PUSHED, SLIDING_BOXES, SLIDING_SHAPES
 from contact_tables import Results, markdown, section, write_page
 from contact_tosses import tosses
-from contact_turning import DISC, EDGES, PENDULUMS, TURNTABLE
+from contact_turning import DISC, EDGES, PENDULUMS, PRECESSIONS, TURNTABLE
 
 import simkit
 
@@ -43,7 +43,7 @@ Makers = Mapping[str, Callable[[Case, Path], Engine]]
 def tables(folder: Path | None) -> tuple[Table, ...]:
     """Every table, in the order of the page."""
     piles = (LOADS, DOMINO_WAVE, DICE, PYRAMIDS, FALLING_HEAPS)
-    turning = (EDGES, DISC, TURNTABLE, PENDULUMS)
+    turning = (EDGES, DISC, PRECESSIONS, TURNTABLE, PENDULUMS)
     sliding = (SLIDING_BOXES, SLIDING_SHAPES, PUSHED)
     return (tosses(folder), HITS, BOUNCES_AND_DROPS, *sliding, *turning, *piles)
 

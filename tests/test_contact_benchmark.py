@@ -73,6 +73,23 @@ def test_the_disc_starts_in_the_steady_precession_of_a_thin_disc(benchmark: Impo
     assert math.hypot(*body.angular) == pytest.approx(thin, rel=0.05)
 
 
+@pytest.mark.parametrize("kind", ["cylinder", "capsule"])
+def test_the_torque_of_the_contact_turns_the_angular_momentum_of_a_body_in_steady_precession(
+    benchmark: Import, kind: str
+) -> None:
+    turning = benchmark("contact_turning")
+    np, incline, spin = turning.np, 0.4, 50.0
+    shape = turning.Shape(kind, (0.05, 0.01))
+    speed, (x, _, z) = turning.steady_precession(shape, incline, spin)
+    axis, upwards = np.array([math.sin(incline), 0.0, math.cos(incline)]), np.array([0.0, 0.0, 1.0])
+    contact, angular = np.array([x, 0.0, z]), spin * axis + speed * upwards
+    velocity = -np.cross(angular, contact)  # the contact point rests
+    force = speed * np.cross(upwards, velocity) + 9.8 * upwards
+    across, _, along = shape.inertia
+    momentum = across * angular + (along - across) * axis * sum(axis * angular)
+    assert np.cross(contact, force) == pytest.approx(speed * np.cross(upwards, momentum), abs=1e-9)
+
+
 def test_each_case_has_a_name_of_its_own_in_its_table_and_each_table_a_section_of_the_page(benchmark: Import) -> None:
     page = (ROOT / "docs" / "accuracy.md").read_text(encoding="utf-8")
     tables = benchmark("contact").tables(None)

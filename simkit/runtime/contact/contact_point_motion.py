@@ -6,47 +6,39 @@ angular velocity times the velocity of the contact point, up to 4 g. Without thi
 any step, b being the damping of the contact, and the disc gains a quarter of its energy in 4 s. The term cannot be
 taken from `mj_jacDot`, which moves the point with the material: a ball that rolls would get a term and has none.
 
-Therefore this module finds the contacts to which the present velocities lead at the end of the step, on a second
-`MjData`. Jdot v is then (J' v - J v) / dt, with the Jacobian J' of the end.
+Therefore this module moves the bodies without forces over a step (`RigidRotation`), on a second `MjData`, and finds the
+contacts there. With their Jacobian J' and the velocities v' of the free motion, the velocity of a contact changes by
+
+    D = (J' v' - J v) / dt
+
+in addition to the effect of forces. The accelerations a of the engine contain the gyroscopic acceleration g, which is
+part of the free motion. So the velocity at the end of the step is J v + dt (J (a - g) + D).
 
 The integrator moves a body along the chord of its path. The mean velocity of a contact in the step that led here is w =
-J v - (dt / 2) Jdot v. The reference -b w - k r - Jdot v lets w decay, so that the contact neither opens nor slips on
-average. It differs from the engine's by (1 - b dt / 2) Jdot v. The contact law gets the velocity J v + (dt / 2) Jdot v
-of the normal. It then stops a body so that the distance stays the same over the step.
+J v - (dt / 2) D. The reference -b w - k r - D + J g lets w decay, so that the contact neither opens nor slips on
+average. It differs from the engine's by (1 - b dt / 2) D - J g. The contact law gets the velocity J v + (dt / 2) D of
+the normal. It then stops a body so that the distance stays the same over the step.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Final, NamedTuple
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
-from simkit.linear_algebra import squared_length
-
-MIN_ACCELERATION: Final = 0.05
-"""Least acceleration of the surface of a body by its spin [m/s²] for the correction; a contact slips by 0.1 mm/s.
-
-It is the size of the body times the angular velocity times its part across the axis of symmetry: a cylinder that rolls
-straight ahead has no term.
-"""
+from simkit.runtime.contact.rigid_rotation import RigidRotation
+from simkit.runtime.contact.spinning_bodies import SpinningBodies
 
 MAX_REFERENCE: Final = 100.0
 """Largest reference of the tangents [m/s²] for the correction: a contact that slips faster than 0.2 m/s slides."""
 
-MAX_BODIES: Final = 8
-"""Largest number of free bodies that turn at all: more of them make a heap, where some spin in nearly all steps.
-
-A body that sleeps has no velocity. The data of a reader do not contain the sleep itself.
-"""
-
 MAX_CONTACTS: Final = 8
 """Largest number of corrected contacts."""
 
-MAX_TURN: Final = 0.25
+MAX_TURN: Final = 0.5
 """Largest travel of a contact point in a step, as a fraction of its distance from the body's origin.
 
 A point that travels farther has jumped to another end of the body.
@@ -65,47 +57,59 @@ MARGIN: Final = 1e-3
 _SLEEP: Final = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
 _OVERRIDE: Final = int(mujoco.mjtEnableBit.mjENBL_OVERRIDE)
 _FREE: Final = int(mujoco.mjtJoint.mjJNT_FREE)
-_SPHERE: Final = int(mujoco.mjtGeom.mjGEOM_SPHERE)
-_ROUND: Final = (int(mujoco.mjtGeom.mjGEOM_CYLINDER), int(mujoco.mjtGeom.mjGEOM_CAPSULE))
 _ELLIPTIC: Final = mujoco.mjtCone.mjCONE_ELLIPTIC
 
 Point = tuple[float, float, float]
 
 
 class ContactPointTerm(NamedTuple):
-    """Term Jdot v of one contact.
+    """Terms of one contact along the normal and both tangents.
 
     Attributes:
         row: row of the normal.
-        terms: terms along the normal and both tangents [m/s²].
+        changes: changes D of the velocities in free motion, per time [m/s²].
+        gyroscopic: gyroscopic accelerations J g [m/s²].
     """
 
     row: int
-    terms: Point
+    changes: Point
+    gyroscopic: Point
 
 
 class _Motion(NamedTuple):
-    """Motion of a free body at one time, in the world frame.
+    """Velocities or accelerations of a rigid body at one time, in the world frame.
 
     Attributes:
-        origin: position of the body's origin [m].
-        velocity: velocity of the origin [m/s].
-        spin: angular velocity [rad/s].
+        origin: position of a point of the body [m].
+        linear: velocity [m/s] or acceleration [m/s²] of this point.
+        angular: angular velocity [rad/s] or acceleration [rad/s²].
     """
 
     origin: Point
-    velocity: Point
-    spin: Point
+    linear: Point
+    angular: Point
 
     def at(self, point: Point) -> Point:
-        """Return the velocity of the body at a point [m/s]."""
-        (x, y, z), (a, b, c), (u, v, w) = point, self.origin, self.spin
+        """Return the velocity or acceleration of the body at a point."""
+        (x, y, z), (a, b, c), (u, v, w) = point, self.origin, self.angular
         x, y, z = x - a, y - b, z - c
-        p, q, r = self.velocity
+        p, q, r = self.linear
         return p + v * z - w * y, q + w * x - u * z, r + u * y - v * x
 
 
-_STATIC: Final = (_Motion((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),) * 2
+_AT_REST: Final = _Motion((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+
+
+class _FreeMotions(NamedTuple):
+    """Motions of bodies without forces.
+
+    Attributes:
+        gyroscopic: accelerations, by body.
+        ends: coordinates and velocities at the end of the step.
+    """
+
+    gyroscopic: dict[int, _Motion]
+    ends: list[tuple[RigidRotation, list[float], list[float]]]
 
 
 class ContactPointCorrection:
@@ -122,17 +126,17 @@ class ContactPointCorrection:
         self._before: list[tuple[int, float]] = []
         self._velocities: list[tuple[int, float]] = []
         self._tangents: list[tuple[int, float]] = []
-        for row, (along_normal, across, along) in terms:
+        for row, (along_normal, *along_tangents), (lift, *turning) in terms:
             rest = min(1.0, 0.5 * step * data.efc_KBIP.item(row, 1))
             velocity = self._velocity.item(row)
             self._velocities.append((row, velocity))
             self._velocity[row] = velocity + 0.5 * step * along_normal
-            self._before.append((row, self._shift(row, (rest - 1.0) * along_normal)))
+            self._before.append((row, self._shift(row, (rest - 1.0) * along_normal + lift)))
             slip = math.hypot(self._aref.item(row + 1), self._aref.item(row + 2))
-            if slip <= MAX_SLIP * math.hypot(across, along):
-                for place, term in ((row + 1, across), (row + 2, along)):
-                    self._before.append((place, self._shift(place, rest * term)))
-                    self._tangents.append((place, term))
+            if slip <= MAX_SLIP * math.hypot(*along_tangents):
+                for place, (change, own) in enumerate(zip(along_tangents, turning, strict=True), row + 1):
+                    self._before.append((place, self._shift(place, rest * change)))
+                    self._tangents.append((place, change - own))
 
     def shift_tangents(self) -> list[tuple[int, float]]:
         """Subtract the terms from the tangents, whose references are -b w until then; return the rows to restore.
@@ -160,7 +164,7 @@ class ContactPointCorrection:
 
 
 class ContactPointMotion:
-    """Contacts of the free bodies of one compiled model with each other and with static geoms.
+    """Contacts of the free bodies of one compiled model.
 
     Args:
         model: MuJoCo's model.
@@ -169,24 +173,18 @@ class ContactPointMotion:
     def __init__(self, model: mujoco.MjModel) -> None:
         self._model = model
         self._data: mujoco.MjData | None = None
-        joints = np.flatnonzero(model.jnt_type == _FREE)
-        trees = model.body_treeid[model.jnt_bodyid[joints]]
-        alone = model.tree_dofnum[trees] == 6
-        self._joints: dict[int, int] = dict(zip(trees[alone].tolist(), joints[alone].tolist(), strict=True))
-        trees_of_geoms = model.body_treeid[model.geom_bodyid]
-        self._tree_of = np.append(trees_of_geoms, -1)  # the last item is for contacts without a geom
-        limits, axes = [], []
-        for tree in self._joints:
-            geoms = np.flatnonzero((trees_of_geoms == tree) & (model.geom_type != _SPHERE))
-            reach = (np.linalg.norm(model.geom_pos[geoms], axis=1) + model.geom_rbound[geoms]).max(initial=0.0)
-            limits.append(MIN_ACCELERATION / float(reach) if reach > 0.0 else math.inf)
-            axes.append(_axis_of_symmetry(model, geoms))
-        self._limits, self._trees = np.array(limits), np.array(list(self._joints), np.intp)
-        self._axes = np.array(axes).T
-        self._least = min(limits, default=math.inf)
-        firsts = model.jnt_dofadr[list(self._joints.values())].astype(np.intp)
-        self._spins = (firsts[:, None] + np.arange(3, 6)).reshape(-1)
-        self._plain = list(zip(self._joints, (firsts + 3).tolist(), limits, axes, strict=True))
+        self._spinning = SpinningBodies(model)
+        trees = model.body_treeid
+        self._body_of: list[int] = model.geom_bodyid.tolist()
+        self._roots: list[int] = model.body_rootid.tolist()
+        self._moves: list[bool] = (trees >= 0).tolist()
+        self._is_free: list[bool] = np.isin(trees, list(self._spinning.joints)).tolist()
+        self._tree_of = np.append(
+            model.body_treeid[model.geom_bodyid], -1
+        )  # the last item is for flexes without a geom
+        single = np.bincount(trees[trees >= 0], minlength=model.ntree) == 1
+        joints = [joint for tree, joint in self._spinning.joints.items() if single[tree]]
+        self._rotations = {int(model.jnt_bodyid[joint]): RigidRotation(model, joint) for joint in joints}
 
     @classmethod
     def of(cls, model: mujoco.MjModel) -> ContactPointMotion | None:
@@ -194,7 +192,7 @@ class ContactPointMotion:
         if model.opt.cone != _ELLIPTIC or model.nflex or not (model.jnt_type == _FREE).any():
             return None
         found = cls(model)
-        return found if found._least < math.inf else None
+        return found if found._spinning.can_spin else None
 
     def find(self, data: mujoco.MjData) -> list[int]:
         """Return the numbers of the contacts to correct.
@@ -202,48 +200,21 @@ class ContactPointMotion:
         Args:
             data: MuJoCo's data with velocities up to date.
         """
-        spinning = self._spinning(data) if data.ncon else None
+        spinning = self._spinning.find(data) if data.ncon else None
         if spinning is None:
             return []
         trees, contact = self._tree_of[data.contact.geom], data.contact
         numbers = spinning[trees].any(axis=1).nonzero()[0].tolist()
         if len(numbers) > MAX_CONTACTS:
             return []
-        free, rows, aref = self._joints.keys() | {-1}, contact.efc_address, data.efc_aref
+        rows, aref = contact.efc_address, data.efc_aref
         found = []
         for number in numbers:
             row = rows.item(number)
-            if row < 0 or contact.dim[number] < 3 or not free.issuperset(trees[number].tolist()):
+            if row < 0 or contact.dim[number] < 3:
                 continue
             if math.hypot(aref.item(row + 1), aref.item(row + 2)) <= MAX_REFERENCE:
                 found.append(number)
-        return found
-
-    def _spinning(self, data: mujoco.MjData) -> npt.NDArray[np.bool_] | None:
-        """Return a mask of the trees that spin fast, with False for static bodies at its end; None if there are none.
-
-        Most worlds have few free bodies, and none that spins. Plain numbers then take half the time of arrays.
-        """
-        if len(self._plain) <= MAX_BODIES:
-            velocities, fast = data.qvel.tolist(), []
-            for tree, start, limit, (a, b, c) in self._plain:
-                x, y, z = velocities[start : start + 3]
-                square, along = x * x + y * y + z * z, x * a + y * b + z * c
-                if square * (square - along * along) > limit * limit:
-                    fast.append(tree)
-        else:
-            spins = data.qvel.take(self._spins)
-            if squared_length(spins, self._least) <= self._least:
-                return None
-            (x, y, z), (a, b, c) = spins.reshape(-1, 3).T, self._axes
-            square, along = x * x + y * y + z * z, x * a + y * b + z * c
-            if np.count_nonzero(square) > MAX_BODIES:
-                return None
-            fast = self._trees[square * (square - along * along) > self._limits * self._limits].tolist()
-        if not fast:
-            return None
-        found = np.zeros(self._model.ntree + 1, bool)
-        found[fast] = True
         return found
 
     def correct(self, data: mujoco.MjData, carried: Collection[tuple[int, int, int]]) -> ContactPointCorrection | None:
@@ -268,108 +239,112 @@ class ContactPointMotion:
             data: MuJoCo's data with velocities up to date.
             numbers: numbers of the contacts.
         """
-        step, contact, later = float(self._model.opt.timestep), data.contact, self._at_end_of_step(data)
-        places, motions = later.contact.pos.tolist(), self._motions(data, later, numbers)
-        rows, geoms = contact.efc_address.tolist(), contact.geom.tolist()
+        step, contact, body_of = float(self._model.opt.timestep), data.contact, self._body_of
+        geoms, rows = contact.geom.tolist(), contact.efc_address.tolist()
+        places, frames, distances = contact.pos.tolist(), contact.frame.tolist(), contact.dist.tolist()
+        bodies = dict.fromkeys(body_of[geom] for number in numbers for geom in geoms[number])
+        now = {body: self._velocities(data, body) for body in bodies}
+        own = self._free_motions(data, bodies)
+        end = self._at_end_of_step(data, own)
+        then = {body: self._velocities(end, body) for body in bodies}
+        places_then, frames_then = end.contact.pos.tolist(), end.contact.frame.tolist()
         candidates: dict[tuple[int, int], list[int]] = {}
-        for number, (first, second) in enumerate(later.contact.geom.tolist()):
+        for number, (first, second) in enumerate(end.contact.geom.tolist()):
             candidates.setdefault((first, second), []).append(number)
         found = []
         for number in numbers:
-            row, (first, second) = rows[number], geoms[number]
-            same = candidates.get((first, second))
-            bounces = contact.solref.item(number, 0) <= 0.0
-            if contact.dist.item(number) > MARGIN or bounces or not same:
+            (first, second), place = geoms[number], places[number]
+            one, other, same = body_of[first], body_of[second], candidates.get((first, second))
+            if distances[number] > MARGIN or not same or contact.solref.item(number, 0) <= 0.0:  # open, or bouncing
                 continue
-            place = contact.pos[number].tolist()
-            nearest = min(same, key=lambda k: math.dist(places[k], place))
-            one, other = (motions[tree] for tree in self._tree_of[[first, second]].tolist())
-            radius = max(math.dist(place, motion[0].origin) for motion in (one, other) if motion is not _STATIC)
-            if math.dist(places[nearest], place) > MAX_TURN * radius:
+            nearest = min(same, key=lambda k: math.dist(places_then[k], place))
+            later = places_then[nearest]
+            radius = max(math.dist(place, now[body].origin) for body in (one, other) if self._is_free[body])
+            if math.dist(later, place) > MAX_TURN * radius:
                 continue
             same.remove(nearest)
-            now = _difference(other[0].at(place), one[0].at(place))
-            then = _difference(other[1].at(places[nearest]), one[1].at(places[nearest]))
-            frame, normal = contact.frame[number].tolist(), later.contact.frame[nearest, :3].tolist()
-            found.append(ContactPointTerm(row, _terms(frame, normal, now, then, step)))
+            before, after = _difference(now, one, other, place), _difference(then, one, other, later)
+            changes = _changes(frames[number], frames_then[nearest], before, after, step)
+            turning, frame = _difference(own.gyroscopic, one, other, place), frames[number]
+            gyroscopic = _dot(frame[:3], turning), _dot(frame[3:6], turning), _dot(frame[6:], turning)
+            found.append(ContactPointTerm(rows[number], changes, gyroscopic))
         return found
 
-    def _at_end_of_step(self, data: mujoco.MjData) -> mujoco.MjData:
-        """Return data with the contacts that the present velocities lead to at the end of the step."""
+    def _free_motions(self, data: mujoco.MjData, bodies: Iterable[int]) -> _FreeMotions:
+        """Return the motion without forces of those bodies whose rotation a step resolves."""
+        found, step = _FreeMotions({}, []), float(self._model.opt.timestep)
+        for body in bodies:
+            one = self._rotations.get(body)
+            if one is None:
+                continue
+            position, velocity = data.qpos[one.coordinates].tolist(), data.qvel[one.dofs].tolist()
+            if one.is_resolved(velocity[3:], step):
+                x, y, z, *turning = one.gyroscopic_acceleration(position[3:], velocity[3:])
+                p, q, r = data.xpos[body].tolist()
+                u, v, w = (_dot(row, turning) for row in data.xmat[body].reshape(3, 3).tolist())
+                found.gyroscopic[body] = _Motion((p, q, r), (x, y, z), (u, v, w))
+                found.ends.append((one, *one.moved(position, velocity, step)))
+        return found
+
+    def _at_end_of_step(self, data: mujoco.MjData, own: _FreeMotions) -> mujoco.MjData:
+        """Return data with the contacts and velocities to which the motion without forces leads at the end of the step.
+
+        Args:
+            data: MuJoCo's data with velocities up to date.
+            own: motions of bodies that turn; all other velocities stay.
+        """
         model, option = self._model, self._model.opt
         if self._data is None:
             self._data = mujoco.MjData(model)
-        own, step = self._data, float(option.timestep)
-        own.qpos[:] = data.qpos
+        end = self._data
+        end.qpos[:], end.qvel[:] = data.qpos, data.qvel
         if model.nmocap:
-            own.mocap_pos[:], own.mocap_quat[:] = data.mocap_pos, data.mocap_quat
-        mujoco.mj_integratePos(model, own.qpos, data.qvel, step)
+            end.mocap_pos[:], end.mocap_quat[:] = data.mocap_pos, data.mocap_quat
+        mujoco.mj_integratePos(model, end.qpos, data.qvel, option.timestep)
+        for one, position, velocity in own.ends:
+            end.qpos[one.coordinates], end.qvel[one.dofs] = position, velocity
         enabled, margin = option.enableflags, option.o_margin
         # a body that sleeps may have been moved; a contact may open within the step
         option.enableflags, option.o_margin = (enabled & ~_SLEEP) | _OVERRIDE, MARGIN
         try:
-            mujoco.mj_kinematics(model, own)
-            mujoco.mj_comPos(model, own)
-            mujoco.mj_collision(model, own)
+            mujoco.mj_kinematics(model, end)
+            mujoco.mj_comPos(model, end)
+            mujoco.mj_collision(model, end)
+            mujoco.mj_comVel(model, end)
         finally:
             option.enableflags, option.o_margin = enabled, margin
-        return own
+        return end
 
-    def _motions(
-        self, data: mujoco.MjData, later: mujoco.MjData, numbers: list[int]
-    ) -> dict[int, tuple[_Motion, _Motion]]:
-        """Return the motions of trees with the present velocities, at the places of both data; -1 is static."""
-        model, found = self._model, {-1: _STATIC}
-        for number in numbers:
-            for tree in self._tree_of[data.contact.geom[number]].tolist():
-                if tree in found:
-                    continue
-                joint = self._joints[tree]
-                body, start = int(model.jnt_bodyid[joint]), int(model.jnt_dofadr[joint])
-                a, b, c, x, y, z = data.qvel[start : start + 6].tolist()
-                both = []
-                for each in (data, later):
-                    p, q, r, s, t, u, v, w, o = each.xmat[body].tolist()
-                    spin = p * x + q * y + r * z, s * x + t * y + u * z, v * x + w * y + o * z
-                    px, py, pz = each.xpos[body].tolist()
-                    both.append(_Motion((px, py, pz), (a, b, c), spin))
-                found[tree] = both[0], both[1]
-        return found
+    def _velocities(self, data: mujoco.MjData, body: int) -> _Motion:
+        """Return the velocities of a body, about the centre of mass of its kinematic tree."""
+        if not self._moves[body]:
+            return _AT_REST
+        u, v, w, x, y, z = data.cvel[body].tolist()
+        a, b, c = data.subtree_com[self._roots[body]].tolist()
+        return _Motion((a, b, c), (x, y, z), (u, v, w))
 
 
-def _axis_of_symmetry(model: mujoco.MjModel, geoms: npt.NDArray[np.intp]) -> list[float]:
-    """Return the axis of a single cylinder or capsule in the frame of its body; zero for other geoms.
-
-    Args:
-        model: MuJoCo's model.
-        geoms: numbers of the geoms of a body without its spheres.
-    """
-    if len(geoms) != 1 or model.geom_type[geoms[0]] not in _ROUND:
-        return [0.0, 0.0, 0.0]
-    axes = np.empty(9)
-    mujoco.mju_quat2Mat(axes, model.geom_quat[geoms[0]])
-    found: list[float] = axes[2::3].tolist()
-    return found
-
-
-def _difference(one: Point, other: Point) -> Point:
-    return one[0] - other[0], one[1] - other[1], one[2] - other[2]
+def _difference(motions: Mapping[int, _Motion], one: int, other: int, place: Point) -> Point:
+    """Return the velocity or acceleration of a body relative to another one at a place."""
+    (x, y, z), (u, v, w) = motions.get(one, _AT_REST).at(place), motions.get(other, _AT_REST).at(place)
+    return u - x, v - y, w - z
 
 
 def _dot(one: Sequence[float], other: Sequence[float]) -> float:
     return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
 
 
-def _terms(frame: list[float], normal: list[float], now: Point, then: Point, step: float) -> Point:
+def _changes(frame: list[float], frame_then: list[float], now: Point, then: Point, step: float) -> Point:
     """Return the changes of the velocities along normal and tangents, per time [m/s²].
 
     Args:
         frame: normal and tangents now, shape (9,).
-        normal: normal at the end of the step.
+        frame_then: the same at the end of the step.
         now: relative velocity of both bodies at the contact now [m/s].
         then: relative velocity at the contact at the end of the step [m/s].
         step: length of the step [s].
     """
+    normal = frame_then[:3]
     opening = _dot(normal, then)
     x, y, z = then[0] - opening * normal[0], then[1] - opening * normal[1], then[2] - opening * normal[2]
     across, along = (_dot(axis, (x, y, z)) - _dot(axis, now) for axis in (frame[3:6], frame[6:]))

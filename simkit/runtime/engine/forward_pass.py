@@ -108,7 +108,8 @@ class ForwardPass(PhysicsState):
 
     def _tumbles(self) -> bool:
         """Check whether a flying body needs the integrator of free motion, which acts in steps by the contact law."""
-        return self.free_motion is not None and self.free_motion.is_needed(self.data)
+        motion = self.free_motion
+        return motion is not None and motion.can_fly and motion.is_needed(self.data)
 
     @property
     def _closing(self) -> list[float] | None:

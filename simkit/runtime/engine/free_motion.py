@@ -6,44 +6,32 @@ An arm with servos or damping is not affected. The kinematic trees without dampi
 method of fourth order, in substeps that follow the fastest joint. This needs a second `MjData` if there are other
 trees. Trees without constraint forces do not depend on each other, so all other trees keep their bits.
 
-A contact or a joint limit needs the engine's integrator, so a tree with such a force is left to it in that step. One
-case is an exception: a mechanism whose base rests on its contacts. A very large armature then holds the base, and only
-the joints above it are integrated here.
+A contact or a joint limit needs the engine's integrator, so a tree with such a force is left to it in that step. Two
+cases are exceptions. A mechanism may have a base that rests on its contacts: a very large armature then holds the base,
+and only the joints above it are integrated here. A single body may spin while it touches something: the forces of the
+step change its velocities, and `RigidRotation` then moves it.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Final, NamedTuple
+from typing import Final
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
-from simkit.compiler.state_transfer import JOINT_WIDTHS
 from simkit.linear_algebra import squared_length
-
-MIN_CHAIN_LENGTH: Final = 2
-"""Least number of passive joints in a row that make a tree a chain."""
-
-MAX_SHORT_CHAIN_LENGTH: Final = 7
-"""Largest number of passive joints in a row without substeps: seven links keep their energy within 0.001 % at 4 ms."""
-
-MIN_SQUARED_TURN_RATE: Final = 0.002
-"""Least squared angular velocity times the step [rad²/s] at which this module integrates a body that is not in a chain.
-
-The engine takes about 5 % of this value from the energy of a tumbling body in a second: 0.01 % at the limit, which is
-1.4 rad/s at a step of 1 ms.
-"""
-
-MAX_SUBSTEP_TURN: Final = 0.05
-"""Largest rotation of the fastest joint in a substep [rad]; 0.05 keeps the energy of 50 links within 0.03 %."""
-
-MAX_SUBSTEP_DECAY: Final = 0.2
-"""Largest fraction of a joint's velocity that damping may remove in a substep."""
+from simkit.runtime.contact.rigid_rotation import RigidRotation
+from simkit.runtime.engine.passive_trees import MAX_SUBSTEP_TURN, JointGroup, PassiveTree, find_passive_trees
 
 MAX_SUBSTEPS: Final = 16
+
+MIN_GYROSCOPIC_ERROR: Final = 1e-4
+"""Least error of the engine's integrator at which a body in contact is integrated here, relative to its spin [1/s].
+
+The error is the change of the gyroscopic acceleration within a step. A cylinder that rolls straight ahead has none.
+"""
 
 MAX_RESTING_SPEED: Final = 1e-3
 """Largest speed [m/s, rad/s] of a base that rests on its contacts."""
@@ -52,9 +40,10 @@ MIN_SPEED_ON_BASE: Final = 0.01
 """Least angular velocity [rad/s] of a mechanism on such a base; slower ones rest, such as a cupboard with a hinge."""
 
 MAX_FLYING_MODELS: Final = 8
-"""Largest number of models with collisions whose tumbling is integrated here.
+"""Largest number of models with collisions whose tumbling is integrated here while they fly.
 
-With more, some fly nearly always in a heap, for a short time: 30 capsules that fall would take a tenth longer.
+With more, some fly nearly always in a heap, for a short time: 30 capsules that fall would take a tenth longer. Bodies
+that spin in contact are still integrated here, while at most this number of trees moves.
 """
 
 _STATE: Final = int(mujoco.mjtState.mjSTATE_INTEGRATION)
@@ -63,69 +52,9 @@ _SLEEP: Final = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
 _RUNGE_KUTTA: Final = int(mujoco.mjtIntegrator.mjINT_RK4)
 _ORDER: Final = 4
 _HOLDING_ARMATURE: Final = 1e12  # [kg, kg m²] of the six degrees of freedom of a base that rests
-_EQUAL: Final = 1e-6  # relative difference of moments of inertia that counts as none
-_FREE, _BALL, _HINGE = (
-    int(kind) for kind in (mujoco.mjtJoint.mjJNT_FREE, mujoco.mjtJoint.mjJNT_BALL, mujoco.mjtJoint.mjJNT_HINGE)
-)
 
 Integrator = Callable[[mujoco.MjModel, mujoco.MjData], None]
 """Function of MuJoCo that integrates over a step."""
-
-
-class JointGroup(NamedTuple):
-    """Successive joints of one kinematic tree.
-
-    Attributes:
-        dofs: their degrees of freedom.
-        coordinates: their coordinates.
-    """
-
-    dofs: slice
-    coordinates: slice
-
-
-class PassiveTree:
-    """Kinematic tree to integrate.
-
-    Attributes:
-        turning: indices of the degrees of freedom whose velocity is in rad/s.
-        whole: all joints.
-        base: degrees of freedom of a free joint that carries all other joints; None without such a joint.
-        mechanism: all joints except that of the base.
-        min_speed: angular velocity [rad/s] above which the tree is integrated here; -1 for always.
-        is_short_chain: True for a chain that needs no substeps for its angular velocities.
-        needs_accuracy: True for a long chain and for a ball joint, with which the engine's integrator may diverge.
-        bodies: numbers of the bodies.
-        may_touch: True for a tree that is integrated here only while it flies.
-        substeps: least number of substeps, for its springs and its damping.
-    """
-
-    def __init__(self, model: mujoco.MjModel, number: int, length: int, may_touch: bool) -> None:
-        """Create the tree `number`, in which `length` passive joints follow each other."""
-        step = float(model.opt.timestep)
-        self.number, self.may_touch = number, may_touch
-        self.bodies = np.flatnonzero(model.body_treeid == number)
-        dofs = _index_range(model.tree_dofadr, model.tree_dofnum, number)
-        joints = model.dof_jntid[dofs]
-        kinds = model.jnt_type[joints]
-        is_hinged = not (kinds == _BALL).any() and not (kinds == _FREE).any()
-        self.min_speed = -1.0 if length >= MIN_CHAIN_LENGTH else math.sqrt(MIN_SQUARED_TURN_RATE / step)
-        self.is_short_chain = MIN_CHAIN_LENGTH <= length <= MAX_SHORT_CHAIN_LENGTH and is_hinged
-        self.needs_accuracy = length > MAX_SHORT_CHAIN_LENGTH or bool((kinds == _BALL).any())
-        self.turning = dofs.start + np.flatnonzero(_turning_dofs(model)[dofs])
-        first, last = int(joints[0]), int(joints[-1])
-        width, _ = JOINT_WIDTHS.get(int(kinds[-1]), (1, 1))
-        start, end = int(model.jnt_qposadr[first]), int(model.jnt_qposadr[last]) + width
-        self.whole = self.mechanism = JointGroup(dofs, slice(start, end))
-        self.base: slice | None = None
-        if kinds[0] == _FREE and first != last:
-            inner = int(model.jnt_dofadr[first + 1])
-            self.base = slice(dofs.start, inner)
-            self.mechanism = JointGroup(slice(inner, dofs.stop), slice(int(model.jnt_qposadr[first + 1]), end))
-        weights = model.dof_invweight0[dofs]
-        frequency = math.sqrt(max(0.0, float((model.jnt_stiffness[joints] * weights).max())))
-        decay = float((model.dof_damping[dofs] * weights).max())
-        self.substeps = math.ceil(step * max(frequency / MAX_SUBSTEP_TURN, decay / MAX_SUBSTEP_DECAY))
 
 
 class FreeMotionIntegrator:
@@ -134,39 +63,31 @@ class FreeMotionIntegrator:
     Attributes:
         acts_always: True if every step needs `integrate`; otherwise only steps by the contact law need it, which all
             tumbling bodies have while they fly.
+        can_fly: True if a tree is integrated here while it flies.
     """
 
-    def __init__(self, model: mujoco.MjModel, trees: list[PassiveTree]) -> None:
-        self.model, self.trees = model, trees
+    def __init__(self, model: mujoco.MjModel, trees: list[PassiveTree], is_crowded: bool = False) -> None:
+        self.model, self.trees, self._is_crowded = model, trees, is_crowded
         self.acts_always = not all(tree.may_touch for tree in trees)
-        self._data = mujoco.MjData(model)
+        self.can_fly = self.acts_always or not is_crowded
+        self._data: mujoco.MjData | None = None
         self._state = np.empty(mujoco.mj_stateSize(model, _STATE))
         self._turning = np.concatenate([tree.turning for tree in trees])
         self._first_turning = np.cumsum([0, *(len(tree.turning) for tree in trees[:-1])])
         self._dofs = np.concatenate([np.arange(tree.whole.dofs.start, tree.whole.dofs.stop) for tree in trees])
         self._first_dofs = np.cumsum([0, *(tree.whole.dofs.stop - tree.whole.dofs.start for tree in trees[:-1])])
-        self._unloaded = [False] * len(trees)
+        self._unloaded, self._indices = [False] * len(trees), list(range(len(trees)))
         self._min_speed = min(tree.min_speed for tree in trees)
         self._can_sleep = bool(model.opt.enableflags & _SLEEP)
-        self._count, self._bases = 1, list[slice]()
+        self._count, self._bases, self._touching = 1, list[slice](), list[RigidRotation]()
 
     @classmethod
     def of(cls, model: mujoco.MjModel) -> FreeMotionIntegrator | None:
         """Return the integrator of a model; None if no tree needs it."""
-        driven, lengths = _driven_trees(model), _chain_lengths(model)
-        turning, collides = _turning_dofs(model), (model.geom_contype | model.geom_conaffinity) != 0
-        found = []
-        for number in range(model.ntree):
-            length = lengths.get(number, 0)
-            is_chain = length >= MIN_CHAIN_LENGTH
-            turns = turning[_index_range(model.tree_dofadr, model.tree_dofnum, number)].any()
-            if number not in driven and turns and (is_chain or _may_spin(model, number)):
-                own = collides[model.body_treeid[model.geom_bodyid] == number]
-                tree = PassiveTree(model, number, length, not is_chain and bool(own.any()) and collides.sum() > 1)
-                if tree.substeps <= MAX_SUBSTEPS:
-                    found.append(tree)
+        found = [tree for tree in find_passive_trees(model) if tree.substeps <= MAX_SUBSTEPS]
         if len([tree for tree in found if tree.may_touch]) > MAX_FLYING_MODELS:
-            found = [tree for tree in found if not tree.may_touch]
+            found = [tree for tree in found if not tree.may_touch or tree.rotation is not None]
+            return cls(model, found, is_crowded=True) if found else None
         return cls(model, found) if found else None
 
     def is_needed(self, data: mujoco.MjData) -> bool:
@@ -207,6 +128,7 @@ class FreeMotionIntegrator:
             integrate: integrator of the engine, for all other trees.
         """
         moving = self._find_moving(data)
+        spinning = [(one, *found) for one in self._touching if (found := self._kick_and_drift(data, one))]
         if not moving:
             integrate(model, data)
         elif len(moving) == model.ntree and not self._bases:
@@ -214,6 +136,8 @@ class FreeMotionIntegrator:
             self._runge_kutta(data, 1, is_fresh=True)
             data.time = end
         else:
+            if self._data is None:
+                self._data = mujoco.MjData(model)
             own = self._data
             mujoco.mj_getState(model, data, self._state, _STATE)
             mujoco.mj_setState(model, own, self._state, _STATE)
@@ -223,21 +147,50 @@ class FreeMotionIntegrator:
                 velocities, positions = own.qvel[dofs], own.qpos[at]
                 if np.isfinite(velocities).all() and np.isfinite(positions).all():
                     data.qvel[dofs], data.qpos[at] = velocities, positions
+        for one, position, velocity in spinning:
+            data.qpos[one.coordinates], data.qvel[one.dofs] = position, velocity
+
+    def _kick_and_drift(self, data: mujoco.MjData, rotation: RigidRotation) -> tuple[list[float], list[float]] | None:
+        """Return coordinates and velocities of a body in contact after the step; None if the engine integrates it."""
+        step, position = float(self.model.opt.timestep), data.qpos[rotation.coordinates].tolist()
+        velocity, acceleration = data.qvel[rotation.dofs].tolist(), data.qacc[rotation.dofs].tolist()
+        spin, gyroscopic = velocity[3:], rotation.gyroscopic_acceleration(position[3:], velocity[3:])
+        error = step * math.hypot(*rotation.gyroscopic_rate(spin, acceleration[3:]))
+        if not (error > MIN_GYROSCOPIC_ERROR * math.hypot(*spin) and rotation.is_resolved(spin, step)):
+            return None
+        kicked = [v + step * (a - g) for v, a, g in zip(velocity, acceleration, gyroscopic, strict=True)]
+        if not all(map(math.isfinite, kicked)):
+            return None
+        return rotation.moved(position, kicked, step)
 
     def _find_moving(self, data: mujoco.MjData) -> list[JointGroup]:
-        """Return the joints to integrate in this step; set the number of substeps and the bases to hold."""
+        """Return the joints to integrate in this step; set the substeps, the bases to hold and the touching bodies."""
+        self._touching = []
         if not self.is_needed(data):
             return []
         step = float(self.model.opt.timestep)
-        speeds = np.maximum.reduceat(np.abs(data.qvel.take(self._turning)), self._first_turning).tolist()
+        speeds = np.maximum.reduceat(np.abs(data.qvel.take(self._turning)), self._first_turning)
+        has_heap, indices = False, self._indices
+        if self._is_crowded:
+            has_heap = bool(np.count_nonzero(speeds) > MAX_FLYING_MODELS)
+            if has_heap and not self.acts_always:
+                return []
+            indices = np.flatnonzero(speeds > self._min_speed).tolist()
         forces, loaded = data.qfrc_constraint, self._unloaded
         if data.nefc:
             loaded = np.logical_or.reduceat(forces.take(self._dofs) != 0.0, self._first_dofs).tolist()
         asleep = data.tree_asleep.tolist() if self._can_sleep else None
         is_pushed = data.qfrc_applied.any() or data.xfrc_applied.any()
         moving, count, self._bases = [], 1, []
-        for tree, speed, is_loaded in zip(self.trees, speeds, loaded, strict=True):
+        for index in indices:
+            tree, speed, is_loaded = self.trees[index], speeds.item(index), loaded[index]
             if not tree.min_speed < speed < math.inf or (asleep is not None and asleep[tree.number] >= 0):
+                continue
+            if is_loaded and tree.rotation is not None:
+                if not has_heap:
+                    self._touching.append(tree.rotation)
+                continue
+            if tree.may_touch and self._is_crowded:
                 continue
             if is_pushed and not tree.needs_accuracy and self._is_pushed(data, tree):
                 continue
@@ -290,68 +243,3 @@ class FreeMotionIntegrator:
                 model.dof_armature[base] = armature
             option.timestep, option.integrator = step, integrator
             option.disableflags, option.enableflags = disabled, enabled
-
-
-def _index_range(starts: npt.NDArray[np.int32], counts: npt.NDArray[np.int32], index: int) -> slice:
-    return slice(int(starts[index]), int(starts[index]) + int(counts[index]))
-
-
-def _turning_dofs(model: mujoco.MjModel) -> npt.NDArray[np.bool_]:
-    """Return a mask of the degrees of freedom whose velocity is in rad/s."""
-    kinds = model.jnt_type[model.dof_jntid]
-    offset = np.arange(model.nv) - model.jnt_dofadr[model.dof_jntid]
-    found: npt.NDArray[np.bool_] = (kinds == _BALL) | (kinds == _HINGE) | ((kinds == _FREE) & (offset >= 3))
-    return found
-
-
-def _resisting_dofs(model: mujoco.MjModel) -> npt.NDArray[np.bool_]:
-    """Return a mask of the degrees of freedom that have damping or friction."""
-    found: npt.NDArray[np.bool_] = (model.dof_damping != 0) | (model.dof_frictionloss != 0)
-    found |= (model.dof_dampingpoly != 0).any(axis=1)
-    return found
-
-
-def _chain_lengths(model: mujoco.MjModel) -> dict[int, int]:
-    """Return the largest number of successive passive joints, by tree."""
-    resisting = _resisting_dofs(model)
-    longest: dict[int, int] = {}
-    length = np.zeros(model.nbody, int)
-    for body in range(1, model.nbody):
-        length[body] = length[model.body_parentid[body]]
-        dofs = _index_range(model.body_dofadr, model.body_dofnum, body)
-        tree = int(model.body_treeid[body])
-        if dofs.start < 0 or dofs.start == dofs.stop or tree < 0:
-            continue
-        length[body] = 0 if resisting[dofs].any() else length[body] + model.body_jntnum[body]
-        longest[tree] = max(longest.get(tree, 0), int(length[body]))
-    return longest
-
-
-def _may_spin(model: mujoco.MjModel, tree: int) -> bool:
-    """Check whether a tree is passive and has a ball joint, or moves freely and does not spin steadily.
-
-    A body with three equal moments of inertia about its origin spins steadily, and the engine integrates it exactly.
-    """
-    dofs = _index_range(model.tree_dofadr, model.tree_dofnum, tree)
-    joints = model.dof_jntid[dofs]
-    kinds = model.jnt_type[joints]
-    if _resisting_dofs(model)[dofs].any():
-        return False
-    if (kinds == _BALL).any():
-        return True
-    body = int(model.jnt_bodyid[joints[0]])
-    inertia = model.body_inertia[body]
-    is_alone = np.count_nonzero(model.body_treeid == tree) == 1 and not model.body_ipos[body].any()
-    return bool((kinds == _FREE).any()) and not (is_alone and np.ptp(inertia) <= _EQUAL * inertia.max())
-
-
-def _driven_trees(model: mujoco.MjModel) -> set[int]:
-    """Return the trees with an actuated joint; an actuator of any other kind counts as driving all trees."""
-    driven: set[int] = set()
-    joints = (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT))
-    for kind, target in zip(model.actuator_trntype.tolist(), model.actuator_trnid[:, 0].tolist(), strict=True):
-        if kind in joints:
-            driven.add(int(model.body_treeid[model.jnt_bodyid[target]]))
-        else:
-            driven.update(range(model.ntree))
-    return driven

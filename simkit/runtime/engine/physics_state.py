@@ -86,6 +86,7 @@ _INTEGRATORS = {
     int(mujoco.mjtIntegrator.mjINT_EULER): mujoco.mj_Euler,
     int(mujoco.mjtIntegrator.mjINT_RK4): lambda model, data: mujoco.mj_RungeKutta(model, data, 4),
 }
+_FIRST_ORDER = _INTEGRATORS.keys() - {int(mujoco.mjtIntegrator.mjINT_RK4)}
 _NEVER = 1 << 62  # tick
 OPEN_WINDOWS = 4
 """Number of windows without a check of the contacts while all bodies are far from everything."""
@@ -204,8 +205,9 @@ class PhysicsState:
         model = self.model
         self.law, self.fast_bodies = ContactLaw(model), FastBodyDetector(model)
         self._space = self._open_space()
-        is_implicit = model.opt.integrator == mujoco.mjtIntegrator.mjINT_IMPLICITFAST
-        self.free_motion = FreeMotionIntegrator.of(model) if is_implicit and not has_engine_contacts(model) else None
+        # an MJCF file that sets no integrator has Euler's method, with which a spinning top diverges
+        is_simple = int(model.opt.integrator) in _FIRST_ORDER
+        self.free_motion = FreeMotionIntegrator.of(model) if is_simple and not has_engine_contacts(model) else None
         self._corrects_all = self.free_motion is not None and self.free_motion.acts_always
         self._analysed, self._is_analysed = _step_fields(model), True
         # without contacts that the law may change, no step has to check anything
@@ -377,7 +379,7 @@ def _step_fields(model: mujoco.MjModel) -> list[bytes]:
     geoms = model.geom_contype, model.geom_conaffinity, model.geom_solref
     joints = model.jnt_range, model.jnt_limited, model.jnt_stiffness
     dofs = model.dof_damping, model.dof_frictionloss, model.dof_armature, model.dof_invweight0
-    bodies = model.body_inertia, model.body_ipos
+    bodies = model.body_inertia, model.body_ipos, model.body_iquat
     return [field.tobytes() for field in (*geoms, *joints, *dofs, *bodies)]
 
 
