@@ -43,7 +43,7 @@ def test_wheels_that_creep_in_an_arc_do_not_count_as_sliding(robot: simkit.Simul
         wheels = data.contact.efc_address[data.contact.dim == 3]
         slip = np.hypot(*data.efc_vel[wheels[:, None] + [1, 2]].T)
         assert 3e-4 < slip.max() < 2e-3
-        assert not physics.law.is_needed(data)
+        assert not physics.law.needed_use(data)
     left, right = robot.mj_data.qvel[6:]
     assert robot.mj_data.qvel[5] == pytest.approx((right - left) * 0.05 / 0.28, rel=0.01)
 
@@ -52,7 +52,7 @@ def test_wheels_that_are_pushed_sideways_slide(robot: simkit.Simulation) -> None
     data = robot.engine.physics.fresh()
     data.qvel[:2] += [0.5, 0.5]
     robot.engine.physics.changed(VELOCITY)
-    assert robot.engine.physics.law.is_needed(robot.engine.physics.fresh())
+    assert robot.engine.physics.law.needed_use(robot.engine.physics.fresh())
 
 
 def test_a_forward_pass_keeps_the_acceleration_of_the_previous_step(robot: simkit.Simulation) -> None:
