@@ -9,6 +9,7 @@ import pytest
 
 import simkit
 from simkit.runtime.contact.anderson_acceleration import IslandIterations
+from simkit.runtime.contact.contact_law import LawUse
 from simkit.runtime.engine.physics_step import VELOCITY
 
 ROBOT = """<mujoco><option cone="elliptic" impratio="100" integrator="implicitfast" timestep="0.001"/>
@@ -53,6 +54,32 @@ def test_wheels_that_are_pushed_sideways_slide(robot: simkit.Simulation) -> None
     data.qvel[:2] += [0.5, 0.5]
     robot.engine.physics.changed(VELOCITY)
     assert robot.engine.physics.law.needed_use(robot.engine.physics.fresh())
+
+
+def test_wide_wheels_in_an_arc_need_only_their_part_of_the_law(tmp_path: Path) -> None:
+    """Both edges of a wheel slip, its shared friction point creeps; a reader sees the forces of the step."""
+    path = tmp_path / "robot.xml"
+    path.write_text(ROBOT.replace('"sphere" size="0.05" mass', '"cylinder" size="0.05 0.01" zaxis="0 1 0" mass'))
+    sim = simkit.load(path)
+    sim.run(0.2)
+    physics = sim.engine.physics
+    assert physics.window.uses_law is LawUse.NONE
+    sim.mj_data.ctrl[:] = [(0.2 - 1.8 * 0.14) / 0.05, (0.2 + 1.8 * 0.14) / 0.05]
+    sim.run(1.0)
+    for _ in range(20):
+        held, data = physics.hold(), physics.fresh()
+        slip = np.hypot(*data.efc_vel[data.contact.efc_address[data.contact.dim == 3][:, None] + [1, 2]].T)
+        forces = data.efc_force.copy()
+        sim.step()
+        assert physics.window.uses_law is LawUse.WHEELS
+        assert slip.max() < 2e-3
+        assert np.array_equal(physics.data_of(held).efc_force, forces)
+    left, right = sim.mj_data.qvel[6:]
+    assert sim.mj_data.qvel[5] == pytest.approx((right - left) * 0.05 / 0.28, rel=0.01)
+    sim.mj_data.qvel[:2] += [0.5, 0.5]
+    physics.changed(VELOCITY)
+    physics.fresh()
+    assert physics.window.uses_law is LawUse.WHOLE
 
 
 def test_a_forward_pass_keeps_the_acceleration_of_the_previous_step(robot: simkit.Simulation) -> None:
