@@ -125,6 +125,7 @@ class ContactLaw:
         self._around = ContactConditions(step, [], 0.0, None, softest=softest, least_damping=2.0 / softest)
         self._least_reference = (DEEP_PENETRATION / (constant * constant)) ** 2
         self._fields, self.lines = HeightFieldContacts(model), LineContacts(model)
+        self._has_fields, self._is_pyramid = bool(self._fields), model.opt.cone == _PYRAMID
         self._wheels, self._carried = WheelContacts(model), CentripetalFriction(model)
         self._points = ContactPointMotion.of(model)
         self._always_merges = bool(self._wheels) and model.opt.timestep > MAX_STEP_WITH_EDGES
@@ -193,11 +194,9 @@ class ContactLaw:
             return False
         has_lines = self.lines.correct(data)
         found, carried, is_solved = None, self._carried.find(data), False
-        if self._always_merges:
+        has_to_look = not self._is_quiet(data)
+        if has_to_look or self._always_merges:
             self._wheels.merge(data)
-            has_to_look = not self._is_quiet(data)
-        else:
-            has_to_look = not self._is_quiet(data) and not (self._wheels.merge(data) and self._is_quiet(data))
         motion = None
         if self._points is not None and not has_lines:  # it computes the contacts of the next step without lines
             motion = self._points.correct(data, carried)
@@ -271,10 +270,9 @@ class ContactLaw:
 
     def _is_quiet(self, data: mujoco.MjData) -> bool:
         """Check whether all constraints are nearly at rest and no reference separates bodies fast."""
-        velocity, reference = data.efc_vel, data.efc_aref
-        if squared_length(velocity, QUIET_SPEED * QUIET_SPEED) > QUIET_SPEED * QUIET_SPEED:
+        if squared_length(data.efc_vel, QUIET_SPEED * QUIET_SPEED) > QUIET_SPEED * QUIET_SPEED:
             return False
-        return bool(squared_length(reference, self._least_reference) < self._least_reference)
+        return bool(squared_length(data.efc_aref, self._least_reference) < self._least_reference)
 
     def _find(
         self, data: mujoco.MjData, closing: list[float] | None, residual: Any = None
@@ -286,9 +284,9 @@ class ContactLaw:
             around.gravity = gravity
             around.tolerance = TOLERANCE * max(_MIN_GRAVITY, math.hypot(*gravity))
         around.closing = closing
-        if self._fields:
+        if self._has_fields:
             around.inner = self._fields.inner(data)
-        if data.ncon > ARRAY_THRESHOLD or self.model.opt.cone == _PYRAMID:
+        if data.ncon > ARRAY_THRESHOLD or self._is_pyramid:
             return find_array_correction(self.model, data, around, residual)
         return find_correction(data, around, residual)
 
