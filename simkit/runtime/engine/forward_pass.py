@@ -143,6 +143,7 @@ class ForwardPass(PhysicsState):
             if self._is_open:
                 self._uses_law = LawUse.NONE
             else:
+                self.stage = STALE  # the check may change contacts, and an interrupt may end it
                 self._uses_law = LawUse.WHOLE if self._is_fast else self.law.needed_use(data)
         if self._probes:
             self._probes = False

@@ -205,7 +205,8 @@ class Physics(ForwardPass):
         if shaper is not None:
             self.law.lines.correct(self.data)
             shaper.shape(self.data)
-        self.law.solve(self.data, self._closing, self._uses_law or LawUse.WHOLE, keeps_references=True)
+        use = self._uses_law if shaper is None else LawUse.WHOLE
+        self.law.solve(self.data, self._closing, use, keeps_references=True)
 
     def _clear_one_shot(self) -> None:
         self.last_applied[:] = self.data.qfrc_applied
