@@ -43,9 +43,9 @@ class CentripetalFriction:
         self._is_elliptic = model.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC
         bodies = model.geom_bodyid
         moves = model.body_treeid[bodies] >= 0
-        self._body_of: list[int] = [*np.where(moves, bodies, -1).tolist(), -1]
-        self._moves = np.array([*moves.tolist(), False])
-        self._tree_of: list[int] = model.body_treeid.tolist()
+        self._bodies = np.append(np.where(moves, bodies, -1), -1)  # the last item is for contacts without a geom
+        self._trees = model.body_treeid
+        self._body_of, self._tree_of = self._bodies.tolist(), self._trees.tolist()
         self._can_carry = model.ntree > 1 and self._is_elliptic
         self._jacobian = np.empty((3, model.nv))
 
@@ -58,8 +58,8 @@ class CentripetalFriction:
         found: list[tuple[int, int, int]] = []
         if not self._can_carry:
             return found
-        if data.ncon > ARRAY_THRESHOLD and not self._moves[data.contact.geom].all(axis=1).any():
-            return found
+        if data.ncon > ARRAY_THRESHOLD:
+            return self._find_many(data)
         body_of, tree_of = self._body_of, self._tree_of
         turns: dict[tuple[int, int], bool] = {}
         for number, (first, second) in enumerate(data.contact.geom.tolist()):
@@ -81,6 +81,23 @@ class CentripetalFriction:
             if together:
                 found.append((number, one, other))
         return found
+
+    def _find_many(self, data: mujoco.MjData) -> list[tuple[int, int, int]]:
+        """Return the contacts as `find` does, on arrays: 15 instead of 50 µs for the 100 contacts of a heap."""
+        one, other = self._bodies[data.contact.geom].T
+        numbers = ((one >= 0) & (other >= 0)).nonzero()[0]
+        if not numbers.size:
+            return []
+        one, other = one[numbers], other[numbers]
+        x, y, z = data.cvel[:, :3].T
+        squares = x * x + y * y + z * z
+        own = np.minimum(squares[one], squares[other])
+        u, v, w = x[one] - x[other], y[one] - y[other], z[one] - z[other]
+        together = own > _MIN_ANGULAR_VELOCITY * _MIN_ANGULAR_VELOCITY
+        together &= u * u + v * v + w * w < _MAX_RELATIVE_SHARE * _MAX_RELATIVE_SHARE * own
+        together &= self._trees[one] != self._trees[other]
+        columns = numbers[together].tolist(), one[together].tolist(), other[together].tolist()
+        return list(zip(*columns, strict=True))
 
     def correct(
         self, data: mujoco.MjData, carried: list[tuple[int, int, int]], engine: npt.NDArray[np.float64]

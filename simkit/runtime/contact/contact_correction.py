@@ -358,8 +358,11 @@ def find_correction(
                 last, share = rate, 1.0 / (rate * step)
             if residual is None:
                 total *= share * share
-            for place in range(row + 1, row + dim):
-                references[place] = share * aref[place]
+            references[row + 1] *= share
+            references[row + 2] *= share
+            if dim > 3:
+                for place in range(row + 3, row + dim):
+                    references[place] *= share
         goal, kind, tolerance = nothing, AT_MOST, around.tolerance
         if not is_quiet:
             goal, kind, tolerance = _request(data, around, number, row, aref[row], speed)

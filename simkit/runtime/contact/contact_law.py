@@ -18,6 +18,7 @@ Two more corrections of the normal row apply to rigid contacts (not to contacts 
 
 from __future__ import annotations
 
+import enum
 import math
 from typing import Any, Final, Protocol
 
@@ -64,6 +65,18 @@ _PYRAMID: Final = mujoco.mjtCone.mjCONE_PYRAMIDAL
 
 mj_forward_skip, mj_mul_jac_vec = mujoco.mj_forwardSkip, mujoco.mj_mulJacVec
 mj_fwd_constraint = mujoco.mj_fwdConstraint
+
+
+class LawUse(enum.IntEnum):
+    """Part of the contact law that the steps of a window need.
+
+    Wheels that turn in an arc slip at both edges, and not at all after `WheelContacts.merge`. The remaining checks
+    would find nothing in each step, and cost as much as a step of MuJoCo alone.
+    """
+
+    NONE = 0
+    WHEELS = 1
+    WHOLE = 2
 
 
 def window_length(timestep: float) -> int:
@@ -113,6 +126,7 @@ class ContactLaw:
         self._around = ContactConditions(step, [], 0.0, None, softest=softest, least_damping=2.0 / softest, deep=deep)
         self._least_reference = (deep / (constant * constant)) ** 2
         self._fields, self.lines = HeightFieldContacts(model), LineContacts(model)
+        self._has_fields, self._is_pyramid = bool(self._fields), model.opt.cone == _PYRAMID
         self._wheels, self._carried = WheelContacts(model), CentripetalFriction(model)
         self._points = ContactPointMotion.of(model)
         self._always_merges = bool(self._wheels) and model.opt.timestep > MAX_STEP_WITH_EDGES
@@ -131,28 +145,34 @@ class ContactLaw:
         """True if `solve` may change the constraints, so that other velocities need new constraints."""
         return bool(self._wheels) or bool(self.lines)
 
-    def is_needed(self, data: mujoco.MjData) -> bool:
-        """Check whether a contact slides, hits or overlaps, or whether a flying or fast model may hit something.
+    def needed_use(self, data: mujoco.MjData) -> LawUse:
+        """Return the part of the law for contacts that slide, hit or overlap, or for a flying or fast model.
 
-        The result is False in a world that uses the engine's own contacts.
+        The result is `LawUse.NONE` in a world that uses the engine's own contacts.
 
         Args:
-            data: MuJoCo's data with positions and velocities up to date.
+            data: MuJoCo's data with positions and velocities up to date; the contacts of wheels may change.
         """
         if not self.is_on:
-            return False
-        if data.ncon and self._always_merges:
-            return True
+            return LawUse.NONE
         if self.lines and data.ncon and (self.lines.correct(data) or self.lines.reaches_edge(data, self._window)):
-            return True
+            return LawUse.WHOLE
         if self._has_flying(data) or self._has_fast(data) or self._carried.find(data):
-            return True
+            return LawUse.WHOLE
         if self._points is not None and self._points.find(data):
-            return True
-        return bool(data.ncon) and not self._is_quiet(data) and self._needs_correction(data)
+            return LawUse.WHOLE
+        if not (data.ncon and (self._always_merges or self._needs_correction(data))):
+            return LawUse.NONE
+        return LawUse.WHEELS if self._wheels.merge(data) and not self._needs_correction(data) else LawUse.WHOLE
 
     def solve(
-        self, data: mujoco.MjData, closing: list[float] | None, *, keeps_references: bool = False, probes: bool = False
+        self,
+        data: mujoco.MjData,
+        closing: list[float] | None,
+        use: LawUse = LawUse.WHOLE,
+        *,
+        keeps_references: bool = False,
+        probes: bool = False,
     ) -> bool:
         """Solve for accelerations and forces.
 
@@ -160,6 +180,7 @@ class ContactLaw:
             data: MuJoCo's data with positions and velocities up to date.
             closing: remaining approach speed [m/s] of each geom after it is stopped; None in a window without
                 speculative contacts.
+            use: part of the law to apply.
             keeps_references: keep the corrected references of constraints, so that the engine can solve again;
                 otherwise they are restored.
             probes: check whether a new control or force makes contacts slide that do not slide yet.
@@ -167,16 +188,16 @@ class ContactLaw:
         Returns:
             True if a contact was corrected.
         """
-        if not (data.ncon and self.is_on):
+        if use is LawUse.WHEELS:
+            self._wheels.merge(data)
+        if not (data.ncon and self.is_on) or use is LawUse.WHEELS:
             mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
             return False
         has_lines = self.lines.correct(data)
         found, carried, is_solved = None, self._carried.find(data), False
-        if self._always_merges:
+        has_to_look = not self._is_quiet(data)
+        if has_to_look or self._always_merges:
             self._wheels.merge(data)
-            has_to_look = not self._is_quiet(data)
-        else:
-            has_to_look = not self._is_quiet(data) and not (self._wheels.merge(data) and self._is_quiet(data))
         motion = None
         if self._points is not None and not has_lines:  # it computes the contacts of the next step without lines
             motion = self._points.correct(data, carried)
@@ -209,7 +230,7 @@ class ContactLaw:
 
     def _needs_correction(self, data: mujoco.MjData) -> bool:
         """Check whether a contact needs a correction."""
-        return self._found(data, None)[0] is not None
+        return not self._is_quiet(data) and self._found(data, None)[0] is not None
 
     def _found(self, data: mujoco.MjData, closing: list[float] | None) -> tuple[AnyContactCorrection | None, bool]:
         """Return the contacts to correct, and True if the engine's solution was computed for the decision.
@@ -250,10 +271,9 @@ class ContactLaw:
 
     def _is_quiet(self, data: mujoco.MjData) -> bool:
         """Check whether all constraints are nearly at rest and no reference separates bodies fast."""
-        velocity, reference = data.efc_vel, data.efc_aref
-        if squared_length(velocity, QUIET_SPEED * QUIET_SPEED) > QUIET_SPEED * QUIET_SPEED:
+        if squared_length(data.efc_vel, QUIET_SPEED * QUIET_SPEED) > QUIET_SPEED * QUIET_SPEED:
             return False
-        return bool(squared_length(reference, self._least_reference) < self._least_reference)
+        return bool(squared_length(data.efc_aref, self._least_reference) < self._least_reference)
 
     def _find(
         self, data: mujoco.MjData, closing: list[float] | None, residual: Any = None
@@ -265,9 +285,9 @@ class ContactLaw:
             around.gravity = gravity
             around.tolerance = TOLERANCE * max(_MIN_GRAVITY, math.hypot(*gravity))
         around.closing = closing
-        if self._fields:
+        if self._has_fields:
             around.inner = self._fields.inner(data)
-        if data.ncon > ARRAY_THRESHOLD or self.model.opt.cone == _PYRAMID:
+        if data.ncon > ARRAY_THRESHOLD or self._is_pyramid:
             return find_array_correction(self.model, data, around, residual)
         return find_correction(data, around, residual)
 

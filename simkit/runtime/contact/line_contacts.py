@@ -176,10 +176,10 @@ class LineContacts:
 
     def _exact_contacts(self, data: mujoco.MjData, pairs: list[LinePair], ids: Ints) -> list[ExactContacts]:
         """Return the exact contacts of each pair that touches along a line."""
-        turns: list[Matrix] = data.geom_xmat[ids].tolist()
+        turns: list[Matrix] = data.geom_xmat.take(ids, 0).tolist()  # half the time of an index
         if not any(box >= 0 or _are_parallel(turns[one], turns[other]) for one, other, box, _ in pairs):
             return []
-        centres: list[Vector] = data.geom_xpos[ids].tolist()
+        centres: list[Vector] = data.geom_xpos.take(ids, 0).tolist()
         rods = [
             Rod(centre, (turn[2], turn[5], turn[8]), *shape)
             for centre, turn, shape in zip(centres, turns, [self._shapes[geom] for geom in ids.tolist()], strict=True)

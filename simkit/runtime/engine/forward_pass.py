@@ -7,7 +7,7 @@ import copy
 import mujoco
 import numpy as np
 
-from simkit.runtime.contact.contact_law import ContactLaw, ContactShaper
+from simkit.runtime.contact.contact_law import ContactLaw, ContactShaper, LawUse
 from simkit.runtime.contact.speculative_contacts import FastBodyDetector
 from simkit.runtime.engine.physics_state import (
     CONTROL,
@@ -141,14 +141,19 @@ class ForwardPass(PhysicsState):
         if self.tick >= self._until:
             self._is_open = not (data.ncon or self._tumbles()) and self._space.is_open(data)
             self._until = self._end_of_window(self._is_open)
-            self._uses_law = not self._is_open and (self._is_fast or self.law.is_needed(data))
+            if self._is_open:
+                self._uses_law = LawUse.NONE
+            else:
+                self.stage = STALE  # the check may change contacts, and an interrupt may end it
+                self._uses_law = LawUse.WHOLE if self._is_fast else self.law.needed_use(data)
         if self._probes:
             self._probes = False
             self.stage = STALE  # an interrupt during the solve leaves unfinished constraints
-            self._uses_law = self.law.solve(data, self._closing, probes=True) or self._uses_law
+            if self.law.solve(data, self._closing, probes=True):
+                self._uses_law = LawUse.WHOLE
         elif self._uses_law or is_shaped:
             self.stage = STALE
-            self.law.solve(data, self._closing)
+            self.law.solve(data, self._closing, LawUse.WHOLE if is_shaped else self._uses_law)
         else:
             mj_forward_skip(model, data, _AFTER_VELOCITIES, 1)
         if self._is_open and has_new_forces and self._space.is_pushed(data):
@@ -194,7 +199,7 @@ class ForwardPass(PhysicsState):
                 mj_get_state(self.model, data, values, INTEGRATION_STATE)
             shaper, uses_law = self.shaper, self._uses_law if self.tick < self._until else None
             if self._acting_shaper is not None:
-                uses_law = True
+                uses_law = LawUse.WHOLE
             request = None if shaper is None else shaper.request()
             is_fast = self._is_fast if self.tick < self._fast_until else None
             self._held = HeldState(self.tick, self.model, values, request, uses_law, is_fast, self._probes)
@@ -233,11 +238,13 @@ class ForwardPass(PhysicsState):
                 if shaper is not None:
                     law.lines.correct(data)
                     shaper.shape(data, held.request)
-                closing = fast.closing if is_fast else None
+                closing, use = fast.closing if is_fast else None, held.uses_law
+                if is_fast and not use:
+                    use = LawUse.WHOLE
                 if held.probes:
                     law.solve(data, closing, probes=True)
-                elif is_fast or (law.is_needed(data) if held.uses_law is None else held.uses_law):
-                    law.solve(data, closing)
+                elif use := law.needed_use(data) if use is None else use:
+                    law.solve(data, closing, use)
                 elif shaper is not None:
                     mj_forward_skip(held.model, data, _AFTER_VELOCITIES, 1)
         finally:

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from simkit.compiler.engine_options import has_engine_contacts
 from simkit.errors import SimulationDiverged
 from simkit.linear_algebra import squared_length
-from simkit.runtime.contact.contact_law import ContactLaw, ContactShaper, window_length
+from simkit.runtime.contact.contact_law import ContactLaw, ContactShaper, LawUse, window_length
 from simkit.runtime.contact.open_space import OpenSpace
 from simkit.runtime.contact.speculative_contacts import SPECULATIVE_FLAG, FastBodyDetector
 from simkit.runtime.engine.free_motion import FreeMotionIntegrator
@@ -99,7 +99,7 @@ class StepWindow(NamedTuple):
     """Step method up to the next check of the contacts.
 
     Attributes:
-        uses_law: True if the steps follow the contact law.
+        uses_law: part of the contact law that the steps follow.
         until: tick of the next check of the contacts.
         is_fast: True if the steps have speculative contacts.
         fast_until: tick of the next check of the speeds.
@@ -109,7 +109,7 @@ class StepWindow(NamedTuple):
         is_open: True if all bodies are so far from everything that the steps need no check of their contacts.
     """
 
-    uses_law: bool = False
+    uses_law: LawUse = LawUse.NONE
     until: int = -1
     is_fast: bool = False
     fast_until: int = -1
@@ -127,7 +127,7 @@ class HeldState:
         model: MuJoCo's model of the state.
         values: state vector of MuJoCo (`mjSTATE_INTEGRATION`).
         request: contact changes that plugins requested at that tick, for `ContactShaper.shape`.
-        uses_law: True if the step follows the contact law; None if a check of the state must still decide this.
+        uses_law: part of the contact law that the step follows; None if a check of the state must still decide this.
         is_fast: True if the step has speculative contacts; None if a check of the state must still decide this.
         probes: True if controls or forces changed before the step so much that contacts may begin to slide.
     """
@@ -136,7 +136,7 @@ class HeldState:
     model: mujoco.MjModel
     values: npt.NDArray[np.float64]
     request: object
-    uses_law: bool | None
+    uses_law: LawUse | None
     is_fast: bool | None
     probes: bool
 
@@ -169,7 +169,7 @@ class PhysicsState:
     def rebind(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         """Replace the engine objects (after a spawn, a removal or a restore)."""
         self.model, self.data = model, data
-        self._uses_law: bool
+        self._uses_law: LawUse
         self._until: int
         self._is_fast: bool
         self._fast_until: int
@@ -352,7 +352,7 @@ class PhysicsState:
     def window(self, value: StepWindow) -> None:
         self._uses_law, self._until, self._is_fast, self._fast_until, self._probes, probed, self._is_open = value
         if self._is_plain:
-            self._uses_law = self._is_fast = self._probes = self._is_open = False
+            self._uses_law, self._is_fast, self._probes, self._is_open = LawUse.NONE, False, False, False
             self._until = self._fast_until = _NEVER
         elif self._until >= _NEVER:
             self._until = self._fast_until = -1  # the state is from before collisions were enabled

@@ -12,6 +12,7 @@ import time
 import mujoco
 import numpy as np
 
+from simkit.runtime.contact.contact_law import LawUse
 from simkit.runtime.engine.control_callback import call_before_forces
 from simkit.runtime.engine.forward_pass import SKIPPED_STAGE, ForwardPass
 from simkit.runtime.engine.free_motion import Integrator
@@ -21,7 +22,7 @@ from simkit.runtime.engine.simulated_time import Clock
 __all__ = ["CONTROL", "FRESH", "STALE", "VELOCITY", "Physics"]
 
 # looked up once, because the loop calls these functions every few microseconds
-mj_step, mj_forward_skip = mujoco.mj_step, mujoco.mj_forwardSkip
+mj_step, mj_forward, mj_forward_skip = mujoco.mj_step, mujoco.mj_forward, mujoco.mj_forwardSkip
 mj_fwd_position, mj_fwd_velocity = mujoco.mj_fwdPosition, mujoco.mj_fwdVelocity
 mj_check_pos, mj_check_vel, mj_check_acc = mujoco.mj_checkPos, mujoco.mj_checkVel, mujoco.mj_checkAcc
 
@@ -132,10 +133,14 @@ class Physics(ForwardPass):
         if free_motion is not None and free_motion.advance(self.data, count):
             self.tick = end
         while self.tick < end:
-            if has_shaper or self._uses_law or self._probes or self.tick >= self._until or self._corrects_all:
-                self._step_by_law(integrate)
-            else:
+            if has_shaper or self._probes or self.tick >= self._until:
+                self._checked_step(integrate)
+            elif not (self._uses_law or self._corrects_all):
                 self._plain_steps(min(end, self._until) - self.tick, integrate)
+            elif self.stage == STALE and self.tick < self._fast_until and not self._has_stages:
+                self._decided_steps(min(end, self._until, self._fast_until) - self.tick, integrate)
+            else:
+                self._checked_step(integrate)
 
     def _plain_steps(self, count: int, integrate: Integrator) -> None:
         """Make steps by the engine alone, from the part of the forward pass that is up to date."""
@@ -152,23 +157,41 @@ class Physics(ForwardPass):
         self.stage = STALE
         self.tick += count
 
-    def _step_by_law(self, integrate: Integrator) -> None:
-        """Make one step that checks the contacts after the velocities and solves them by the contact law."""
+    def _decided_steps(self, count: int, integrate: Integrator) -> None:
+        """Make steps with corrections, from data without a forward pass, up to the next check of the contacts.
+
+        They have the bits of `_checked_step`. Decisions for each step would take 0.7 of 25 µs with one sliding box.
+        """
+        model, data, free_motion = self.model, self.data, self.free_motion
+        use, solve, closing = self._uses_law, self.law.solve, self._closing
+        for _ in range(count):
+            mj_check_pos(model, data)
+            mj_check_vel(model, data)
+            if use:
+                mj_fwd_position(model, data)
+                mj_fwd_velocity(model, data)
+                solve(data, closing, use)
+            else:
+                mj_forward(model, data)
+            mj_check_acc(model, data)
+            if free_motion is None:
+                integrate(model, data)
+            else:
+                free_motion.integrate(model, data, integrate)  # after the forward pass, which wakes bodies
+            self.tick += 1
+
+    def _checked_step(self, integrate: Integrator) -> None:
+        """Make one step with corrections, from the part of the forward pass that is up to date."""
         model, data, stage, free_motion = self.model, self.data, self.stage, self.free_motion
         if stage == STALE:
             mj_check_pos(model, data)
             mj_check_vel(model, data)
-        is_decided = self._uses_law and self.tick < self._until and self.tick < self._fast_until
-        if is_decided and stage == STALE and not (self._probes or self.shaper or self.sleep.wants_all_awake):
-            mj_fwd_position(model, data)  # inlined `_forward`: saves a tenth of a step with one box
-            mj_fwd_velocity(model, data)
-            self.law.solve(data, self._closing)
-        elif stage:
+        if stage:
             self._forward()
         mj_check_acc(model, data)
         self.stage = STALE
         if free_motion is not None and (self._uses_law or self._corrects_all):
-            free_motion.integrate(model, data, integrate)  # after the forward pass, which wakes bodies
+            free_motion.integrate(model, data, integrate)
         elif self._has_stages and (self._uses_law or self._acting_shaper is not None):
             with call_before_forces(data, self._correct_stage):
                 integrate(model, data)
@@ -182,7 +205,8 @@ class Physics(ForwardPass):
         if shaper is not None:
             self.law.lines.correct(self.data)
             shaper.shape(self.data)
-        self.law.solve(self.data, self._closing, keeps_references=True)
+        use = self._uses_law if shaper is None else LawUse.WHOLE
+        self.law.solve(self.data, self._closing, use, keeps_references=True)
 
     def _clear_one_shot(self) -> None:
         self.last_applied[:] = self.data.qfrc_applied

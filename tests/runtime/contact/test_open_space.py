@@ -135,7 +135,7 @@ def states_after(world, change, *, is_known, is_restored=False):
         physics = sim.engine.physics
         physics._space.is_known = is_known
         sim.run(sim.timestep)
-        assert (physics.window.is_open, physics.window.uses_law) == (is_known, not is_known)
+        assert (physics.window.is_open, bool(physics.window.uses_law)) == (is_known, not is_known)
         change(sim)
         states, lowest = [], 2.0
         for step in range(90):

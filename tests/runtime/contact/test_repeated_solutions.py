@@ -9,6 +9,7 @@ import pytest
 
 import simkit
 from simkit.runtime.contact.anderson_acceleration import IslandIterations
+from simkit.runtime.contact.contact_law import LawUse
 from simkit.runtime.engine.physics_step import VELOCITY
 
 ROBOT = """<mujoco><option cone="elliptic" impratio="100" integrator="implicitfast" timestep="0.001"/>
@@ -43,7 +44,7 @@ def test_wheels_that_creep_in_an_arc_do_not_count_as_sliding(robot: simkit.Simul
         wheels = data.contact.efc_address[data.contact.dim == 3]
         slip = np.hypot(*data.efc_vel[wheels[:, None] + [1, 2]].T)
         assert 3e-4 < slip.max() < 2e-3
-        assert not physics.law.is_needed(data)
+        assert not physics.law.needed_use(data)
     left, right = robot.mj_data.qvel[6:]
     assert robot.mj_data.qvel[5] == pytest.approx((right - left) * 0.05 / 0.28, rel=0.01)
 
@@ -52,7 +53,33 @@ def test_wheels_that_are_pushed_sideways_slide(robot: simkit.Simulation) -> None
     data = robot.engine.physics.fresh()
     data.qvel[:2] += [0.5, 0.5]
     robot.engine.physics.changed(VELOCITY)
-    assert robot.engine.physics.law.is_needed(robot.engine.physics.fresh())
+    assert robot.engine.physics.law.needed_use(robot.engine.physics.fresh())
+
+
+def test_wide_wheels_in_an_arc_need_only_their_part_of_the_law(tmp_path: Path) -> None:
+    """Both edges of a wheel slip, its shared friction point creeps; a reader sees the forces of the step."""
+    path = tmp_path / "robot.xml"
+    path.write_text(ROBOT.replace('"sphere" size="0.05" mass', '"cylinder" size="0.05 0.01" zaxis="0 1 0" mass'))
+    sim = simkit.load(path)
+    sim.run(0.2)
+    physics = sim.engine.physics
+    uses = [physics.window.uses_law]
+    sim.mj_data.ctrl[:] = [(0.2 - 1.8 * 0.14) / 0.05, (0.2 + 1.8 * 0.14) / 0.05]
+    sim.run(1.0)
+    for _ in range(20):
+        held, data = physics.hold(), physics.fresh()
+        slip = np.hypot(*data.efc_vel[data.contact.efc_address[data.contact.dim == 3][:, None] + [1, 2]].T)
+        forces = data.efc_force.copy()
+        sim.step()
+        uses.append(physics.window.uses_law)
+        assert slip.max() < 2e-3
+        assert np.array_equal(physics.data_of(held).efc_force, forces)
+    left, right = sim.mj_data.qvel[6:]
+    assert sim.mj_data.qvel[5] == pytest.approx((right - left) * 0.05 / 0.28, rel=0.01)
+    sim.mj_data.qvel[:2] += [0.5, 0.5]
+    physics.changed(VELOCITY)
+    physics.fresh()
+    assert [*uses, physics.window.uses_law] == [LawUse.NONE, *[LawUse.WHEELS] * 20, LawUse.WHOLE]
 
 
 def test_a_forward_pass_keeps_the_acceleration_of_the_previous_step(robot: simkit.Simulation) -> None:
