@@ -2,21 +2,23 @@
 
 Nothing stops a ball that rolls on a flat floor, unless the file gives rolling friction. In a heap, balls then roll over
 and between each other for many seconds, and some of them never stop. Real bodies have a rolling resistance of 0.1 to
-1 % of their radius. This module gives it to round bodies under conditions that a single rolling body never meets:
+2 % of their radius. This module gives such a resistance to round bodies, under conditions that a body which rolls
+alone or meets a single other body does not fulfil:
 
-- The body touches something, and is next to at least two free bodies that touch each other or a third one.
-- The body and all free bodies next to it are slow: rolling at this speed, they could climb `SLOW` of their radius.
-- No body of its group of touching bodies is driven or measured, and no force is applied to the body.
+- The body is in a heap: it touches something, at least two free bodies are next to it, and two free bodies near it
+  touch each other.
+- The body and all free bodies next to it are slow: rolling at its speed, each could climb `SLOW` of its radius at most.
+- The touching bodies around it may all sleep, that is, none is driven or measured, and no force is applied to it.
+- The file gives the body no rolling friction of its own.
 
-Two bodies are next to each other if the gap between their bounding spheres is at most the sum of the radii. A surface
-of a body with rolling friction from the file keeps this friction alone.
-
-The resistance is dry friction of the rotation of the body, a constraint of the engine: a torque of at most `RESISTANCE`
-times weight times radius about each axis. It holds a body at rest on a slope of less than 0.4°, and none on 1°.
+The resistance is dry friction of the body's rotation, a constraint of the engine. Its torque about each axis is at most
+`RESISTANCE` times weight times radius. It holds a ball on a slope of 0.4°; on a slope of 0.8° or more a ball rolls.
+The conditions are checked at the rate of `Sleep`, and depend only on the state and on the torques of the last check.
 """
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 import mujoco
@@ -32,9 +34,9 @@ SLOW: Final = 0.03
 """Height, in units of the radius, that a slow body could climb by its kinetic energy."""
 
 _ROLLING_ENERGY: Final = 0.7  # kinetic energy of a rolling ball, in units of mass times squared speed
-NEXT, NEAR = 2.0, 4.0
-_LEAST_NEIGHBOURS: Final = 2
-_LEAST_BODIES: Final = 3
+_NEXT, _NEAR = 2.0, 4.0  # largest distance of such centres, in units of the sum of the radii of their bounding spheres
+_LEAST_NEIGHBOURS: Final = 2  # bodies next to a body of a heap; together they are a heap of `_LEAST_BODIES`
+_LEAST_BODIES: Final = _LEAST_NEIGHBOURS + 1
 _SOLIMP: Final = (0.95, 0.95, 0.0005, 0.5, 2.0)  # stiffer friction takes twice the time; this one creeps by 20 µm/s
 _WITHOUT_ROLLING: Final = (3, 4)  # dimensions of contacts with friction, but without rolling friction
 _BOX: Final = int(mujoco.mjtGeom.mjGEOM_BOX)
@@ -112,17 +114,15 @@ class HeapResistance:
         touches, is_paired = self._contacts(data)
         is_paired |= sleeps & (data.tree_asleep[trees] != trees)  # the trees of an island sleep in a cycle
         rows = (touches & ~sleeps).nonzero()[0]
-        if np.count_nonzero(is_paired) < _LEAST_NEIGHBOURS or not rows.size:
+        if not (is_paired.any() and rows.size):
             return in_heap, torques
         radii, reaches, can_roll = self._shapes()
         is_next, is_near = self._next_to(data, rows, reaches)
         found = (is_next.sum(axis=1) > _LEAST_NEIGHBOURS) & (is_near & is_paired).any(axis=1)
         in_heap[trees[rows[found]]] = True
-        x, y, z = model.opt.gravity.tolist()
-        gravity = (x * x + y * y + z * z) ** 0.5
-        v = data.qvel[self._turns - 3]
-        squares = v[:, 0] * v[:, 0] + v[:, 1] * v[:, 1] + v[:, 2] * v[:, 2]
-        is_fast = _ROLLING_ENERGY * squares > SLOW * gravity * radii
+        gravity = math.hypot(*model.opt.gravity.tolist())
+        x, y, z = data.qvel[self._turns - 3].T
+        is_fast = _ROLLING_ENERGY * (x * x + y * y + z * z) > SLOW * gravity * radii
         found &= can_roll[rows] & ~(is_next & is_fast).any(axis=1) & self._is_apart(data, trees[rows], pushed)
         rolling = rows[found]
         weights = gravity * model.body_mass[model.tree_bodyadr[trees[rolling]]]
@@ -143,14 +143,16 @@ class HeapResistance:
         model, count = self._model, len(self._trees)
         order = np.full(model.ntree + 1, count)
         order[self._trees] = np.arange(count)
-        return order[np.append(model.body_treeid[model.geom_bodyid], -1)]
+        owners: Ints = order[np.append(model.body_treeid[model.geom_bodyid], -1)]
+        return owners
 
     def _shapes(self) -> tuple[Floats, Floats, Flags]:
         """Return the radius and the radius of the bounding sphere [m] of each free body, and whether it can roll."""
         model, count = self._model, len(self._trees)
         collides = (model.geom_contype | model.geom_conaffinity) != 0
-        geoms = (collides & (self._owners()[:-1] < count)).nonzero()[0]
-        owners = self._owners()[geoms]
+        owners = self._owners()[:-1]
+        geoms = (collides & (owners < count)).nonzero()[0]
+        owners = owners[geoms]
         arms = model.geom_pos[geoms] - model.body_ipos[model.geom_bodyid[geoms]]
         x, y, z = arms.T
         radii, reaches, can_roll = np.full(count, np.inf), np.zeros(count), np.ones(count, bool)
@@ -169,7 +171,7 @@ class HeapResistance:
             squares += apart * apart
         together = reaches[rows][:, None] + reaches
         squares /= together * together
-        return squares < NEXT * NEXT, squares < NEAR * NEAR
+        return squares < _NEXT * _NEXT, squares < _NEAR * _NEAR
 
     def _is_apart(self, data: mujoco.MjData, trees: Ints, pushed: Ints) -> Flags:
         """Return which trees touch no tree outside of the free bodies, and have no force on them."""

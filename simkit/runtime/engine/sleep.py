@@ -136,16 +136,17 @@ class Sleep:
         moved, calm = self._distance(qpos, self._last), self._distance(self._weights * qpos, self._weights * self._last)
         is_still = (moved <= _STILL) & (moved <= np.maximum(self._moved, _STILL_FLOOR))
         self._still = np.where(is_still, self._still + 1, 0)
-        torques, limits = None, _CALM
+        torques, factors = None, np.ones(len(asleep))
         if self.heaps.acts:
             in_heap, torques = self.heaps.find(data, self._trees_with_forces())
-            limits = np.where(in_heap, _HEAP_FACTOR, 1.0) * _CALM
-        self._calm[calm > limits] = 0
+            factors[in_heap] = _HEAP_FACTOR
+        self._calm[calm > factors * _CALM] = 0
         self._moved, self._last = moved, qpos
         if self._looks % _LONG == 0:
             moved = self._distance(self._weights * qpos, self._weights * self._long_ago)
-            floors = _CALM_FLOOR / _CALM * limits
-            is_calm = (moved <= limits) & (moved <= np.maximum(2.0 * self._moved_long, floors))
+            is_calm = (moved <= factors * _CALM) & (
+                moved <= np.maximum(2.0 * self._moved_long, factors * _CALM_FLOOR)
+            )
             self._calm = np.where(is_calm, self._calm + 1, 0)
             self._moved_long, self._long_ago = moved, qpos
         woken = self._slept & ~asleep
