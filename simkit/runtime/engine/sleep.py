@@ -8,7 +8,7 @@ this module decides. A tree may sleep under these conditions, which make sleep i
 - The tree is in contact, or held by another constraint, and nothing drives or measures it.
 - The tree has stayed within 1 nm (1 nrad) for 0.1 s, twice, and moved no more the second time than the first. A tree
   that has stayed within 10 µm for 0.5 s, twice, also counts, because the solver makes a pile tremble. A free body may
-  turn by 0.2 mrad in this time, because logs and balls of a pile roll as they creep. In a heap, the limit is 0.1 mm.
+  turn by 0.2 mrad in this time, because logs and balls of a pile roll as they creep. In a heap, the limit is 0.15 mm.
 - Every tree that it touches meets the same conditions.
 
 The windows lie on the grid of simulated time, so that chunks of steps, readers and processes make no difference.
@@ -33,7 +33,7 @@ RATE: Final = 10.0
 
 _STILL, _STILL_FLOOR = 1e-9, 1e-10  # largest motion at rest [m or rad] between two observations
 _CALM, _CALM_FLOOR = 1e-5, 1e-6  # largest motion at rest [m or rad] over `_LONG` observations
-_HEAP_FACTOR = 10.0  # weight of these limits in a heap
+_HEAP_CALM = 1.5e-4  # the same in a heap, where a creep may also grow
 _LONG = 5  # observations in the long window
 _TURN_SHARE = 0.1  # weight of quaternions in the long window: 10 µm count as 0.2 mrad, for a radius of 5 cm
 _TWICE = 2
@@ -136,17 +136,15 @@ class Sleep:
         moved, calm = self._distance(qpos, self._last), self._distance(self._weights * qpos, self._weights * self._last)
         is_still = (moved <= _STILL) & (moved <= np.maximum(self._moved, _STILL_FLOOR))
         self._still = np.where(is_still, self._still + 1, 0)
-        torques, factors = None, np.ones(len(asleep))
+        torques, limits, floors = None, np.full(len(asleep), _CALM), np.full(len(asleep), _CALM_FLOOR)
         if self.heaps.acts:
             in_heap, torques = self.heaps.find(data, self._trees_with_forces())
-            factors[in_heap] = _HEAP_FACTOR
-        self._calm[calm > factors * _CALM] = 0
+            limits[in_heap] = floors[in_heap] = _HEAP_CALM
+        self._calm[calm > limits] = 0
         self._moved, self._last = moved, qpos
         if self._looks % _LONG == 0:
             moved = self._distance(self._weights * qpos, self._weights * self._long_ago)
-            is_calm = (moved <= factors * _CALM) & (
-                moved <= np.maximum(2.0 * self._moved_long, factors * _CALM_FLOOR)
-            )
+            is_calm = (moved <= limits) & (moved <= np.maximum(2.0 * self._moved_long, floors))
             self._calm = np.where(is_calm, self._calm + 1, 0)
             self._moved_long, self._long_ago = moved, qpos
         woken = self._slept & ~asleep
