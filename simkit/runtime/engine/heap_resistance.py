@@ -69,16 +69,12 @@ class HeapResistance:
         Only the bodies of these trees can be in a heap.
         """
         model = self._model
-        first = model.tree_dofadr.astype(int)
-        is_free = (model.tree_dofnum == 6) & (model.tree_bodynum == 1)
-        is_free &= model.jnt_type[model.dof_jntid[first]] == mujoco.mjtJoint.mjJNT_FREE
-        is_free &= model.dof_frictionloss[first] == 0.0  # an MJCF file gives all axes the same friction
-        model.dof_frictionloss[first[is_free][:, None] + np.arange(3, 6)] = 0.0
-        self._trees = (is_free & may_sleep).nonzero()[0]
+        clear_resistance(model)
+        self._trees = (_free_trees(model) & may_sleep).nonzero()[0]
         self.acts = self._is_allowed and len(self._trees) >= _LEAST_BODIES
         if not self.acts:
             self._trees = self._trees[:0]
-        self._turns = first[self._trees][:, None] + np.arange(3, 6)
+        self._turns = _turns(model, self._trees)
         model.dof_solref[self._turns] = contact_time_constant(float(model.opt.timestep)), 1.0
         model.dof_solimp[self._turns] = _SOLIMP
 
@@ -180,3 +176,23 @@ class HeapResistance:
         islands = data.tree_island
         joined = np.isin(islands[trees], islands[other & (islands >= 0)])
         return ~joined & ~np.isin(trees, pushed)
+
+
+def clear_resistance(model: mujoco.MjModel) -> None:
+    """Remove the resistance from a model, so that it has its compiled values."""
+    model.dof_frictionloss[_turns(model, _free_trees(model).nonzero()[0])] = 0.0
+
+
+def _free_trees(model: mujoco.MjModel) -> Flags:
+    """Return which trees are free bodies of one link, without friction from an MJCF file, shape (ntree,)."""
+    first = model.tree_dofadr
+    found: Flags = (model.tree_dofnum == 6) & (model.tree_bodynum == 1)
+    found &= model.jnt_type[model.dof_jntid[first]] == mujoco.mjtJoint.mjJNT_FREE
+    found &= model.dof_frictionloss[first] == 0.0  # a file gives all axes the same friction
+    return found
+
+
+def _turns(model: mujoco.MjModel, trees: Ints) -> Ints:
+    """Return the degrees of freedom of the rotation of free bodies, shape (k, 3)."""
+    found: Ints = model.tree_dofadr[trees].astype(int)[:, None] + np.arange(3, 6)
+    return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 import random
 
 import numpy as np
@@ -104,6 +105,10 @@ def test_a_heap_repeats_its_bits_after_a_reset_and_after_restores_while_it_comes
     second = sim.snapshot()
     sim.run(0.4)
     before = bits(sim)
+    other = simkit.load(heap())
+    other.restore(pickle.loads(pickle.dumps(second)))
+    other.run(2.0 - other.time)
+    assert bits(other) == before
     for snapshot in (first, second):
         sim.restore(snapshot)
         sim.run(2.0 - sim.time)
