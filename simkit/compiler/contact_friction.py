@@ -156,6 +156,8 @@ def _turning_friction(surface: Surface, diagnostics: Diagnostics) -> tuple[float
     """
     roll = max(0.0, surface.rolling or 0.0)
     torsion = 0.0
+    if surface.torsional_slip:
+        diagnostics.note("SK-PHYS-007", "the slip of torsional friction is ignored", surface.where)
     if surface.torsional:
         if surface.use_patch_radius:
             torsion = 3.0 * math.pi / 16.0 * max(0.0, surface.patch_radius) * surface.torsional

@@ -20,6 +20,7 @@ import mujoco
 
 from simkit.errors import ArgumentTypeError, ArgumentValueError
 from simkit.runtime.engine.entity_structure import WorldStructure
+from simkit.runtime.engine.heap_resistance import clear_resistance
 from simkit.runtime.engine.snapshot import Snapshot
 from simkit.runtime.snapshot_references import References, SnapshotOwner, dump_state, load_state
 
@@ -165,11 +166,12 @@ def _bound(sim: SnapshotOwner, content: dict[str, Any], now: Snapshot) -> Snapsh
 
 
 def _compiled_model(sim: SnapshotOwner, structure: WorldStructure) -> mujoco.MjModel:
-    """Return a copy of the compiled model of a structure, without the changes that a program made."""
+    """Return a copy of the compiled model of a structure, without the changes of a program and of heaps."""
     model = copy.copy(structure.compiled.model)
     if structure is sim.engine.structure:
         for field, original in sim.engine.originals.items():
             getattr(model, field)[:] = original
+    clear_resistance(model)
     model.opt.gravity[:] = 0.0
     model.stat.meaninertia = model.stat.meanmass = 0.0  # they follow from changed masses
     return model

@@ -219,6 +219,14 @@ def test_without_bullet_a_ball_rolls_on_and_a_note_says_so(make):
     assert [d.code for d in builder.diagnostics] == ["SK-PHYS-007"]
 
 
+def test_the_slip_of_torsional_friction_is_reported(make):
+    surface = Surface(torsional=1.0, patch_radius=0.1, torsional_slip=0.5)
+    ball = make.solid("ball", Sphere(0.1), Pose((0, 0, 0.1)), surface=surface)
+    builder = SpecBuilder(make.world(make.ground(), ball), Diagnostics())
+    builder.compile()
+    assert [d.code for d in builder.diagnostics] == ["SK-PHYS-007"]
+
+
 def test_without_a_patch_spinning_goes_on(make, compiled):
     ball = make.solid("ball", Sphere(0.1), Pose((0, 0, 0.1)), surface=Surface(torsional=1.0))
     c = compiled(make.ground(), ball)

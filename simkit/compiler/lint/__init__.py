@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from simkit.compiler.lint.joints import check_joints
 from simkit.compiler.lint.links import check_links
+from simkit.compiler.lint.surfaces import check_surfaces
 from simkit.compiler.lint.time_step import check_time_step
 from simkit.compiler.spec_builder import Compiled
 from simkit.diagnostics import Diagnostics
@@ -19,6 +20,6 @@ __all__ = ["lint_world"]
 def lint_world(world: SceneWorld, compiled: Compiled) -> Diagnostics:
     """Report probable problems of a world; nothing is stepped or changed."""
     diagnostics = Diagnostics()
-    for check in (check_time_step, check_joints, check_links):
+    for check in (check_time_step, check_joints, check_links, check_surfaces):
         check(world, compiled, diagnostics)
     return diagnostics

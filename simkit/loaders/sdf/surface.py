@@ -5,6 +5,8 @@ from __future__ import annotations
 from simkit.params import Params
 from simkit.scene import Surface
 
+_TORSION = ("coefficient", "patch_radius", "surface_radius")  # each one of these gives a surface torsional friction
+
 
 def read_surface(collision: Params) -> Surface:
     """Return the contact properties of a collision; the format's defaults if it has no `<surface>`."""
@@ -24,7 +26,7 @@ def read_surface(collision: Params) -> Surface:
         fdir1=ode.vector3("fdir1", bullet.vector3("fdir1", (0.0, 0.0, 0.0))),
         slip1=_non_negative(ode, "slip1", 0.0),
         slip2=_non_negative(ode, "slip2", 0.0),
-        torsional=twist.number("coefficient", 1.0, minimum=0) if twist.has("coefficient") else None,
+        torsional=twist.number("coefficient", 1.0, minimum=0) if any(map(twist.has, _TORSION)) else None,
         kp=_optional_number(soft, "kp"),
         kd=_optional_number(soft, "kd"),
         soft_cfm=_optional_number(soft, "soft_cfm"),

@@ -11,7 +11,7 @@ from simkit.runtime.contact.speculative_contacts import FastBodyWarnings
 from simkit.runtime.engine.engine_state import EngineState
 from simkit.runtime.engine.external_forces import PersistentWrenches, Wind
 from simkit.runtime.engine.number_changes import NumberChanges
-from simkit.runtime.engine.physics_state import CONTROL
+from simkit.runtime.engine.physics_state import CONTROL, STALE
 from simkit.runtime.engine.plugin_faults import PluginFaults
 from simkit.runtime.engine.random_streams import RandomStreams
 from simkit.runtime.engine.step_loop import CommandSource, ScheduleFiller, StepLoop
@@ -119,9 +119,14 @@ class Engine(EngineState):
         self.loop.reschedule()
 
     def look_for_rest(self, _tick: int) -> None:
-        """Let bodies at rest sleep."""
-        if not self.physics.sleep.rests:
-            self.physics.sleep.look(self.physics.fresh())
+        """Let bodies at rest sleep, and set the rolling resistance in heaps."""
+        physics = self.physics
+        torques = None if physics.sleep.rests else physics.sleep.look(physics.fresh())
+        if torques is not None:
+            for sensor in self.structure.all_sensors():
+                sensor.take_held()  # with the present resistance
+            physics.sleep.heaps.torques = torques
+            physics.changed(STALE)
 
     def speed_limit(self, actuator: ActuatorRef) -> float:
         """Return the largest command of a velocity servo [rad/s]: the joint's limit, else the bound of drives."""

@@ -124,9 +124,16 @@ def _turning_dofs(model: mujoco.MjModel) -> npt.NDArray[np.bool_]:
     return found
 
 
+def joint_friction(model: mujoco.MjModel) -> npt.NDArray[np.float64]:
+    """Return the dry friction of the degrees of freedom, without that of free joints, which changes in heaps."""
+    is_free = model.jnt_type[model.dof_jntid] == _FREE
+    found: npt.NDArray[np.float64] = np.where(is_free, 0.0, model.dof_frictionloss)
+    return found
+
+
 def _resisting_dofs(model: mujoco.MjModel) -> npt.NDArray[np.bool_]:
     """Return a mask of the degrees of freedom that have damping or friction."""
-    found: npt.NDArray[np.bool_] = (model.dof_damping != 0) | (model.dof_frictionloss != 0)
+    found: npt.NDArray[np.bool_] = (model.dof_damping != 0) | (joint_friction(model) != 0)
     found |= (model.dof_dampingpoly != 0).any(axis=1)
     return found
 

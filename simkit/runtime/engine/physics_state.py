@@ -17,6 +17,7 @@ from simkit.runtime.contact.contact_law import ContactLaw, ContactShaper, LawUse
 from simkit.runtime.contact.open_space import OpenSpace
 from simkit.runtime.contact.speculative_contacts import SPECULATIVE_FLAG, FastBodyDetector
 from simkit.runtime.engine.free_motion import FreeMotionIntegrator
+from simkit.runtime.engine.passive_trees import joint_friction
 from simkit.runtime.engine.simulated_time import Clock
 from simkit.runtime.engine.sleep import Sleep
 
@@ -378,7 +379,7 @@ def _step_fields(model: mujoco.MjModel) -> list[bytes]:
     """Return the fields of a model that a run may write to and that decide the step method."""
     geoms = model.geom_contype, model.geom_conaffinity, model.geom_solref
     joints = model.jnt_range, model.jnt_limited, model.jnt_stiffness
-    dofs = model.dof_damping, model.dof_frictionloss, model.dof_armature, model.dof_invweight0
+    dofs = model.dof_damping, joint_friction(model), model.dof_armature, model.dof_invweight0
     bodies = model.body_inertia, model.body_ipos, model.body_iquat
     return [field.tobytes() for field in (*geoms, *joints, *dofs, *bodies)]
 

@@ -7,8 +7,8 @@ this module decides. A tree may sleep under these conditions, which make sleep i
 
 - The tree is in contact, or held by another constraint, and nothing drives or measures it.
 - The tree has stayed within 1 nm (1 nrad) for 0.1 s, twice, and moved no more the second time than the first. A tree
-  that has stayed within 20 µm for 1 s, twice, also counts, because the solver makes a pile tremble. A free body may
-  turn by 0.4 mrad in this time, because logs and balls of a pile roll as they creep.
+  that has stayed within 10 µm for 0.5 s, twice, also counts, because the solver makes a pile tremble. A free body may
+  turn by 0.2 mrad in this time, because logs and balls of a pile roll as they creep. In a heap, the limit is 0.15 mm.
 - Every tree that it touches meets the same conditions.
 
 The windows lie on the grid of simulated time, so that chunks of steps, readers and processes make no difference.
@@ -23,6 +23,8 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.runtime.engine.heap_resistance import HeapResistance
+
 RestState = tuple[Any, ...]
 """State of the observations of `Sleep`."""
 
@@ -30,9 +32,10 @@ RATE: Final = 10.0
 """Rate at which trees are observed [Hz]."""
 
 _STILL, _STILL_FLOOR = 1e-9, 1e-10  # largest motion at rest [m or rad] between two observations
-_CALM, _CALM_FLOOR = 2e-5, 2e-6  # largest motion at rest [m or rad] over `_LONG` observations
-_LONG = 10  # observations in the long window
-_TURN_SHARE = 0.1  # weight of quaternions in the long window: 20 µm count as 0.4 mrad, for a radius of 5 cm
+_CALM, _CALM_FLOOR = 1e-5, 1e-6  # largest motion at rest [m or rad] over `_LONG` observations
+_HEAP_CALM = 1.5e-4  # the same in a heap, where a creep may also grow
+_LONG = 5  # observations in the long window
+_TURN_SHARE = 0.1  # weight of quaternions in the long window: 10 µm count as 0.2 mrad, for a radius of 5 cm
 _TWICE = 2
 
 _LEAST_SPEED = 1e-3  # [m/s] below this speed the engine puts the selected trees to sleep
@@ -58,6 +61,7 @@ class Sleep:
     Attributes:
         watches: True if a tree could fall asleep, so that `look` must be called at `RATE`.
         counts: True if a tree can sleep or the world can rest; otherwise this class has nothing to check.
+        heaps: rolling resistance in heaps.
         is_drowsy: True if the engine puts the selected trees to sleep in the next step.
         rests: True if every tree sleeps, and nothing has been changed since.
         wants_all_awake: True if the next forward pass wakes everything.
@@ -71,6 +75,7 @@ class Sleep:
         self._gravity = self._gravity_now.tolist()
         self._places = [data.qpos, *((data.mocap_pos, data.mocap_quat) if model.nmocap else ())]
         self._pushes = [data.qvel, data.qfrc_applied, data.xfrc_applied]
+        self.heaps = HeapResistance(model)
         if not enabled:
             model.opt.enableflags &= ~_FLAG
             return
@@ -92,6 +97,7 @@ class Sleep:
         has_islands = not model.opt.disableflags & _NO_ISLANDS
         self.watches = self.enabled and bool(self._may.any()) and has_islands
         self._can_rest = self.enabled and bool(self._may.all()) and (self.watches or not model.ntree)
+        self.heaps.restrict(self._may)
         first_joint = model.dof_jntid[model.tree_dofadr] if model.ntree else np.zeros(0, int)
         self.counts = self.watches or self._can_rest
         self._weights = np.ones(model.nq)
@@ -114,11 +120,15 @@ class Sleep:
 
     # ------------------------------------------------------------------ falling asleep
 
-    def look(self, data: mujoco.MjData) -> None:
+    def look(self, data: mujoco.MjData) -> Floats | None:
         """Compare with the last observation and select resting trees for sleep.
 
         Args:
             data: engine data with a fresh forward pass.
+
+        Returns:
+            New torques of the rolling resistance in heaps, to be set before the next forward pass; None without a
+            change.
         """
         qpos = data.qpos.copy()
         asleep = data.tree_asleep >= 0
@@ -126,11 +136,15 @@ class Sleep:
         moved, calm = self._distance(qpos, self._last), self._distance(self._weights * qpos, self._weights * self._last)
         is_still = (moved <= _STILL) & (moved <= np.maximum(self._moved, _STILL_FLOOR))
         self._still = np.where(is_still, self._still + 1, 0)
-        self._calm[calm > _CALM] = 0
+        torques, limits, floors = None, np.full(len(asleep), _CALM), np.full(len(asleep), _CALM_FLOOR)
+        if self.heaps.acts:
+            in_heap, torques = self.heaps.find(data, self._trees_with_forces())
+            limits[in_heap] = floors[in_heap] = _HEAP_CALM
+        self._calm[calm > limits] = 0
         self._moved, self._last = moved, qpos
         if self._looks % _LONG == 0:
             moved = self._distance(self._weights * qpos, self._weights * self._long_ago)
-            is_calm = (moved <= _CALM) & (moved <= np.maximum(2.0 * self._moved_long, _CALM_FLOOR))
+            is_calm = (moved <= limits) & (moved <= np.maximum(2.0 * self._moved_long, floors))
             self._calm = np.where(is_calm, self._calm + 1, 0)
             self._moved_long, self._long_ago = moved, qpos
         woken = self._slept & ~asleep
@@ -143,6 +157,7 @@ class Sleep:
         if ready.any():
             data.tree_asleep[ready] = _READY
             self.is_drowsy = True
+        return None if torques is None or (torques == self.heaps.torques).all() else torques
 
     def _trees_with_forces(self) -> npt.NDArray[np.intp]:
         """Return the trees that a force is applied to."""
@@ -247,6 +262,7 @@ class Sleep:
             self._slept,
             self._still.copy(),
             self._calm.copy(),
+            self.heaps.torques,
         )
 
     def set_state(self, state: RestState) -> None:
@@ -258,3 +274,4 @@ class Sleep:
             self.is_drowsy, self._looks, self._last, self._long_ago = state[1:5]
             self._moved, self._moved_long, self._slept = state[5:8]
             self._still, self._calm = state[8].copy(), state[9].copy()
+            self.heaps.torques = state[10]

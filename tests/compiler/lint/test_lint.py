@@ -93,6 +93,19 @@ def test_a_step_is_judged_only_where_something_moves_and_collides() -> None:
     assert "SK-LINT-001" not in lint_codes(world(moving.replace("<link", "<static>1</static><link"), 0.01))
 
 
+def test_torsional_friction_that_a_more_slippery_surface_switches_off_is_reported() -> None:
+    friction = "<surface><friction><ode><mu>{0}</mu><mu2>{0}</mu2></ode>{1}</friction></surface></collision>"
+    patch = "<torsional><patch_radius>0.01</patch_radius></torsional>"
+    model = "<model name='{0}'>{3}<link name='a'>{1}{2}</link></model>"
+    inertial, static = INERTIAL.format(1, 1 / 6), "<static>1</static>"
+    round_foot = BOX.format(1).replace("</collision>", friction.format(0.8, patch))
+    for mu, is_reported in ((0.5, True), (0.8, False), (1.0, False)):
+        floor = BOX.format(1).replace("</collision>", friction.format(mu, ""))
+        models = model.format("m", inertial, round_foot, "") + model.format("floor", "", floor, static)
+        found = lint_codes(world(models)).get("SK-LINT-011", "")
+        assert ("'floor::a::c', whose friction coefficient is smaller (0.5 instead of 0.8)" in found) == is_reported
+
+
 @pytest.mark.parametrize("path", sorted((ROOT / "worlds").glob("*.sdf")), ids=lambda p: p.name)
 def test_our_own_worlds_have_no_warning_of_the_lint(path: Path) -> None:
     found = [d for d in simkit.check(path) if d.code.startswith("SK-LINT") and d.severity != "note"]

@@ -101,6 +101,11 @@ def test_a_surface_has_the_defaults_of_the_format(load):
         assert (s.patch_radius, s.surface_radius, s.use_patch_radius, s.collide_bitmask) == (0, 0, True, 0xFFFF)
 
 
+def test_a_patch_without_a_coefficient_has_the_coefficient_of_the_format(load):
+    s = surface(load, "<surface><friction><torsional><patch_radius>0.1</patch_radius></torsional></friction></surface>")
+    assert (s.torsional, s.patch_radius) == (1, 0.1)
+
+
 def test_torsion_and_rolling_are_read(load):
     s = surface(
         load,
