@@ -171,7 +171,7 @@ def _compiled_model(sim: SnapshotOwner, structure: WorldStructure) -> mujoco.MjM
     if structure is sim.engine.structure:
         for field, original in sim.engine.originals.items():
             getattr(model, field)[:] = original
-    clear_resistance(model)
+    clear_resistance(model, model.dof_frictionloss)
     model.opt.gravity[:] = 0.0
     model.stat.meaninertia = model.stat.meanmass = 0.0  # they follow from changed masses
     return model

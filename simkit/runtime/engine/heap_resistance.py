@@ -69,7 +69,7 @@ class HeapResistance:
         Only the bodies of these trees can be in a heap.
         """
         model = self._model
-        clear_resistance(model)
+        clear_resistance(model, model.dof_frictionloss)
         self._trees = (_free_trees(model) & may_sleep).nonzero()[0]
         self.acts = self._is_allowed and len(self._trees) >= _LEAST_BODIES
         if not self.acts:
@@ -178,9 +178,9 @@ class HeapResistance:
         return ~joined & ~np.isin(trees, pushed)
 
 
-def clear_resistance(model: mujoco.MjModel) -> None:
-    """Remove the resistance from a model, so that it has its compiled values."""
-    model.dof_frictionloss[_turns(model, _free_trees(model).nonzero()[0])] = 0.0
+def clear_resistance(model: mujoco.MjModel, friction: Floats) -> None:
+    """Remove the resistance from the dry friction of a model, shape (nv,), so that it has its compiled values."""
+    friction[_turns(model, _free_trees(model).nonzero()[0])] = 0.0
 
 
 def _free_trees(model: mujoco.MjModel) -> Flags:

@@ -23,6 +23,7 @@ from simkit.loaders.spawned_models import parse_spawn
 from simkit.msgs import own_interfaces
 from simkit.run_files import FileName
 from simkit.run_spec import FilePath, RunSpec, SourceOptions
+from simkit.runtime.engine.heap_resistance import clear_resistance
 from simkit.testing.bundles.manifest import packed_fields, packed_folder
 from simkit.writers.vendored_folder import vendor
 
@@ -73,7 +74,7 @@ def _without_user_folders() -> Iterator[None]:
 
 
 def model_hash(model: mujoco.MjModel, originals: Mapping[str, object]) -> str:
-    """Return the SHA-256 of all arrays of an `MjModel` and of its options except gravity.
+    """Return the SHA-256 of all arrays of an `MjModel` and of its options, except gravity and resistance in heaps.
 
     Args:
         model: Compiled model.
@@ -86,6 +87,9 @@ def model_hash(model: mujoco.MjModel, originals: Mapping[str, object]) -> str:
         value = originals.get(name)
         value = getattr(model, name) if value is None else value
         if isinstance(value, np.ndarray):
+            if name == "dof_frictionloss":
+                value = value.copy()
+                clear_resistance(model, value)
             digest.update(name.encode())
             digest.update(np.ascontiguousarray(value).tobytes())
     digest.update(bytes(model.names))

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import simkit
+from simkit.testing.bundles.bundle_staging import model_hash
 
 RADIUS = 0.03
 PLANE = "<plane><normal>0 0 1</normal><size>100 100</size></plane>"
@@ -117,6 +118,14 @@ def test_a_heap_repeats_its_bits_after_a_reset_and_after_restores_while_it_comes
     assert resisted(sim) == 0
     sim.run(2.0)
     assert bits(sim) == before
+
+
+def test_the_model_of_a_bundle_is_the_same_while_a_heap_comes_to_rest() -> None:
+    sim = simkit.load(heap())
+    before = model_hash(sim.mj_model, {})
+    sim.run(1.6)
+    assert resisted(sim) > 3
+    assert model_hash(sim.mj_model, {}) == before
 
 
 def test_readers_and_the_division_into_steps_do_not_change_a_heap() -> None:
