@@ -206,7 +206,7 @@ class PhysicsState:
         self.law, self.fast_bodies = ContactLaw(model), FastBodyDetector(model)
         self._space = self._open_space()
         # an MJCF file that sets no integrator has Euler's method, with which a spinning top diverges
-        is_simple = self._integrate is not None and model.opt.integrator != mujoco.mjtIntegrator.mjINT_RK4
+        is_simple = int(model.opt.integrator) in _INTEGRATORS and model.opt.integrator != mujoco.mjtIntegrator.mjINT_RK4
         self.free_motion = FreeMotionIntegrator.of(model) if is_simple and not has_engine_contacts(model) else None
         self._corrects_all = self.free_motion is not None and self.free_motion.acts_always
         self._analysed, self._is_analysed = _step_fields(model), True
