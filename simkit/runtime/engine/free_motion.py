@@ -147,7 +147,7 @@ class FreeMotionIntegrator:
             integrate(model, data)
             for dofs, at in moving:
                 velocities, positions = own.qvel[dofs], own.qpos[at]
-                if math.isfinite(sum(velocities.tolist()) + sum(positions.tolist())):
+                if all(map(math.isfinite, velocities.tolist() + positions.tolist())):
                     data.qvel[dofs], data.qpos[at] = velocities, positions
         for one, position, velocity in spinning:
             data.qpos[one.coordinates], data.qvel[one.dofs] = position, velocity
