@@ -95,8 +95,9 @@ def test_a_recording_loses_large_messages_only_and_says_which(start: Any, simkit
 
 
 def test_the_commands_of_a_bag_drive_the_robot_again(bag: Path, start: Any, simkit_line: Any) -> None:
-    live = start()
-    before = float(live.sim.model("rover").pose.position[0])
+    live = start(paused=True)
+    before = float(live.sim.model("rover").pose.position[0])  # only a paused simulation can be read by this thread
+    live.sim.paused = False
     played = simkit_line("bag", "play", str(bag), "--json")
     assert json.loads(played.stdout) == {"messages": 1, "topics": ["/cmd_vel"]}
     simkit_line("topic", "hz", "/odom", "--duration", "0.3")
