@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from contact_engines import NOT_ASKED, UnsupportedCaseError, check_supported, quaternion
+from contact_engines import NOT_ASKED, DivergedError, UnsupportedCaseError, check_supported, quaternion
 from contact_scene import Body, Case, Pair, Shape, Vector
 from pydrake.common.eigen_geometry import Quaternion
 from pydrake.geometry import (
@@ -111,7 +111,12 @@ class Drake:
 
     def advance(self, count: int) -> None:
         self.steps += count
-        self.simulator.AdvanceTo((self.steps + 0.25) * self.case.timestep)
+        try:
+            self.simulator.AdvanceTo((self.steps + 0.25) * self.case.timestep)
+        except RuntimeError as error:
+            if "non-finite" not in str(error):
+                raise
+            raise DivergedError(self.case.name) from error
 
     def rewind(self) -> None:
         self.context.SetDiscreteState(self._start)

@@ -197,7 +197,10 @@ import importlib, pkgutil
 import simkit
 optional = set(sys.argv[1].split())
 found = []
-for module in pkgutil.walk_packages(simkit.__path__, "simkit."):
+from simkit.packs import installed_packs
+packages = [simkit, *(importlib.import_module(pack.package) for pack in installed_packs())]
+modules = [m for package in packages for m in pkgutil.walk_packages(package.__path__, package.__name__ + ".")]
+for module in modules:
     if module.name == "simkit.__main__":
         continue
     try:

@@ -77,7 +77,7 @@ class PluginReloader:
         of_plugins = self._of_plugins()
         for name, module in list(sys.modules.items()):
             file = getattr(module, "__file__", None)
-            if not file or not file.endswith(".py") or name.split(".")[0] == "simkit":
+            if not file or not file.endswith(".py") or is_shipped_module(name):
                 continue
             path = Path(file).resolve()
             if name in of_plugins or any(path.is_relative_to(folder) for folder in self._paths):

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from simkit.input_file import TEXT_LIMIT, read_input
+from simkit.packs import is_shipped_module
 from simkit.params import Params
 from simkit.plugins.gz.gz_system_plugin import GzSystem, System, line_of
 from simkit.plugins.gz_python import import_hook
@@ -102,7 +103,7 @@ class PythonSystemLoader(GzSystem):
         """Report installed Gazebo modules that the import loaded instead of simkit's modules."""
         for name, module in sorted(sys.modules.items()):
             target = import_hook.module_behind(name)
-            if not target or import_hook.is_shim(module) or name.split(".")[0] == "simkit":
+            if not target or import_hook.is_shim(module) or is_shipped_module(name):
                 continue
             place = getattr(module, "__file__", None) or "a package"
             message = f"module {name} is installed ({place}) and takes precedence over simkit's own"

@@ -9,15 +9,14 @@ import proof
 import proof_worlds
 import pytest
 
+from simkit.packs import is_shipped
 from simkit.plugins import Plugin
 from simkit.plugins.discovery.find_plugin_class import plugin_kinds
 from simkit.testing.certify.run_hashes import PluginCallRecorder, plugin_title, record_plugin_calls
 
 pytestmark = pytest.mark.slow  # slow: processes and complete runs
 
-CLASSES = sorted(
-    {cls for cls in plugin_kinds().values() if cls.__module__.startswith("simkit.")}, key=lambda c: c.__name__
-)
+CLASSES = sorted({cls for cls in plugin_kinds().values() if is_shipped(cls)}, key=lambda c: c.__name__)
 
 
 @functools.cache

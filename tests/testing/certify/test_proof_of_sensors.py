@@ -7,11 +7,12 @@ import proof
 import pytest
 
 import simkit
+from simkit.packs import is_shipped
 from simkit.sensors import sensor_kinds
 
 pytestmark = pytest.mark.slow  # slow: processes and complete runs
 
-KINDS = [kind for kind, cls in sensor_kinds().items() if cls.__module__.startswith("simkit.")]
+KINDS = [kind for kind, cls in sensor_kinds().items() if is_shipped(cls)]
 
 
 def thrown(sim: simkit.Simulation) -> None:
