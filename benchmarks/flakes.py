@@ -35,7 +35,7 @@ def main() -> None:
     from simkit.run_spec import RunSpec, Tolerance
     from simkit.testing.golden.compare.runs import compare
     from simkit.testing.golden.store import read_golden, write_golden
-    from simkit.testing.run_record.run_recorder import run_record
+    from simkit.testing.run_record.run_recorder import record_run
 
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--checks", type=int, default=10_000, help="in all")
@@ -45,7 +45,7 @@ def main() -> None:
     plain, noisy = RunSpec(WORLD, 0.5), RunSpec(WORLD, 0.5, tolerances=noise, state=False)
 
     def run(scenario: Any) -> Any:
-        record = run_record(scenario)
+        record = record_run(scenario)
         record.simulation.close()
         record.simulation = None
         return record

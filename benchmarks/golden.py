@@ -14,7 +14,7 @@ from measure import arguments
 
 from simkit.run_spec import RunSpec
 from simkit.testing.golden.store import read_golden, write_golden
-from simkit.testing.run_record.run_recorder import run_record
+from simkit.testing.run_record.run_recorder import record_run
 from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
 _DURATION = 30.0  # [s] simulated
@@ -36,7 +36,7 @@ def main() -> None:
         f"{'captured':30s} {captured:7.2f} s   ratio {captured / plain:5.2f}, "
         f"to the listened {captured / listened:5.2f}"
     )
-    record = run_record(scenario)
+    record = record_run(scenario)
     with tempfile.TemporaryDirectory() as folder:
         writing = time.perf_counter()
         write_golden(folder, record)
@@ -55,7 +55,7 @@ def _timed(scenario: RunSpec, what: str) -> float:
         taps = [sim.communication.bus.tap(topic, _nothing) for topic in sim.topics()] if what == "listened" else []
         start = time.process_time()
         if what == "captured":
-            run_record(scenario, sim=sim)
+            record_run(scenario, sim=sim)
         else:
             run_scenario(scenario, sim)
         elapsed = time.process_time() - start

@@ -38,7 +38,7 @@ def bare_loop(env: simkit.gym.SimulationEnv) -> Callable[[], object]:
     """The same period with MuJoCo and NumPy alone, driven by the environment's present wheel speeds."""
     sim = env.sim
     model, data, lidar = copy.copy(sim.mj_model), copy.copy(sim.mj_data), sim.sensor(SENSOR)
-    random, fan = np.random.default_rng(0), lidar._fan
+    random, fan = np.random.default_rng(0), lidar.fan
     count, low, high = fan.count, lidar.options.range_min, lidar.options.range_max
     ids, distances, rays = np.zeros(count, np.int32), np.zeros(count), np.zeros((count, 3))
     base, own = sim.link("turtlebot3::base_footprint")._body, fan.body or -1

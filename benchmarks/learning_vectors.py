@@ -34,9 +34,9 @@ _VELOCITIES = int(mujoco.mjtStage.mjSTAGE_VEL)
 def bare_batch(envs: Any) -> Callable[[], object]:
     """The same steps and rays with MuJoCo's batch alone, from the present states of the environments."""
     physics, sim, count = envs._physics, envs._sim, envs.num_envs
-    fan, threads = sim.sensor(SENSOR)._fan, physics.batch.nthread
+    fan, threads = sim.sensor(SENSOR).fan, physics.batch.nthread
     steps = Batch(sim.mj_model, count, threads, persistent=True)
-    rays = Batch(fan._targets.shapes_by_engine._static[0], count, threads)
+    rays = Batch(fan.targets.shapes_by_engine.model_for_rows(False), count, threads)
     positions, turns, controls = steps.bind("xpos"), steps.bind("xmat"), steps.bind("ctrl")
     number = round(PERIOD / sim.timestep)
 

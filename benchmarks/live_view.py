@@ -25,7 +25,7 @@ from typing import Any
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import simkit
-from simkit.bridges.view.live_view import LiveView
+from simkit_view.view.live_view import LiveView
 
 SLICE = 0.02  # [s] of wall time, as in a run with a limited real-time factor
 CLIENT = """

@@ -61,7 +61,7 @@ def prepare(name: str, folder: Path) -> Any:
     from simkit.build import describe
     from simkit.run_spec import RunSpec
     from simkit.testing.golden.store import write_golden
-    from simkit.testing.run_record.run_recorder import run_record
+    from simkit.testing.run_record.run_recorder import record_run
     from simkit.testing.scenarios.scenario_file import read_scenario
     from simkit.writers.vendored_folder import vendor
 
@@ -72,7 +72,7 @@ def prepare(name: str, folder: Path) -> Any:
     else:
         vendor(name, place, describe)
         scenario = RunSpec(f"{name}.sdf", folder=place, **WORLDS[name])
-    write_golden(folder / f"{name}.golden", run_record(scenario), reason="as it is")
+    write_golden(folder / f"{name}.golden", record_run(scenario), reason="as it is")
     return scenario
 
 
@@ -134,13 +134,13 @@ def harmless_cases(name: str, folder: Path, scenario: Any) -> Iterator[tuple[str
 def _with_subscribers(golden: Path, scenario: Any) -> tuple[bool, str]:
     from simkit.testing.golden.compare.runs import compare
     from simkit.testing.golden.store import read_golden
-    from simkit.testing.run_record.run_recorder import run_record
+    from simkit.testing.run_record.run_recorder import record_run
     from simkit.testing.scenarios.scenario_run import open_scenario
 
     with open_scenario(scenario) as sim:
         for topic in sim.topics():
             sim.subscribe(topic, lambda message: None)
-        found = compare(read_golden(golden), run_record(scenario, sim=sim))
+        found = compare(read_golden(golden), record_run(scenario, sim=sim))
     return not found.passed, found.differences[0].words if found.differences else ""
 
 

@@ -18,11 +18,11 @@ import mujoco
 from measure import arguments
 
 import simkit
-from simkit.experiments.sweeps.design import Design
-from simkit.experiments.sweeps.parameter_space import parameter_space
-from simkit.experiments.sweeps.row_runner import RowRunner
-from simkit.experiments.sweeps.sweep_spec import SweepSpec
 from simkit.runtime.world_variation import apply_overrides
+from simkit_learning.sweeps.design import Design
+from simkit_learning.sweeps.parameter_space import parameter_space
+from simkit_learning.sweeps.row_runner import RowRunner
+from simkit_learning.sweeps.sweep_spec import SweepSpec
 
 SPACES = {
     "arena::pillars::collision(pillar_5).pose.x": {"uniform": [-0.05, 0.05]},

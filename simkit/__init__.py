@@ -26,7 +26,21 @@ TYPE_CHECKING = False  # `typing` takes 3 ms
 if TYPE_CHECKING:
     from typing import Any
 
+    from simkit import (  # noqa: F401
+        elementary_functions,
+        errors,
+        extend,
+        gym,
+        linear_algebra,
+        live,
+        msgs,
+        pose,
+        progress,
+        recording,
+        testing,
+    )
     from simkit.build import check, describe, load
+    from simkit.deferred_response import DeferredResponse
     from simkit.diagnostics import Diagnostic
     from simkit.errors import (
         InputError,
@@ -37,20 +51,28 @@ if TYPE_CHECKING:
         SimkitError,
         SimulationDiverged,
     )
-    from simkit.experiments.sweeps.sweep import sweep
+    from simkit.facade import launch, sweep
     from simkit.params import Params
     from simkit.plugins.base import ModelPlugin, Plugin, SensorPlugin, VisualPlugin, WorldPlugin
     from simkit.pose import Pose
     from simkit.recording.export.data_frames import to_dataframe
-    from simkit.run_spec import RunSpec
-    from simkit.runtime import Simulation
+    from simkit.run_spec import Check, RunSpec
+    from simkit.runtime import Joint, Light, Link, Model, Simulation, Visual
+    from simkit.runtime.world_variation import apply_overrides
+    from simkit.sensors.cameras.overview_image import render_view
 
 
 __all__ = [
+    "Check",
+    "DeferredResponse",
     "Diagnostic",
     "InputError",
+    "Joint",
+    "Light",
+    "Link",
     "LoadError",
     "MessageError",
+    "Model",
     "ModelPlugin",
     "Params",
     "Plugin",
@@ -62,12 +84,16 @@ __all__ = [
     "SimkitError",
     "Simulation",
     "SimulationDiverged",
+    "Visual",
     "VisualPlugin",
     "WorldPlugin",
     "__version__",
+    "apply_overrides",
     "check",
     "describe",
+    "launch",
     "load",
+    "render_view",
     "sweep",
     "to_dataframe",
 ]
@@ -76,7 +102,7 @@ __all__ = [
 # for either (`simkit.pytest_plugin`).
 _MODULES = {
     "simkit.build": ("load", "describe", "check"),
-    "simkit.runtime": ("Simulation",),
+    "simkit.runtime": ("Joint", "Light", "Link", "Model", "Simulation", "Visual"),
     "simkit.diagnostics": ("Diagnostic",),
     "simkit.errors": (
         "InputError",
@@ -90,11 +116,27 @@ _MODULES = {
     "simkit.params": ("Params",),
     "simkit.pose": ("Pose",),
     "simkit.recording.export.data_frames": ("to_dataframe",),
-    "simkit.run_spec": ("RunSpec",),
-    "simkit.experiments.sweeps.sweep": ("sweep",),
+    "simkit.run_spec": ("Check", "RunSpec"),
+    "simkit.facade": ("launch", "sweep"),
     "simkit.plugins.base": ("Plugin", "WorldPlugin", "ModelPlugin", "SensorPlugin", "VisualPlugin"),
+    "simkit.deferred_response": ("DeferredResponse",),
+    "simkit.runtime.world_variation": ("apply_overrides",),
+    "simkit.sensors.cameras.overview_image": ("render_view",),
 }
 _LAZY = {name: module for module, names in _MODULES.items() for name in names}
+_PUBLIC_MODULES = (
+    "elementary_functions",
+    "errors",
+    "extend",
+    "gym",
+    "linear_algebra",
+    "live",
+    "msgs",
+    "pose",
+    "progress",
+    "recording",
+    "testing",
+)
 
 moved_modules.install()
 
@@ -103,6 +145,8 @@ _DISTRIBUTION = "simkit-robotics"
 
 
 def __getattr__(name: str) -> Any:
+    if name in _PUBLIC_MODULES:
+        return importlib.import_module(f"simkit.{name}")
     if name not in _LAZY:
         raise AttributeError(f"module 'simkit' has no attribute {name!r}{_conflict_text()}")
 
@@ -126,4 +170,4 @@ def _conflict_text() -> str:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_LAZY})
+    return sorted({*globals(), *_LAZY, *_PUBLIC_MODULES})

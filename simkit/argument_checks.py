@@ -19,14 +19,14 @@ _LARGEST_SEED: Final = 2**64 - 1
 _LONGEST_SHOWN: Final = 80  # characters of a value in a message
 
 
-def wrong_type(name: str, expected: str, found: object) -> ArgumentTypeError:
+def wrong_type(name: str, expected: str, value: object) -> ArgumentTypeError:
     """Return the error for an argument of a wrong kind."""
-    return ArgumentTypeError(f"{name} must be {expected}, got {shown(found)} ({type(found).__name__})")
+    return ArgumentTypeError(f"{name} must be {expected}, got {shown(value)} ({type(value).__name__})")
 
 
-def wrong_value(name: str, expected: str, found: object) -> ArgumentValueError:
+def wrong_value(name: str, expected: str, value: object) -> ArgumentValueError:
     """Return the error for an argument of the right kind with a value that is not allowed."""
-    return ArgumentValueError(f"{name} must be {expected}, got {shown(found)}")
+    return ArgumentValueError(f"{name} must be {expected}, got {shown(value)}")
 
 
 def shown(value: object) -> str:
@@ -96,10 +96,10 @@ def checked_integer(value: object, name: str, low: int | None = None, high: int 
     real = _real(value, name, allowed)
     if isinstance(real, float) and not real.is_integer():  # also NaN and infinite
         raise wrong_value(name, allowed, value)
-    whole = int(real)
-    if (low is not None and whole < low) or (high is not None and whole > high):
+    number = int(real)
+    if (low is not None and number < low) or (high is not None and number > high):
         raise wrong_value(name, allowed, value)
-    return whole
+    return number
 
 
 def checked_seed(value: object) -> int:
@@ -138,10 +138,10 @@ def checked_vector(value: object, name: str, count: int = 3) -> npt.NDArray[np.f
 
     allowed = f"{count} finite {'number' if count == 1 else 'numbers'}"
     try:
-        found = np.asarray(value)
-        if value is None or found.dtype.kind not in "iufO":
+        entries = np.asarray(value)
+        if value is None or entries.dtype.kind not in "iufO":
             raise TypeError
-        array: npt.NDArray[np.float64] = found.astype(np.float64)
+        array: npt.NDArray[np.float64] = entries.astype(np.float64)
     except (ValueError, OverflowError):  # lists of different lengths, numbers beyond the floats
         raise wrong_value(name, allowed, value) from None
     except Exception:  # noqa: BLE001 (an object of the caller may raise any error)

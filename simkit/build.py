@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Unpack, cast
+from typing import TYPE_CHECKING, Any, Unpack
 
 from simkit import progress
 from simkit.argument_checks import check_folders
@@ -19,12 +19,13 @@ from simkit.loaders import Resolver, load_scene
 from simkit.loaders.load_arguments import check_load_arguments, check_source, check_source_arguments
 from simkit.loaders.model_world import add_model_world
 from simkit.loaders.resources.world_interfaces import read_interfaces
-from simkit.loaders.spawned_models import SpawnedModel, add_spawned_models, client_models
+from simkit.loaders.spawned_models import SpawnEntry, add_spawned_models, client_models
 from simkit.memory_error import memory_errors
 from simkit.mujoco_import import import_mujoco
+from simkit.plugins.adapters import with_entity_models
+from simkit.plugins.discovery.left_out import LeftOutParts
 from simkit.plugins.discovery.make_instances import (
     InstanceMaker,
-    add_actor_models,
     find_more_problems,
     make_all_parts,
     report_python_plugins,
@@ -35,6 +36,7 @@ from simkit.plugins.gz.sensors import with_sensors_colours
 from simkit.pose import Pose
 from simkit.run_spec import (
     EMPTY_SPACE,
+    JsonObject,
     LoadArguments,
     LoadOptions,
     NamedValues,
@@ -48,15 +50,16 @@ from simkit.scene import Mesh, Scene, SceneModel, SceneSensor, SceneWorld
 from simkit.scene.overrides import Overrides, apply_overrides, check_used, override_texts, xacro_overrides
 from simkit.sensors import sensor_kinds
 from simkit.sensors.cameras.rendering.render_thread import usable_cores
-from simkit.sensors.cameras.rendering.requested_renderer import with_renderer
 from simkit.sensors.presets.preset_defaults import add_preset_defaults
 from simkit.writers.inspect_description import describe_scene
 
 if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
     from simkit.compiler.mjcf_parser import MjcfParser
+    from simkit.loaders.meshes.mesh_part import MeshPart
     from simkit.plugins.run_parameter_files import ParameterFileArgument, RunParameterFile
-    from simkit.runtime.simulation import Simulation
-    from simkit.runtime.world_control import Page
+    from simkit.runtime import SensorsAndPlugins, Simulation, WorldStructure
+    from simkit.runtime.world_source import WorldSource
 
 Source = str | os.PathLike[str]
 
@@ -78,12 +81,14 @@ def load(
     package_paths: PackagePaths | None = None,
     render_thread: bool | None = None,
     on_error: PluginErrorPolicy | None = None,
-    spawn: Sequence[str | SpawnedModel] = (),
+    spawn: Sequence[SpawnEntry] = (),
     model_world: str = EMPTY_SPACE,
     params_files: ParameterFileArgument | Sequence[ParameterFileArgument] = (),
     change_world: Callable[[SceneWorld], SceneWorld] | None = None,
     interfaces: Sequence[Source] = (),
     renderer: RendererName | None = None,
+    remap: NamedValues | None = None,
+    start_controllers: bool = True,
 ) -> Simulation:
     """Load a world or a single model and return a simulation that is ready to step.
 
@@ -116,6 +121,10 @@ def load(
         interfaces: folders with definitions of messages, services and actions; see `docs/own_messages.md`.
         renderer: renderer of images: "gl", "software", or "auto", which is OpenGL if it can be opened, else software.
             With None, the file (`<simkit:renderer>`) decides; the default is "auto".
+        remap: other names for topics, services and actions of the world: `OLD:=NEW` texts, or new names by old ones.
+            They count for plugins and sensors; scripts and nodes use the new names.
+        start_controllers: start the controllers of robots with ros2_control when they are loaded. With False, they
+            wait for spawners, as in ROS.
 
     Returns:
         Simulation at t = 0.
@@ -132,98 +141,176 @@ def load(
     seed = check_load_arguments(
         seed=seed, plugin_paths=plugin_paths, plugins=plugins, strict=strict, overrides=overrides, sleep=sleep,
         on_error=on_error, spawn=spawn, params_files=params_files, change_world=change_world, model_world=model_world,
-        interfaces=interfaces, renderer=renderer,
+        interfaces=interfaces, renderer=renderer, remap=remap, start_controllers=start_controllers,
     )  # fmt: skip
     import_mujoco()
-    from simkit.compiler import SpecBuilder
-    from simkit.compiler.standing_models import stand_models
-    from simkit.runtime import SensorsAndPlugins, Simulation, WorldStructure
-
-    diagnostics = Diagnostics()
-    resolver = Resolver(resource_paths, package_paths=package_paths)
-    read_interfaces(interfaces, source, resolver, diagnostics)
-
-    def find_file(uri: str, folder: Path | None) -> Path | None:
-        return resolver.search(uri, folder)[0]
-
-    arguments = named_values(xacro_args, "xacro_args") | xacro_overrides(overrides)
-    file_scene = _scene(source, resolver, diagnostics, arguments, base, spawn, model_world)
-
-    def resolve_world(overrides: Sequence[str], diagnostics: Diagnostics) -> SceneWorld:
-        scene = _overridden(file_scene, overrides, diagnostics)
-        world = scene.world if diagnostics.has_errors else stand_models(scene.world, scene.standing, diagnostics)
-        if not sleep:
-            world = replace(world, physics=replace(world.physics, sleep=False))
-        world = with_renderer(world, renderer)
-        world = add_actor_models(world, find_file, diagnostics)
-        return world if change_world is None or diagnostics.has_errors else change_world(world)
-
-    world = resolve_world(overrides, diagnostics)
-    allowed = [Path(p) for p in plugin_paths]
-    parameter_files: tuple[RunParameterFile, ...] = ()
-    if params_files:
-        from simkit.plugins.run_parameter_files import read_run_parameter_files
-
-        parameter_files = read_run_parameter_files(params_files, lambda uri: find_file(uri, None), diagnostics)
-    if diagnostics.has_errors:
-        find_more_problems(world, diagnostics, allowed, find_file)
-    diagnostics.raise_if_errors()
-    builder = SpecBuilder(world, diagnostics)
-    builder.find_file = find_file
-    builder.parameter_files = parameter_files
-    builder.files_read += [item.file.path for item in parameter_files]
-    parts = make_all_parts(world, builder, diagnostics, allowed, plugins)
-    has_controls = parameter_files or any(model.controls for top in world.models for model in top.all_models())
-    if has_controls and not diagnostics.has_errors:  # `parts` does not contain plugins whose parameters have errors
-        from simkit.plugins.run_parameter_files import report_unused_control
-
-        made = [plugin for part in parts.values() for plugin, _ in part.plugins]
-        report_unused_control(parameter_files, made, world, diagnostics)
-    diagnostics.raise_if_errors(strict)
-    compiled = builder.compile()
-    diagnostics.raise_if_errors(strict)
-    load_model = partial(_model_to_spawn, resolver=resolver)
-
-    def make_parts(model: SceneModel, builder: SpecBuilder, diagnostics: Diagnostics) -> SensorsAndPlugins:
-        return InstanceMaker(builder, diagnostics, allowed).model_parts(model)
-
-    movable = frozenset(m.name for m in world.models if m.moved_by is not None)
-    structure = WorldStructure(builder, compiled, {m.name: m for m in world.models}, movable, parts)
-    with progress.task("loading plugins"):
-        simulation = Simulation(world, structure, diagnostics, seed, load_model, make_parts, on_error)
-    simulation.control.write_sdf, simulation.control.resolve_world = _sdf_of, resolve_world
-    simulation.control.list_models, simulation.control.check_source = client_models(resolver, source)
-    simulation.control.file_arguments = file_scene.arguments
-    simulation.control.xacro_overrides = xacro_overrides(overrides)
-    simulation._open_page = _open_page
-    simulation.engine.render_thread = usable_cores() > 1 if render_thread is None else render_thread
     options: LoadOptions = {
         "resource_paths": tuple(resource_paths), "plugin_paths": tuple(plugin_paths), "base": base,
         "xacro_args": named_values(xacro_args, "xacro_args"), "package_paths": package_paths or {},
         "params_files": params_files, "strict": strict, "sleep": sleep, "render_thread": render_thread,
         "on_error": on_error, "interfaces": tuple(interfaces), "renderer": renderer,
+        "remap": named_values(remap, "--remap") or (), "start_controllers": start_controllers,
     }  # fmt: skip
-    simulation.run_spec = RunSpec(
+    run = RunSpec(
         os.fspath(source), seed=seed, overrides=tuple(overrides), spawn=tuple(spawn), plugins=tuple(plugins),
         model_world=model_world, options=options, folder=Path.cwd(), change_world=change_world,
     )  # fmt: skip
+    diagnostics = Diagnostics()
+    reader = _WorldReader(source, run, spawn, diagnostics)
+    diagnostics.can_leave_out = reader.left_out.allows
+    world = reader.resolve(overrides, diagnostics)
+    parameter_files = reader.parameter_files(diagnostics)
+    if diagnostics.has_errors:
+        find_more_problems(world, diagnostics, reader.plugin_folders, reader.find_file, reader.left_out)
+        reader.left_out.take(diagnostics)
+    diagnostics.raise_if_errors()
+    from simkit.runtime import Simulation
+    from simkit.runtime.communication.name_remapping import NameRemapping
+
+    remapping = NameRemapping(named_values(remap, "--remap"))
+    while True:
+        try:
+            structure = _compiled_structure(world, parameter_files, reader, diagnostics)
+            with progress.task("loading plugins"):
+                simulation = Simulation(
+                    world, structure, diagnostics, seed, reader.world_source(), on_error=on_error, run_spec=run,
+                    render_thread=usable_cores() > 1 if render_thread is None else render_thread, remapping=remapping,
+                )  # fmt: skip
+            break
+        except LoadError:
+            if not reader.left_out.take(diagnostics):  # else the world is built again without what has errors
+                diagnostics.raise_if_errors(strict)
+                raise
     try:
-        report_unread(parts.values())
-        check_used(diagnostics)
-        if strict:
-            report_unavailable_sensors(parts.values(), diagnostics)
-        diagnostics.raise_if_errors(strict)
+        simulation.communication.report_remapping(diagnostics)
+        _report_unused(structure, diagnostics, strict=strict)
     except BaseException:
         simulation.close()
         raise
     return simulation
 
 
-def _open_page(simulation: Simulation, port: int) -> Page:
-    """Open the live view of a simulation that a script steps."""
-    from simkit.bridges.view.script_view import ScriptView
+class _WorldReader:
+    """Reader of the files of a run: of its world at the load, and of further models and overrides later.
 
-    return ScriptView(simulation, port)
+    Args:
+        source: path, bare name or text of the world.
+        run: specification of the run.
+        spawn: models to add to the world.
+        diagnostics: collector of the problems.
+
+    Attributes:
+        run: specification of the run.
+        plugin_folders: folders whose Python plugins a file may name.
+        left_out: sensors and plugins of files that are left out, because they have errors.
+    """
+
+    def __init__(self, source: Source, run: RunSpec, spawn: Sequence[SpawnEntry], diagnostics: Diagnostics) -> None:
+        options = run.options
+        self._source, self.run = source, run
+        self.left_out = LeftOutParts(strict=options["strict"])
+        self.plugin_folders = [Path(folder) for folder in options["plugin_paths"]]
+        self._resolver = Resolver(options["resource_paths"], package_paths=options["package_paths"])
+        read_interfaces(options["interfaces"], source, self._resolver, diagnostics)
+        self._xacro_overrides = xacro_overrides(run.overrides)
+        arguments = named_values(options["xacro_args"], "xacro_args") | self._xacro_overrides
+        self._scene = _scene(source, self._resolver, diagnostics, arguments, options["base"], spawn, run.model_world)
+
+    def find_file(self, uri: str, folder: Path | None) -> Path | None:
+        """Return the file of a URI, relative to a folder; None for a missing one."""
+        return self._resolver.search(uri, folder)[0]
+
+    def resolve(self, overrides: Sequence[str], diagnostics: Diagnostics) -> SceneWorld:
+        """Return the world of the file with overrides and all options of the run."""
+        from simkit.compiler.standing_models import stand_models
+
+        scene, change_world = _overridden(self._scene, overrides, diagnostics), self.run.change_world
+        world = scene.world if diagnostics.has_errors else stand_models(scene.world, scene.standing, diagnostics)
+        if not self.run.options["sleep"]:
+            world = replace(world, physics=replace(world.physics, sleep=False))
+        world = _with_renderer(world, self.run.options["renderer"])
+        world = with_entity_models(world, self.find_file, diagnostics)
+        return world if change_world is None or diagnostics.has_errors else change_world(world)
+
+    def parameter_files(self, diagnostics: Diagnostics) -> tuple[RunParameterFile, ...]:
+        """Return the parameter files of the run for its control plugins."""
+        named = self.run.options["params_files"]
+        if not named:
+            return ()
+        from simkit.plugins.run_parameter_files import read_run_parameter_files
+
+        files = read_run_parameter_files(named, lambda uri: self.find_file(uri, None), diagnostics)
+        self.left_out.add_user_files(str(item.file.path) for item in files)
+        return files
+
+    def world_source(self) -> WorldSource:
+        """Return the functions that the simulation needs during the run."""
+        from simkit.runtime.world_source import WorldSource
+
+        list_models, check_source = client_models(self._resolver, self._source)
+        return WorldSource(
+            load_model=partial(_model_to_spawn, resolver=self._resolver), make_parts=self._make_parts,
+            leave_out=self.left_out.take,
+            write_sdf=_sdf_of, resolve_world=self.resolve, list_models=list_models, check_source=check_source,
+            file_arguments=self._scene.arguments, xacro_overrides=self._xacro_overrides,
+        )  # fmt: skip
+
+    def _make_parts(self, model: SceneModel, builder: SpecBuilder, diagnostics: Diagnostics) -> SensorsAndPlugins:
+        return InstanceMaker(builder, diagnostics, self.plugin_folders, self.left_out).model_parts(model)
+
+
+def _with_renderer(world: SceneWorld, name: RendererName | None) -> SceneWorld:
+    """Return a world with the renderer that the user requests; None keeps the renderer of the file.
+
+    Raises:
+        RenderError: SK-RENDER-001 OpenGL is requested and cannot be opened. A file that requests OpenGL raises this
+            error only when an image is read, because a run without images does not need it.
+    """
+    if name is None:
+        return world
+    if name == "gl":
+        from simkit.sensors.cameras.rendering.gl_context import ensure_open
+
+        ensure_open()
+    return replace(world, renderer=name)
+
+
+def _compiled_structure(
+    world: SceneWorld, parameter_files: tuple[RunParameterFile, ...], reader: _WorldReader, diagnostics: Diagnostics
+) -> WorldStructure:
+    """Return the compiled model of a world with its sensors and plugins.
+
+    Raises:
+        LoadError: the world, a sensor or a plugin has errors.
+    """
+    from simkit.compiler import SpecBuilder
+    from simkit.runtime import WorldStructure
+
+    run, files_read = reader.run, [item.file.path for item in parameter_files]
+    builder = SpecBuilder(
+        world, diagnostics, find_file=reader.find_file, parameter_files=parameter_files, files_read=files_read
+    )
+    parts = make_all_parts(world, builder, diagnostics, reader.plugin_folders, run.plugins, reader.left_out)
+    has_controls = parameter_files or any(model.controls for top in world.models for model in top.all_models())
+    if has_controls and not diagnostics.has_errors:  # `parts` does not contain plugins whose parameters have errors
+        from simkit.plugins.run_parameter_files import report_unused_control
+
+        made = [entry.plugin for part in parts.values() for entry in part.plugins]
+        report_unused_control(parameter_files, made, world, diagnostics)
+    diagnostics.raise_if_errors(run.options["strict"])
+    compiled = builder.compile()
+    diagnostics.raise_if_errors(run.options["strict"])
+    movable = frozenset(m.name for m in world.models if m.moved_by is not None)
+    return WorldStructure(builder, compiled, {m.name: m for m in world.models}, movable, parts)
+
+
+def _report_unused(structure: WorldStructure, diagnostics: Diagnostics, *, strict: bool) -> None:
+    """Report what the loaded world does not use: parameters, overrides and, if strict, sensors without a renderer."""
+    report_unread(structure.parts.values())
+    check_used(diagnostics)
+    if strict:
+        report_unavailable_sensors(structure.parts.values(), diagnostics)
+    diagnostics.raise_if_errors(strict)
 
 
 def describe(
@@ -234,7 +321,7 @@ def describe(
     package_paths: PackagePaths | None = None,
     plugin_paths: Sequence[Source] = (),
     base: str = "auto",
-) -> dict[str, Any]:
+) -> JsonObject:
     """Return the resolved content of a file as plain data, as `simkit inspect --json` prints it.
 
     The diagnostics in the result include Python plugins that are not found in `plugin_paths` or cannot be imported.
@@ -243,14 +330,20 @@ def describe(
         LoadError: the file has errors.
     """
     check_folders(plugin_paths, "plugin_paths")
-    given = {"resource_paths": resource_paths, "xacro_args": xacro_args, "package_paths": package_paths, "base": base}
     with memory_errors():
-        scene, diagnostics = read_scene(source, missing_meshes=True, **cast("Any", given))
+        scene, diagnostics = read_scene(
+            source,
+            missing_meshes=True,
+            resource_paths=resource_paths,
+            xacro_args=xacro_args,
+            package_paths=package_paths,
+            base=base,
+        )
         report_python_plugins(scene, diagnostics, [Path(p) for p in plugin_paths])
         return describe_scene(scene, diagnostics, describe_sensor)
 
 
-def describe_sensor(scene_sensor: SceneSensor, diagnostics: Diagnostics) -> tuple[SceneSensor, dict[str, Any] | None]:
+def describe_sensor(scene_sensor: SceneSensor, diagnostics: Diagnostics) -> tuple[SceneSensor, JsonObject | None]:
     """Return a sensor with the defaults of its preset, and its options as plain data.
 
     The options are None if this kind of sensor is not simulated.
@@ -289,7 +382,7 @@ def _scene(
     diagnostics: Diagnostics,
     xacro_args: NamedValues | None,
     base: str,
-    spawn: Sequence[str | SpawnedModel] = (),
+    spawn: Sequence[SpawnEntry] = (),
     model_world: str = EMPTY_SPACE,
 ) -> Scene:
     def read(source: Source, diagnostics: Diagnostics, base: str = "auto") -> Scene:
@@ -299,8 +392,10 @@ def _scene(
         )  # fmt: skip
 
     with progress.task("reading the world"):
-        found = read(source, diagnostics, base)
-        scene = replace(add_model_world(found, model_world, read, diagnostics), arguments=found.arguments)
+        scene_in_file = read(source, diagnostics, base)
+        scene = replace(
+            add_model_world(scene_in_file, model_world, read, diagnostics), arguments=scene_in_file.arguments
+        )
         if spawn:
             read_model = partial(_spawned_model, resolver=resolver)
             scene = add_spawned_models(scene, spawn, resolver, diagnostics, read_model, xacro_args)
@@ -323,9 +418,9 @@ def _spawned_model(source: Source, diagnostics: Diagnostics, **options: Any) -> 
     return None
 
 
-def _read_mesh(mesh: Mesh, diagnostics: Diagnostics, where: Where) -> Sequence[Any]:
+def _read_mesh(mesh: Mesh, diagnostics: Diagnostics, where: Where) -> Sequence[MeshPart]:
     """Read the triangles of a mesh for the loaders' automatic inertia."""
-    from simkit.compiler.meshes.mesh_reader import load_mesh
+    from simkit.loaders.meshes.mesh_reader import load_mesh
 
     return load_mesh(mesh, diagnostics, where)
 

@@ -7,13 +7,15 @@ an argument: `simkit.testing.scenarios.code_permission`.
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
 from simkit.diagnostic_record import Diagnostic, Where
 from simkit.errors import LoadError
+from simkit.run_files import FileName
+from simkit.run_nodes import Node, node_arguments
 
 CODE_REFUSED: Final = "SK-SCEN-008"
 
@@ -65,6 +67,22 @@ def folder_request(text: str, folder: Path, where: Where) -> CodeRequest:
         where: position in the file.
     """
     return CodeRequest(f"plugin_paths names {text!r:.200}", folder, where, is_folder=True)
+
+
+def node_requests(nodes: Sequence[Node], folder: Path, where: Callable[[int], Where]) -> tuple[CodeRequest, ...]:
+    """Return the requests for the programs of nodes.
+
+    Args:
+        nodes: nodes.
+        folder: folder of the file; an executable of a package has no path here.
+        where: function that returns the position of a node, by its number, in the file.
+    """
+    requests = []
+    for number, node in enumerate(nodes):
+        name = FileName(node_arguments(node)["program"], "program", ("nodes", number))
+        words = f"nodes names the program {name.text!r:.200}"
+        requests.append(CodeRequest(words, name.used_path(folder), where(number)))
+    return tuple(requests)
 
 
 def code_refusal(requests: Sequence[CodeRequest]) -> LoadError:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field
-from typing import Any, Final, Literal
+from typing import Final, Literal
 
 from simkit import hidden_text
 
@@ -63,6 +63,6 @@ class Diagnostic:
         text = f"{Where(self.file, self.line)}: {self.severity} {self.code}: {self.message}"
         return f"{text}\n    help: {self.hint}" if self.hint else text
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> dict[str, object]:
         """Return the record as plain data, as `inspect --json` prints it."""
         return asdict(self)

@@ -6,6 +6,8 @@ import difflib
 import functools
 import re
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
 
 from simkit.diagnostic_record import NOWHERE, TEXT_SOURCE, Diagnostic, Severity, Where
 from simkit.errors import LoadError
@@ -35,17 +37,17 @@ class Diagnostics:
     """Collection of diagnostics in order; identical diagnostics are stored once.
 
     After `MOST_ERRORS` errors LoadError is raised, because a search for a hundred thousand errors would take minutes.
-
-    Attributes:
-        on_new: function that receives each new diagnostic; None without one.
     """
-
-    on_new: Callable[[Diagnostic], None] | None = None
 
     def __init__(self, items: Iterable[Diagnostic] = ()) -> None:
         self._items: dict[Diagnostic, None] = {}
         self._errors = 0
         self._successor: Diagnostics | None = None
+        self._on_new: Callable[[Diagnostic], None] | None = None
+        self.can_leave_out: Callable[[Diagnostic], bool] = lambda _: False
+        """Function that checks whether an error may be a warning, because what has the error is left out."""
+        self._blamed: object | None = None
+        self._errors_of: dict[int, tuple[object, list[Diagnostic]]] = {}
         self.extend(items)
 
     def __iter__(self) -> Iterator[Diagnostic]:
@@ -77,13 +79,15 @@ class Diagnostics:
             self.raise_if_errors()
 
     def _put(self, item: Diagnostic) -> None:
+        if item.severity == "error" and self._blamed is not None:  # also an error that is stored already
+            self._errors_of.setdefault(id(self._blamed), (self._blamed, []))[1].append(item)
         if item not in self._items:
             self._items[item] = None
             self._errors += item.severity == "error"
             if self._successor is not None:
                 self._successor._put(item)
-            if self.on_new is not None:
-                self.on_new(item)
+            if self._on_new is not None:
+                self._on_new(item)
 
     def error(self, code: str, message: str, where: Where = NOWHERE, hint: str = "") -> None:
         self.add("error", code, message, where, hint)
@@ -98,10 +102,41 @@ class Diagnostics:
         for item in items:
             self._put(item)
 
+    def tell(self, callback: Callable[[Diagnostic], None]) -> None:
+        """Call a function with each present and future diagnostic."""
+        for item in self._items:
+            callback(item)
+        self._on_new = callback
+
     def pass_on(self, to: Diagnostics) -> None:
         """Add all present and future diagnostics to another collection."""
         to.extend(self._items)
         self._successor = to
+
+    @contextmanager
+    def blame(self, part: object | None) -> Iterator[None]:
+        """Attribute the errors that are reported inside the context to a sensor or plugin; None for no one."""
+        outer, self._blamed = self._blamed, part
+        try:
+            yield
+        finally:
+            self._blamed = outer
+
+    def blamed(self) -> list[tuple[object, list[Diagnostic]]]:
+        """Return each sensor and plugin with its errors, in the order of their first errors."""
+        return list(self._errors_of.values())
+
+    @property
+    def has_only_blamed_errors(self) -> bool:
+        """True if there are errors, and all of them belong to sensors and plugins."""
+        blamed = {item for _, items in self._errors_of.values() for item in items}
+        return self.has_errors and all(d in blamed for d in self._items if d.severity == "error")
+
+    def soften(self, errors: Iterable[Diagnostic]) -> None:
+        """Make warnings of errors; they keep their places in the order."""
+        changed = {error: replace(error, severity="warning") for error in errors}
+        self._items = dict.fromkeys(changed.get(item, item) for item in self._items)
+        self._errors = sum(item.severity == "error" for item in self._items)
 
     def drop(self, items: Iterable[Diagnostic]) -> None:
         """Remove diagnostics."""
@@ -147,13 +182,13 @@ def closest(name: str, allowed: Iterable[str], least: float = 0.6) -> str | None
 
 @functools.lru_cache(maxsize=256)  # a file often repeats one misspelling a hundred times; a search takes 3 ms
 def _closest(name: str, names: tuple[str, ...], least: float) -> str | None:
-    found = difflib.get_close_matches(name, names, n=1, cutoff=least)
-    if not found:
+    matches = difflib.get_close_matches(name, names, n=1, cutoff=least)
+    if not matches:
         folded = {n.lower(): n for n in names}
         if name == name.lower() and len(folded) == len(names) and all(n in folded for n in names):
             return None  # all names are lower case already
-        found = [folded[m] for m in difflib.get_close_matches(name.lower(), list(folded), n=1, cutoff=least)]
-    return found[0] if found else None
+        matches = [folded[m] for m in difflib.get_close_matches(name.lower(), list(folded), n=1, cutoff=least)]
+    return matches[0] if matches else None
 
 
 def did_you_mean(name: str, allowed: Iterable[str]) -> str:

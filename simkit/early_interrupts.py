@@ -27,8 +27,8 @@ def install_in_command() -> None:
 
 def _is_command() -> bool:
     """Check for `python -m simkit …` and `simkit …`; a process that `multiprocessing` starts has other arguments."""
-    given = sys.orig_argv[1:3]
-    return given == ["-m", "simkit"] or os.path.basename("".join(given[:1])) in ("simkit", "simkit.exe")  # noqa: PTH119
+    arguments = sys.orig_argv[1:3]
+    return arguments == ["-m", "simkit"] or os.path.basename("".join(arguments[:1])) in ("simkit", "simkit.exe")  # noqa: PTH119
 
 
 def _end(number: int, _frame: object) -> NoReturn:

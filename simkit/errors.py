@@ -13,7 +13,9 @@ SimkitError                 exit 1
 │   └── TransformError               no pose of a frame in another; also a LookupError
 ├── SimulationDiverged      exit 3   the physics diverged
 ├── PluginError             exit 4   a plugin raised
+├── PackError               exit 4   a command or a run part of another distribution cannot be used, or raised
 ├── SubscriberError         exit 4   a callback of a script raised
+├── NodeError               exit 4   a program of `add_node` raised; the run went on to its end
 ├── RegressionError         exit 5   a regression check failed
 ├── RenderError             exit 2   there is no renderer, or it failed
 └── InstallationError       exit 1   MuJoCo is missing, damaged, or has another version
@@ -21,9 +23,10 @@ SimkitError                 exit 1
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Sequence
-from typing import Any, ClassVar
+from typing import ClassVar, Final
 
 from simkit import hidden_text
 from simkit.diagnostic_record import NOWHERE, Diagnostic, Where
@@ -51,48 +54,68 @@ def cause_text(error: BaseException) -> str:
 
 
 _MOST_LISTED = 100  # problems in the text of a LoadError
+_CODE: Final = re.compile(r"SK-[A-Z]+-\d{3}")
 
 
 class SimkitError(Exception):
-    """Base class of all errors that simkit raises on purpose."""
+    """Base class of all errors that simkit raises on purpose.
+
+    `SimkitError(code, message)` has the text `code message`. `SimkitError(message)` has the code of its class; only
+    some classes put this code before the text.
+
+    Args:
+        code: stable code `SK-AREA-NNN`; without a message, the message.
+        message: problem.
+        help: what the user can do; a line of its own in the text.
+        shows_code: False for a message that has the code already, such as after a place, or that needs none.
+
+    Attributes:
+        code: stable code `SK-AREA-NNN`.
+        message: problem, without code and help.
+        help: what the user can do.
+    """
 
     exit_code: ClassVar[int] = 1
     code: str = "SK-CORE-001"
+    _shows_class_code: ClassVar[bool] = False
     _lists_diagnostics: ClassVar[bool] = False  # their text is hidden already
 
-    def __init__(self, *args: object) -> None:
-        if not self._lists_diagnostics:
-            args = tuple(
-                hidden_text.error_without_text(one) if isinstance(one, str) and hidden_text.hides(one) else one
-                for one in args
-            )
-        super().__init__(*args)
+    def __init__(self, code: str, message: str | None = None, *, help: str = "", shows_code: bool = True) -> None:
+        if message is None:
+            code, message, shows_code = self.code, code, self._shows_class_code
+        elif _CODE.fullmatch(message) and not _CODE.fullmatch(code):  # as in version 0.1.0
+            code, message, shows_code = message, code, False
+        text = f"{code} {message}" if shows_code else message
+        text += f"\n    help: {help}" if help else ""
+        if not self._lists_diagnostics and hidden_text.hides(text):
+            message, help = hidden_text.error_without_text(text), ""
+            text = message
+        super().__init__(text)
+        self.code, self.message, self.help = code, message.removeprefix(code).lstrip(), help
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         """Pickle the exception with all its attributes, independently of the arguments of its constructor."""
         return _restore_error, (type(self), self.args, vars(self))
 
 
-def _restore_error(kind: type[SimkitError], args: tuple[Any, ...], state: dict[str, Any]) -> SimkitError:
+def _restore_error(kind: type[SimkitError], args: tuple[object, ...], state: dict[str, object]) -> SimkitError:
     error = kind.__new__(kind, *args)
     vars(error).update(state)
     return error
 
 
 class InputError(SimkitError):
-    """Invalid input of the user.
-
-    Attributes:
-        code: stable code `SK-AREA-NNN`.
-    """
+    """Invalid input of the user."""
 
     exit_code: ClassVar[int] = 2
 
     code = "SK-INPUT-001"
 
-    def __init__(self, message: str, code: str = "") -> None:
-        super().__init__(message)
-        self.code = code or self.code
+
+def raise_together(errors: Sequence[InputError]) -> None:
+    """Raise one error with the texts of all errors and the code of the first; do nothing if there is none."""
+    if errors:
+        raise InputError(errors[0].code, "\n".join(map(str, errors)), shows_code=False)
 
 
 class ArgumentTypeError(InputError, TypeError):
@@ -122,7 +145,7 @@ class LoadError(InputError):
         lines = [str(d) for d in errors[:_MOST_LISTED]]
         if len(errors) > _MOST_LISTED:
             lines.append(f"and {len(errors) - _MOST_LISTED} more problems; `diagnostics` has all of them")
-        super().__init__("\n".join(lines), errors[0].code if errors else "SK-LOAD-001")
+        super().__init__(errors[0].code if errors else "SK-LOAD-001", "\n".join(lines), shows_code=False)
 
 
 class InterfaceError(LoadError):
@@ -175,9 +198,8 @@ class SimulationDiverged(SimkitError):
     exit_code: ClassVar[int] = 3
 
     def __init__(self, joint: str, time: float, hint: str, engine_text: str = "") -> None:
-        text = f"SK-PHYS-001 the simulation diverged at t={time:.6g} s in {joint!r}: {hint}"
-        super().__init__(f"{text} [engine: {engine_text}]" if engine_text else text)
-        self.code = "SK-PHYS-001"
+        text = f"the simulation diverged at t={time:.6g} s in {joint!r}: {hint}"
+        super().__init__("SK-PHYS-001", f"{text} [engine: {engine_text}]" if engine_text else text)
         self.joint, self.time, self.hint = joint, time, hint
 
 
@@ -192,9 +214,37 @@ class PluginError(SimkitError):
     exit_code: ClassVar[int] = 4
 
     def __init__(self, plugin: str, hook: str, time: float, where: str, reason: str) -> None:
-        super().__init__(f"SK-PLUGIN-004 plugin {plugin!r} ({where}) raised in {hook} at t={time:.6g} s: {reason}")
-        self.code = "SK-PLUGIN-004"
+        super().__init__("SK-PLUGIN-004", f"plugin {plugin!r} ({where}) raised in {hook} at t={time:.6g} s: {reason}")
         self.plugin, self.hook, self.time, self.where = plugin, hook, time, where
+
+
+class NodeError(SimkitError):
+    """Exceptions or exit codes that ended programs of `Simulation.add_node`; the first exception is `__cause__`.
+
+    Args:
+        failures: for each program, its name with the place and the text of its exception, or its exit code.
+    """
+
+    exit_code: ClassVar[int] = 4
+    code = "SK-SCEN-010"
+
+    def __init__(self, failures: Sequence[str]) -> None:
+        super().__init__(self.code, "\n".join(f"node {failure}" for failure in failures))
+
+
+class PackError(SimkitError):
+    """Fault in a pack of another distribution that the command needs; an exception in its code is `__cause__`.
+
+    Args:
+        package: package of the pack.
+        text: file, line and fault.
+    """
+
+    exit_code: ClassVar[int] = 4
+    code = "SK-CLI-058"
+
+    def __init__(self, package: str, text: str) -> None:
+        super().__init__(self.code, f"package {package}: {text}")
 
 
 class SubscriberError(SimkitError):
@@ -218,7 +268,7 @@ class SubscriberError(SimkitError):
 
     def __init__(self, topic: str, callback: str, time: float, reason: str, kind: str = "") -> None:
         subject = f"callback {callback} of {kind} {topic!r}" if kind else f"subscriber {callback} of {topic!r}"
-        super().__init__(f"{self.code} {subject} raised at t={time:.6g} s: {reason}")
+        super().__init__(self.code, f"{subject} raised at t={time:.6g} s: {reason}")
         self.topic, self.callback, self.time = topic, callback, time
 
 
@@ -233,18 +283,22 @@ class RenderError(SimkitError):
     """Missing or failed renderer, in a run that needs images.
 
     Attributes:
-        message: problem and remedy, without code and place.
         where: place of the camera in its file; empty if the error concerns no single camera.
     """
 
     exit_code: ClassVar[int] = 2
 
-    def __init__(self, message: str, code: str = "SK-RENDER-001", where: Where = NOWHERE) -> None:
-        super().__init__(f"{code} {message}" + (f" ({where})" if where.file else ""))
-        self.code, self.message, self.where = code, message, where
+    code = "SK-RENDER-001"
+    _shows_class_code = True
+
+    def __init__(self, code: str, message: str | None = None, where: Where = NOWHERE) -> None:
+        place = f" ({where})" if where.file else ""
+        super().__init__(*((code + place,) if message is None else (code, message + place)))
+        self.message, self.where = self.message.removesuffix(place), where
 
 
 class InstallationError(SimkitError):
     """Missing or damaged package that simkit needs."""
 
     code = "SK-CORE-005"
+    _shows_class_code = True

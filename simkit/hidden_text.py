@@ -95,8 +95,8 @@ def message_without_text(code: str) -> tuple[str, str]:
 
 def error_without_text(text: str) -> str:
     """Return the text of an error with its code and, if the error is in a hidden file, with its line."""
-    found = _CODE.search(text)
-    code = found[0] if found else ""
+    match = _CODE.search(text)
+    code = match[0] if match else ""
     lines = (re.search(re.escape(path) + r":(\d+)", text) for path in reversed(_files))
     place = next((line[0] for line in lines if line is not None), "")
     message, hint = message_without_text(code)

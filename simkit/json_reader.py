@@ -23,14 +23,14 @@ def parse_json(data: bytes | str) -> Any:
     if text.count(b",") + text.count(b"[") + text.count(b"{") > MAX_VALUES:
         raise ValueError(f"it has more than {MAX_VALUES} values")
     try:
-        found = json.loads(data)
+        document = json.loads(data)
     except RecursionError:
         raise _too_deep() from None
     except (json.JSONDecodeError, UnicodeDecodeError):
         raise
     except ValueError:  # Python refuses to convert so many digits, in a text that names its own functions
         raise ValueError("it has an integer of more than 4300 digits") from None
-    level = [found]
+    level = [document]
     for _ in range(MAX_DEPTH):
         level = [
             value
@@ -40,7 +40,7 @@ def parse_json(data: bytes | str) -> Any:
             if isinstance(value, (dict, list))
         ]
         if not level:
-            return found
+            return document
     raise _too_deep()
 
 

@@ -12,13 +12,16 @@ States and transitions are those of `rcl_lifecycle`; https://design.ros2.org/art
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, Final, NamedTuple, Protocol
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol
 
 from simkit.argument_checks import check_text
 from simkit.errors import SimkitError
 from simkit.in_process import InProcess
 from simkit.msgs.topic_names import absolute_name
+
+if TYPE_CHECKING:
+    from simkit.msgs import Message
 
 _PRIMARY: Final = ("unknown", "unconfigured", "inactive", "active", "finalized")
 _CHANGING: Final = ("configuring", "cleaningup", "shuttingdown", "activating", "deactivating", "errorprocessing")
@@ -54,7 +57,7 @@ def _attempt(number: int, label: str, starts: dict[int, int], during: int, ends:
     names = ("transition_success", "transition_failure", "transition_error")
     begun = [Transition(begin, label, start, during) for begin, start in starts.items()]
     ended = zip(range(number, number + 3), names, ends, strict=True)
-    return begun + [Transition(one, name, during, end) for one, name, end in ended]
+    return begun + [Transition(end_number, name, during, end) for end_number, name, end in ended]
 
 
 TRANSITIONS: Final = (
@@ -80,10 +83,14 @@ class LifecycleStates(dict[str, int]):
         self.update({node: states.get(node, UNCONFIGURED) for node in self})
 
 
+class _Endpoint(Protocol):
+    def close(self) -> None: ...
+
+
 class LifecycleHost(Protocol):
     """Plugin, simulation or client of a running simulation."""
 
-    def offer(self, name: str, type_name: str, handler: Callable[[Any], Any], /) -> Any:
+    def offer(self, name: str, type_name: str, handler: Callable[[Message], object], /) -> _Endpoint:
         """Open a service."""
 
     def advertise(self, topic: str, type_name: str, /) -> Any:
@@ -118,14 +125,14 @@ class LifecycleNode(InProcess):
         check_text(node, "node")
         self._host, self._callbacks = host, host if callbacks is None else callbacks
         self.node = absolute_name(str(node))
-        services: dict[str, Callable[[Any], Any]] = {
+        services: dict[str, Callable[[Message], object]] = {
             "ChangeState": lambda request: {"success": self._request(request.transition)},
             "GetState": lambda _: {"current_state": state(self._state)},
             "GetAvailableStates": lambda _: {"available_states": [state(number) for number in STATES]},
             "GetAvailableTransitions": lambda _: _described([t for t in TRANSITIONS if self._is_possible(t)]),
             "GetTransitionGraph": lambda _: _described(TRANSITIONS),
         }
-        self._endpoints: list[Any] = []
+        self._endpoints: list[_Endpoint] = []
         try:
             for name, handler in services.items():
                 snake = "".join(f"_{c.lower()}" if c.isupper() else c for c in name).lstrip("_")
@@ -154,8 +161,8 @@ class LifecycleNode(InProcess):
 
         It returns False if the transition is not possible in the present state, or if its callback has failed.
         """
-        found = next((t for t in TRANSITIONS if t.label == transition and self._is_possible(t)), None)
-        return found is not None and self._make(found)
+        possible = next((t for t in TRANSITIONS if t.label == transition and self._is_possible(t)), None)
+        return possible is not None and self._make(possible)
 
     def close(self) -> None:
         """Close the services and the topic of the node."""
@@ -174,12 +181,12 @@ class LifecycleNode(InProcess):
         """Check whether a transition can be requested now. During another transition, none can be."""
         return transition.start == self._state <= FINALIZED
 
-    def _request(self, wanted: Any) -> bool:
+    def _request(self, wanted: Message) -> bool:
         """Make the transition with a label, or with a number if there is no label, as ROS 2 does."""
         if wanted.label:
             return self.change(wanted.label)
-        found = next((t for t in TRANSITIONS if t.id == wanted.id and self._is_possible(t)), None)
-        return found is not None and self._make(found)
+        possible = next((t for t in TRANSITIONS if t.id == wanted.id and self._is_possible(t)), None)
+        return possible is not None and self._make(possible)
 
     def _make(self, transition: Transition) -> bool:
         previous = self._enter(transition)
@@ -234,5 +241,5 @@ def state(number: int) -> dict[str, object]:
     return {"id": number, "label": STATES[number]}
 
 
-def _described(transitions: Any) -> dict[str, object]:
+def _described(transitions: Iterable[Transition]) -> dict[str, object]:
     return {"available_transitions": [t.description() for t in transitions]}

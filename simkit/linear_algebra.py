@@ -23,7 +23,7 @@ _SHORT = 16  # numbers up to which a loop over Python's floats is faster than ei
 _NEXT_TO_LIMIT = 1e-9  # BLAS rounds sums of millions of squares to better than this
 
 
-def matmul(first: Any, second: Any, *more: Any) -> Any:
+def matmul(first: ArrayLike, second: ArrayLike, *more: ArrayLike) -> Any:
     """Return the matrix product of two or more arrays, as `first @ second @ ...`.
 
     Args:
@@ -40,28 +40,30 @@ def matmul(first: Any, second: Any, *more: Any) -> Any:
     if a.ndim == 2 and b.ndim == 2:
         is_long = len(a) >= _LONG and max(b.shape) <= _SMALL
         # einsum takes ten times as long where rows are not contiguous, and its result would not be contiguous
-        found = _columns(a, b) if is_long else np.einsum("ij,jk->ik", np.ascontiguousarray(a), np.ascontiguousarray(b))
+        product = (
+            _columns(a, b) if is_long else np.einsum("ij,jk->ik", np.ascontiguousarray(a), np.ascontiguousarray(b))
+        )
     elif a.ndim == 2 and b.ndim == 1:
-        found = np.einsum("ij,j->i", a, b)
+        product = np.einsum("ij,j->i", a, b)
     elif b.ndim == 1:
-        found = np.einsum("...j,j->...", a, b)
+        product = np.einsum("...j,j->...", a, b)
     elif a.ndim == 1:
-        found = np.einsum("j,...jk->...k", a, b)
+        product = np.einsum("j,...jk->...k", a, b)
     else:
-        found = np.einsum("...ij,...jk->...ik", a, b)
+        product = np.einsum("...ij,...jk->...ik", a, b)
     for factor in more:
-        found = matmul(found, factor)
-    return found
+        product = matmul(product, factor)
+    return product
 
 
-def _columns(a: NDArray[Any], b: NDArray[Any]) -> NDArray[Any]:
+def _columns(a: NDArray[np.generic], b: NDArray[np.generic]) -> NDArray[np.generic]:
     """Return the product of many short rows and a small matrix; a third of einsum's time for 5000 points."""
     rows = np.ascontiguousarray(a.T)
-    found = np.zeros((b.shape[1], len(a)), np.result_type(a, b))
-    for k, column in enumerate(found):
+    product = np.zeros((b.shape[1], len(a)), np.result_type(a, b))
+    for k, column in enumerate(product):
         for j, row in enumerate(rows):
             column += row * b[j, k]
-    return found.T
+    return product.T
 
 
 def dot(first: Any, second: Any) -> float:
@@ -87,13 +89,13 @@ def dot(first: Any, second: Any) -> float:
     return float(total)
 
 
-def norm(vector: Any) -> float:
+def norm(vector: ArrayLike) -> float:
     """Return the Euclidean length of a vector, or the Frobenius norm of a matrix."""
     numbers = np.asarray(vector, np.float64).ravel()
     return math.sqrt(dot(numbers, numbers))
 
 
-def squared_length(vector: NDArray[Any], limit: float) -> float:
+def squared_length(vector: Floats, limit: float) -> float:
     """Return the squared length of a vector, for a comparison with a limit that has one result on every processor.
 
     The step loop makes such comparisons at each step. BLAS takes a quarter of the time of a fixed order. Its rounding
@@ -108,8 +110,8 @@ def det(matrix: ArrayLike) -> Any:
     m = np.asarray(matrix, np.float64)
     if m.shape[-2:] == (3, 3):
         a, b, c, d, e, f, g, h, i = (m[..., j, k] for j in range(3) for k in range(3))
-        found = a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
-        return float(found) if m.ndim == 2 else found
+        determinant = a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
+        return float(determinant) if m.ndim == 2 else determinant
     rows = square_rows(m)
     return _eliminate(rows, [[] for _ in rows])
 

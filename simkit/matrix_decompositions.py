@@ -31,35 +31,35 @@ def cholesky(matrix: ArrayLike) -> Floats:
 
 
 def _cholesky(rows: list[list[float]]) -> list[list[float]]:
-    found = [[0.0] * len(rows) for _ in rows]
-    for i, (row, own) in enumerate(zip(rows, found, strict=True)):
+    lower = [[0.0] * len(rows) for _ in rows]
+    for i, (row, lower_row) in enumerate(zip(rows, lower, strict=True)):
         for j in range(i + 1):
-            rest, other = row[j], found[j]
+            rest, other = row[j], lower[j]
             for k in range(j):
-                rest -= own[k] * other[k]
+                rest -= lower_row[k] * other[k]
             if i != j:
-                own[j] = rest / other[j]
+                lower_row[j] = rest / other[j]
             elif rest > 0.0:
-                own[i] = math.sqrt(rest)
+                lower_row[i] = math.sqrt(rest)
             else:
                 raise np.linalg.LinAlgError("Matrix is not positive definite")
-    return found
+    return lower
 
 
 def _substitute(lower: list[list[float]], right: list[float]) -> list[float]:
     """Solve a system from the Cholesky factor of its matrix."""
-    found = list(right)
+    solution = list(right)
     for i, row in enumerate(lower):
-        rest = found[i]
+        rest = solution[i]
         for k in range(i):
-            rest -= row[k] * found[k]
-        found[i] = rest / row[i]
+            rest -= row[k] * solution[k]
+        solution[i] = rest / row[i]
     for i in reversed(range(len(lower))):
-        rest = found[i]
+        rest = solution[i]
         for k in range(i + 1, len(lower)):
-            rest -= lower[k][i] * found[k]
-        found[i] = rest / lower[i][i]
-    return found
+            rest -= lower[k][i] * solution[k]
+        solution[i] = rest / lower[i][i]
+    return solution
 
 
 def eigh(matrix: ArrayLike) -> tuple[Floats, Floats]:
@@ -77,7 +77,7 @@ def eigh(matrix: ArrayLike) -> tuple[Floats, Floats]:
         return _eigh(m)
     if not m.size:
         return np.zeros(m.shape[:-1]), np.zeros(m.shape)
-    pairs = [_eigh(one) for one in m.reshape(-1, *m.shape[-2:])]
+    pairs = [_eigh(square) for square in m.reshape(-1, *m.shape[-2:])]
     values, axes = np.zeros(m.shape[:-1]), np.zeros(m.shape)
     for k, (value, axis) in enumerate(pairs):
         values.reshape(-1, m.shape[-1])[k], axes.reshape(-1, *m.shape[-2:])[k] = value, axis
@@ -112,9 +112,9 @@ def _eigh(matrix: Floats) -> tuple[Floats, Floats]:
                 for row in a:
                     row[p], row[q] = cosine * row[p] - sine * row[q], sine * row[p] + cosine * row[q]
                 for rows in (a, axes):
-                    one, other = rows[p], rows[q]
-                    rows[p] = [cosine * x - sine * y for x, y in zip(one, other, strict=True)]
-                    rows[q] = [sine * x + cosine * y for x, y in zip(one, other, strict=True)]
+                    first, other = rows[p], rows[q]
+                    rows[p] = [cosine * x - sine * y for x, y in zip(first, other, strict=True)]
+                    rows[q] = [sine * x + cosine * y for x, y in zip(first, other, strict=True)]
                 a[p][q] = a[q][p] = 0.0
         if is_diagonal:
             break
@@ -123,9 +123,9 @@ def _eigh(matrix: Floats) -> tuple[Floats, Floats]:
     return np.array([a[k][k] for k in order], np.float64), np.array(upright, np.float64).reshape(n, n).T
 
 
-def _rotation(one: float, other: float, off: float) -> tuple[float, float]:
+def _rotation(first: float, other: float, off: float) -> tuple[float, float]:
     """Return cosine and sine of the smaller rotation that makes a symmetric 2 × 2 matrix diagonal."""
-    half = (other - one) / (2.0 * off)
+    half = (other - first) / (2.0 * off)
     if abs(half) > 1e150:  # its square is infinite
         tangent = 0.5 / half
     else:
@@ -153,8 +153,8 @@ def svd(matrix: ArrayLike) -> tuple[Floats, Floats, Floats]:
         u, v = (np.broadcast_to(np.eye(count, least), (*stack, count, least)).copy() for count in (rows, columns))
         return u, np.zeros((*stack, least)), np.swapaxes(v, -1, -2)
     if m.ndim > 2:
-        found = [svd(one) for one in m.reshape(-1, *m.shape[-2:])]
-        parts = [np.array(part) for part in zip(*found, strict=True)]
+        decompositions = [svd(layer) for layer in m.reshape(-1, *m.shape[-2:])]
+        parts = [np.array(part) for part in zip(*decompositions, strict=True)]
         u, s, vt = (part.reshape(*m.shape[:-2], *part.shape[1:]) for part in parts)
         return u, s, vt
     if m.shape[0] < m.shape[1]:
@@ -188,8 +188,8 @@ def _scaled(matrix: Floats) -> tuple[Floats, int]:
 def _unscaled(numbers: ArrayLike, exponent: int) -> Floats:
     """Return numbers times a power of two; those that are too large for a float are infinite."""
     with np.errstate(over="ignore", under="ignore"):
-        found: Floats = np.ldexp(np.asarray(numbers, np.float64), exponent)
-    return found
+        scaled: Floats = np.ldexp(np.asarray(numbers, np.float64), exponent)
+    return scaled
 
 
 def _orthogonal_columns(matrix: Floats) -> tuple[list[Floats], list[Floats]]:
@@ -199,8 +199,8 @@ def _orthogonal_columns(matrix: Floats) -> tuple[list[Floats], list[Floats]]:
         is_orthogonal = True
         for p in range(len(columns) - 1):
             for q in range(p + 1, len(columns)):
-                one, other = columns[p], columns[q]
-                alpha, beta, off = dot(one, one), dot(other, other), dot(one, other)
+                first, other = columns[p], columns[q]
+                alpha, beta, off = dot(first, first), dot(other, other), dot(first, other)
                 if abs(off) <= 1e-15 * math.sqrt(alpha * beta) or off == 0.0:
                     continue
                 is_orthogonal = False
@@ -234,9 +234,9 @@ def pinv(matrix: ArrayLike, rcond: float = 1e-15) -> Floats:
         rcond: Singular values up to this share of the largest one count as zero.
     """
     u, s, vt = svd(matrix)
-    kept = s > rcond * s.max(initial=0.0)
-    found: Floats = matmul(vt[kept].T / s[kept], u[:, kept].T)
-    return found
+    is_large = s > rcond * s.max(initial=0.0)
+    inverse: Floats = matmul(vt[is_large].T / s[is_large], u[:, is_large].T)
+    return inverse
 
 
 def lstsq(matrix: ArrayLike, right: ArrayLike, rcond: float | None = None) -> Floats:
@@ -255,8 +255,8 @@ def lstsq(matrix: ArrayLike, right: ArrayLike, rcond: float | None = None) -> Fl
         lower = _well_conditioned_factor(matmul(scaled.T, scaled))
         if lower is not None:
             sides = matmul(scaled.T, r).reshape(m.shape[1], r[:1].size).T.tolist()
-            found = np.array([_substitute(lower, side) for side in sides]).T.reshape(m.shape[1:] + r.shape[1:])
-            return _unscaled(found, -exponent)
+            solution = np.array([_substitute(lower, side) for side in sides]).T.reshape(m.shape[1:] + r.shape[1:])
+            return _unscaled(solution, -exponent)
     shortest: Floats = matmul(pinv(m, share), r)
     return shortest
 

@@ -42,8 +42,7 @@ class OutOfMemory(SimkitError, MemoryError):
     code = CODE
 
     def __init__(self, reason: str = "") -> None:
-        text = f"{CODE} too little memory{f': {reason}' if reason else ''}"
-        super().__init__(f"{text}\n    help: {remedy()}")
+        super().__init__(CODE, f"too little memory{f': {reason}' if reason else ''}", help=remedy())
 
 
 def remedy() -> str:
@@ -60,8 +59,8 @@ def memory_limit() -> int:
     except ImportError:  # Windows
         return 0
 
-    found = [resource.getrlimit(getattr(resource, name))[0] for name in ("RLIMIT_AS", "RLIMIT_DATA")]
-    return min((limit for limit in found if limit != resource.RLIM_INFINITY), default=0)
+    limits = [resource.getrlimit(getattr(resource, name))[0] for name in ("RLIMIT_AS", "RLIMIT_DATA")]
+    return min((limit for limit in limits if limit != resource.RLIM_INFINITY), default=0)
 
 
 def check_memory_limit() -> None:
@@ -106,14 +105,14 @@ def _openblas_size() -> int:
 def find_memory_error(error: BaseException) -> OutOfMemory | None:
     """Return the error for too little memory, if this is the cause of an exception."""
     seen: set[int] = set()
-    found: BaseException | None = error
-    while found is not None and id(found) not in seen:
-        seen.add(id(found))
-        if isinstance(found, OutOfMemory):
-            return found
-        if _is_memory_error(found):
+    cause: BaseException | None = error
+    while cause is not None and id(cause) not in seen:
+        seen.add(id(cause))
+        if isinstance(cause, OutOfMemory):
+            return cause
+        if _is_memory_error(cause):
             return OutOfMemory()
-        found = found.__cause__ or found.__context__
+        cause = cause.__cause__ or cause.__context__
     return None
 
 
@@ -123,10 +122,10 @@ def memory_errors() -> Iterator[None]:
     try:
         yield
     except Exception as error:
-        found = find_memory_error(error)
-        if found is None or found is error:
+        memory_error = find_memory_error(error)
+        if memory_error is None or memory_error is error:
             raise
-        raise found from error
+        raise memory_error from error
 
 
 def _is_memory_error(error: BaseException) -> bool:

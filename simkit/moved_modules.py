@@ -11,9 +11,10 @@ import sys
 import warnings
 from functools import cache
 from importlib.machinery import ModuleSpec
-from types import ModuleType
+from types import CodeType, ModuleType
 
 _FILE = "moved_modules.txt"
+_PROGRAM = ".__main__"  # module of a package that `python -m` runs
 
 
 @cache
@@ -29,6 +30,11 @@ def _new_names() -> dict[str, str]:
         except FileNotFoundError:
             continue
     return names
+
+
+def first_name(module: str) -> str:
+    """Return the name that a module had before it moved to a pack; the same name for all other modules."""
+    return next((old for old, new in _new_names().items() if new == module), module)
 
 
 class _Loader:
@@ -47,6 +53,12 @@ class _Loader:
         moved = vars(importlib.import_module(self._new))
         vars(module).update({name: value for name, value in moved.items() if not name.startswith("__")})
 
+    def get_code(self, _: str) -> CodeType | None:
+        """Return the code of the moved module, for `python -m`."""
+        moved = importlib.import_module(self._new)
+        code: CodeType | None = moved.__spec__.loader.get_code(self._new)  # type: ignore[union-attr]  # a file has a loader
+        return code
+
 
 class _Finder:
     """Finder of moved modules."""
@@ -54,12 +66,14 @@ class _Finder:
     @staticmethod
     def find_spec(name: str, *_: object) -> ModuleSpec | None:
         """Return how to load a module by its old name, or the package of one; None for all others."""
-        if not name.startswith("simkit.") or not any(f"{old}.".startswith(f"{name}.") for old in _new_names()):
+        package = name.removesuffix(_PROGRAM)
+        if not name.startswith("simkit.") or not any(f"{old}.".startswith(f"{package}.") for old in _new_names()):
             return None
-        if name not in _new_names():
-            return ModuleSpec(name, None, is_package=True)
-        loader = _Loader(_new_names()[name])
-        return ModuleSpec(name, loader, is_package=True)  # type: ignore[arg-type]  # a loader needs no base class
+        is_package = package == name
+        if package not in _new_names():
+            return ModuleSpec(name, None, is_package=True) if is_package else None
+        loader = _Loader(_new_names()[package] + ("" if is_package else _PROGRAM))
+        return ModuleSpec(name, loader, is_package=is_package)  # type: ignore[arg-type]  # a loader has no base class
 
 
 def install() -> None:

@@ -66,9 +66,9 @@ def import_mujoco() -> None:
         return
     if version.split(".")[0] != "4":
         raise _installation_error(f"MuJoCo {version} is installed, but simkit needs {REQUIREMENT}")
-    found = _damage(Path(mujoco.__file__ or "").parent, version)
-    if found:
-        raise found
+    damage = _damage(Path(mujoco.__file__ or "").parent, version)
+    if damage:
+        raise damage
     _is_checked = True
 
 
@@ -153,7 +153,9 @@ def _damage(package: Path, version: str) -> InstallationError | None:
     records = [record for name in ("mujoco", "mujoco_core") for record in package.parent.glob(f"{name}-*.dist-info")]
     foreign = [record for record in records if not record.name.partition("-")[2].startswith(version)]
     libraries = [(file, _VERSION.search(file.name)) for file in package.glob("libmujoco.*")]
-    foreign += [file for file, found in libraries if found is not None and found[0] != version]
+    foreign += [
+        file for file, library_version in libraries if library_version is not None and library_version[0] != version
+    ]
     if foreign:
         names = ", ".join(file.name for file in foreign)
         text = f"MuJoCo {version} in {package.parent} is mixed with files of another version ({names})"
@@ -176,7 +178,7 @@ def _listed_libraries(record: Path) -> list[str]:
 
 
 def _installation_error(problem: str, repair: str = REINSTALL) -> InstallationError:
-    return InstallationError(f"SK-CORE-005 {problem}\n    help: {repair}")
+    return InstallationError(problem, help=repair)
 
 
 def _first_line(error: Exception) -> str:

@@ -52,5 +52,5 @@ def _other_distribution() -> Distribution | None:
 def _shared_files(other: Distribution) -> list[Path]:
     """Return the files of a distribution that lie in the folder of this package."""
     folder = _FOLDER.resolve()
-    found = [Path(str(other.locate_file(file))) for file in other.files or ()]
-    return [file for file in found if folder in file.resolve().parents and file.exists()]
+    files = [Path(str(other.locate_file(file))) for file in other.files or ()]
+    return [file for file in files if folder in file.resolve().parents and file.exists()]

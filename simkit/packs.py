@@ -8,20 +8,24 @@ an import of the pack. Shipped packs are those in simkit's own distribution.
 from __future__ import annotations
 
 import importlib.util
+import json
 import logging
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache, lru_cache
-from importlib.metadata import EntryPoint, PathDistribution, entry_points
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
+
+from simkit.install_command import install_command
 
 GROUP: Final = "simkit.packs"
 _CORE: Final = "simkit"
 _DISTRIBUTION: Final = "simkit_robotics"
-_SECTION: Final = f"[{GROUP}]".encode()
+_SECTION: Final = f"[{GROUP}]"
+_LEFT_OUT: Final = "left_out_packs.json"
+"""File in a wheel without packs (`SIMKIT_PACKS=none`): the names of plugins, sensors and commands in the packs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,8 +67,8 @@ def pack_folders(part: str) -> list[str]:
 
 
 @lru_cache(maxsize=32)
-def _pack_folders(found: tuple[Pack, ...], part: str) -> tuple[str, ...]:
-    folders = (os.path.join(pack.folder, part) for pack in found)  # noqa: PTH118 (pathlib takes 3 ms to import)
+def _pack_folders(packs: tuple[Pack, ...], part: str) -> tuple[str, ...]:
+    folders = (os.path.join(pack.folder, part) for pack in packs)  # noqa: PTH118 (pathlib takes 3 ms to import)
     return tuple(filter(os.path.isdir, folders))
 
 
@@ -91,43 +95,75 @@ def shipped_folders() -> tuple[Path, ...]:
     return core, *(Path(pack.folder).resolve() for pack in shipped_packs())
 
 
-def entry_points_of(group: str) -> list[EntryPoint]:
-    """Return the entry points of a group.
+@cache
+def left_out_names(*attributes: str) -> Mapping[str, str]:
+    """Return the pack of each name of a plugin, sensor or command; empty if simkit was built with its packs.
 
-    Reading all entry points takes 20 ms, so they are cached until a folder of `sys.path` changes.
+    Args:
+        attributes: class attributes with the names, such as `filenames` or `kinds`, or `commands`.
     """
-    state = tuple((folder, _folder_time(Path(folder))) for folder in sys.path)
-    return list(_all_entry_points(state).select(group=group))
-
-
-@lru_cache(maxsize=1)
-def _all_entry_points(_state: tuple[tuple[str, int], ...]) -> Any:  # its type differs between Python 3.11 and 3.12
-    return entry_points()
-
-
-def _folder_time(folder: Path) -> int:
-    """Return the time at which an entry of a folder was last added or removed [ns]; 0 if there is no folder."""
     try:
-        return folder.stat().st_mtime_ns
-    except OSError:
-        return 0
+        tables = json.loads(Path(__file__).with_name(_LEFT_OUT).read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return {}
+    return {name: pack for attribute in attributes for name, pack in tables[attribute].items()}
+
+
+def missing_pack_text(pack: str) -> tuple[str, str]:
+    """Return the end of a message about something that needs a missing pack, and the advice."""
+    return f"needs the pack {pack}, which is not installed", f"install simkit with its packs: {install_command()}"
+
+
+@cache
+def warn_of_pack(package: str, text: str) -> None:
+    """Report, once, a fault in a package of another distribution, without which simkit continues.
+
+    Args:
+        package: name of the package.
+        text: file, line and fault.
+    """
+    logging.getLogger("simkit").warning("package %s: %s", package, text)
+
+
+def fault_text(error: BaseException, folder: str) -> str:
+    """Return place and text of an exception that code in a folder caused: `file:line: class: text`."""
+    text = f"{type(error).__name__}: {error.msg if isinstance(error, SyntaxError) else error}"
+    places = [place for place in _places_of(error) if place[0].startswith(folder)]
+    return f"{places[-1][0]}:{places[-1][1]}: {text}" if places else text
+
+
+def foreign_pack_of(error: BaseException) -> Pack | None:
+    """Return the pack of another distribution whose code caused an exception; None if simkit's code caused it."""
+    files = [file for file, _ in _places_of(error)]
+    packs = foreign_packs()
+    owners = [pack for file in reversed(files) for pack in packs if file.startswith(f"{pack.folder}{os.sep}")]
+    return next(iter(owners), None)
+
+
+def _places_of(error: BaseException) -> Iterator[tuple[str, int]]:
+    """Yield file and line of each call that an exception ended, and of a syntax error."""
+    trace = error.__traceback__
+    while trace is not None:
+        yield trace.tb_frame.f_code.co_filename, trace.tb_lineno
+        trace = trace.tb_next
+    if isinstance(error, SyntaxError) and error.filename:
+        yield error.filename, error.lineno or 1
 
 
 @lru_cache(maxsize=8)
 def _packs_in(path: tuple[str, ...]) -> tuple[Pack, ...]:
     """Return the packs in the folders of an import path; of two with one package, the first one counts."""
-    found: dict[str, Pack] = {}
-    for distribution, is_own in _distributions_with_packs(path):
-        for point in distribution.entry_points:
-            if point.group == GROUP and point.value not in found:
-                folder = _folder_of(point)
-                if folder is not None:
-                    found[point.value] = Pack(point.name, point.value, folder, is_own)
-    return tuple(sorted(found.values(), key=lambda pack: (not pack.is_shipped, pack.name, pack.package)))
+    packs: dict[str, Pack] = {}
+    for name, package, is_own in _pack_entry_points(path):
+        if package not in packs:
+            folder = _folder_of(name, package)
+            if folder is not None:
+                packs[package] = Pack(name, package, folder, is_own)
+    return tuple(sorted(packs.values(), key=lambda pack: (not pack.is_shipped, pack.name, pack.package)))
 
 
-def _distributions_with_packs(path: tuple[str, ...]) -> Iterator[tuple[PathDistribution, bool]]:
-    """Yield each distribution that has a pack, and whether it is simkit's own.
+def _pack_entry_points(path: tuple[str, ...]) -> Iterator[tuple[str, str, bool]]:
+    """Yield name and package of the entry point of each pack, and whether it is in simkit's own distribution.
 
     Only the texts with entry points are read, in 1 ms for 130 distributions; `entry_points` parses them all in 16 ms.
     """
@@ -139,24 +175,27 @@ def _distributions_with_packs(path: tuple[str, ...]) -> Iterator[tuple[PathDistr
             continue
         for info in infos:
             try:
-                with open(os.path.join(info, "entry_points.txt"), "rb", buffering=0) as file:  # noqa: PTH118
-                    has_pack = _SECTION in file.read()
-            except OSError:
+                with open(os.path.join(info, "entry_points.txt"), encoding="utf-8") as file:  # noqa: PTH118
+                    _, _, text = file.read().partition(_SECTION)
+            except (OSError, UnicodeDecodeError):
                 continue
-            if has_pack:
-                name = os.path.basename(info).partition("-")[0]  # noqa: PTH119
-                yield PathDistribution(Path(info)), name.lower().replace("-", "_") == _DISTRIBUTION
+            distribution = os.path.basename(info).partition("-")[0]  # noqa: PTH119
+            is_own = distribution.lower().replace("-", "_") == _DISTRIBUTION
+            for line in text.partition("\n[")[0].splitlines():
+                name, equals, package = (word.strip() for word in line.partition("="))
+                if equals and not name.startswith("#"):
+                    yield name, package, is_own
 
 
-def _folder_of(point: EntryPoint) -> str | None:
+def _folder_of(name: str, package: str) -> str | None:
     """Return the folder of a pack's package; None, with a warning, if the package is missing."""
     try:
-        spec = importlib.util.find_spec(point.value)
+        spec = importlib.util.find_spec(package)
     except (ImportError, ValueError):
         spec = None
     if spec is None or not spec.submodule_search_locations:
         logging.getLogger("simkit").warning(
-            "pack %s: the package %s is missing; install its distribution again", point.name, point.value
+            "pack %s: the package %s is missing; install its distribution again", name, package
         )
         return None
     return next(iter(spec.submodule_search_locations))

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
 from simkit.number_text import is_number, parse_boolean, parse_number, range_text, without_units
@@ -38,6 +38,8 @@ class Params:
         *("_asked", "_attributes_asked", "_read"),
         *("attributes", "children", "diagnostics", "name", "value", "where"),
     )
+    empty_is_default: ClassVar[bool] = True
+    """True if an element without a text has the default value, as in sdformat."""
 
     def __init__(
         self,
@@ -110,10 +112,10 @@ class Params:
     def all(self, name: str) -> list[Params]:
         """Return all children of that name in document order and mark them as read."""
         self._ask_for(name)
-        found = [c for c in self.children if c.name == name]
-        for c in found:
+        elements = [c for c in self.children if c.name == name]
+        for c in elements:
             c._read = c._read or _READ
-        return found
+        return elements
 
     def each(self, name: str) -> list[Params]:
         """Return a block for each child of that name, with only that child."""
@@ -171,12 +173,12 @@ class Params:
         A number outside `minimum`..`maximum`, NaN, or an infinite number where `finite` is set, is recorded as an
         error.
         """
-        found = self.child(name)
-        if found is None and not required:
+        element = self.child(name)
+        if element is None and not required:
             return 0.0 if default is None else default
         try:  # fast path: most values are valid numbers, so the text for an error is not made yet
-            if found is not None:
-                return parse_number(found.value, minimum, maximum, finite)
+            if element is not None:
+                return parse_number(element.value, minimum, maximum, finite)
         except ValueError:
             pass
         allowed = "a number" + range_text(minimum, maximum)
@@ -284,8 +286,14 @@ class Params:
                 raise ValueError
             x, y, z, qx, qy, qz, qw = numbers
             return Pose((x, y, z), (qw, qx, qy, qz))
-        if len(numbers) != 6 or form != "euler_rpy":
+        if form != "euler_rpy" or len(numbers) < 3:
             raise ValueError
+        if len(numbers) > 6:
+            self.first_of(6)  # reports the surplus
+        elif len(numbers) < 6:
+            message = f"<{self.name}>{self.value}</{self.name}> has {len(numbers)} numbers, 0 is used for the others"
+            self.diagnostics.warning("SK-PARAM-006", message, self.where)
+        numbers = [*numbers, 0.0, 0.0, 0.0][:6]
         angles = numbers[3:]
         if degrees:
             angles = [math.radians(a) for a in angles]
@@ -333,32 +341,36 @@ class Params:
     def _value(
         self, name: str, default: T | None, fallback: T, required: bool, parse: Callable[[Params], T], allowed: str
     ) -> T:
-        found = self.child(name)
-        if found is None:
+        element = self.child(name)
+        if element is None:
             if required:
                 message = f"<{self.name}> needs <{name}>: {allowed}"
                 self.diagnostics.error("SK-PARAM-001", message, self.where, self._near(name))
             return fallback if default is None else default
         try:
-            return parse(found)
+            return parse(element)
         except ValueError:
-            written, found.value = found.value, without_units(found.value)
+            if self.empty_is_default and not (element.value.strip() or element.children or required):
+                message = f"{self._as_written(name, '')} is empty, the default is used"  # as in sdformat
+                self.diagnostics.warning("SK-PARAM-005", message, element.where)
+                return fallback if default is None else default
+            written, element.value = element.value, without_units(element.value)
         try:
-            value = parse(found)
+            value = parse(element)
         except ValueError:
-            found.value = written
-            self._bad(self._as_written(name, written), allowed, found.where)
+            element.value = written
+            self._bad(self._as_written(name, written), allowed, element.where)
             return fallback if default is None else default
-        message = f"{self._as_written(name, written)} has letters after a number, {found.value} is used"
-        self.diagnostics.warning("SK-PARAM-005", message, found.where)
+        message = f"{self._as_written(name, written)} has letters after a number, {element.value} is used"
+        self.diagnostics.warning("SK-PARAM-005", message, element.where)
         return value
 
-    def _numeral(self, found: Params, text: str) -> str:
+    def _numeral(self, element: Params, text: str) -> str:
         """Return the text of a number; sdformat reads `true` and `false` as 1 and 0."""
         number = {"true": "1", "false": "0"}.get(text.lower())
         if number is not None:
-            message = f"{self._as_written(found.name, text)} is not a number, {number} is used"
-            self.diagnostics.warning("SK-PARAM-005", message, found.where)
+            message = f"{self._as_written(element.name, text)} is not a number, {number} is used"
+            self.diagnostics.warning("SK-PARAM-005", message, element.where)
         return number or text
 
     def _as_written(self, name: str, value: str) -> str:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import Any, NoReturn
+from collections.abc import Iterable, Sequence
+from typing import NoReturn
 
 import numpy as np
 import numpy.typing as npt
 
 from simkit.argument_checks import checked_number, checked_vector, shown, wrong_value
+from simkit.elementary_functions import ARRAYS, FLOATS, Arithmetic, Numbers
 from simkit.errors import ArgumentTypeError
 from simkit.linear_algebra import dot
 
@@ -23,17 +24,29 @@ def _floats(values: VectorLike) -> list[float]:
     return values.tolist() if isinstance(values, np.ndarray) else [float(v) for v in values]
 
 
+def wrap_angle(angle: float) -> float:
+    """Return the equal angle [rad] from -π to π; exact.
+
+    Raises:
+        ValueError: the angle is infinite.
+    """
+    return math.remainder(angle, math.tau)
+
+
 def quat_multiply(a: VectorLike, b: VectorLike) -> Vector:
     """Return the Hamilton product of two (w, x, y, z) quaternions."""
-    aw, ax, ay, az = _floats(a)
-    bw, bx, by, bz = _floats(b)
-    return np.array(
-        (
-            aw * bw - ax * bx - ay * by - az * bz,
-            aw * bx + ax * bw + ay * bz - az * by,
-            aw * by - ax * bz + ay * bw + az * bx,
-            aw * bz + ax * by - ay * bx + az * bw,
-        )
+    return np.array(hamilton_product(_floats(a), _floats(b)))
+
+
+def hamilton_product(a: Iterable[Numbers], b: Iterable[Numbers]) -> tuple[Numbers, Numbers, Numbers, Numbers]:
+    """Return the Hamilton product of two quaternions (w, x, y, z), each of four numbers or of four arrays."""
+    aw, ax, ay, az = a
+    bw, bx, by, bz = b
+    return (
+        aw * bw - ax * bx - ay * by - az * bz,
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
     )
 
 
@@ -68,14 +81,24 @@ def quat_from_rpy(roll: float, pitch: float, yaw: float) -> Vector:
 
 def rpy_from_quat(q: VectorLike) -> Vector:
     """Return roll, pitch and yaw [rad] of a unit quaternion."""
-    w, x, y, z = _floats(q)
-    sin_pitch = max(-1.0, min(1.0, 2 * (w * y - z * x)))
-    return np.array(
-        (
-            math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)),
-            math.asin(sin_pitch),
-            math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)),
-        )
+    return np.array(_angles(FLOATS, *_floats(q)))
+
+
+def rpy_of_quaternions(q: VectorLike) -> Vector:
+    """Return roll, pitch and yaw [rad] of unit quaternions, shape (n, 4), or of one, as an array (n, 3) or (3,)."""
+    if isinstance(q, np.ndarray) and q.ndim == 2:
+        return np.stack(_angles(ARRAYS, *q.T), axis=1)
+    return rpy_from_quat(q)
+
+
+def _angles(
+    of: Arithmetic[Numbers], w: Numbers, x: Numbers, y: Numbers, z: Numbers
+) -> tuple[Numbers, Numbers, Numbers]:
+    sin_pitch = of.maximum(-1.0, of.minimum(1.0, 2 * (w * y - z * x)))
+    return (
+        of.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)),
+        of.arcsin(sin_pitch),
+        of.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)),
     )
 
 
@@ -223,7 +246,7 @@ class Pose:
     def __hash__(self) -> int:
         return hash((*self.position.tolist(), *self.quaternion.tolist()))
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Pose:
+    def __deepcopy__(self, memo: dict[int, object]) -> Pose:
         return self
 
     def __reduce__(self) -> tuple[type[Pose], tuple[list[float], list[float]]]:

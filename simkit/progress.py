@@ -48,12 +48,12 @@ class Task:
     def seconds_left(self) -> float | None:
         """Estimate the remaining wall time [s]; None if there is no basis for an estimate."""
         elapsed = time.perf_counter() - self.begun
-        found = []
+        estimates = []
         if self.total is not None and self.done > 0:
-            found.append(max(0.0, elapsed * (self.total - self.done) / self.done))
+            estimates.append(max(0.0, elapsed * (self.total - self.done) / self.done))
         if self.expected is not None and elapsed < self.expected:
-            found.append(self.expected - elapsed)
-        return min(found, default=None)
+            estimates.append(self.expected - elapsed)
+        return min(estimates, default=None)
 
 
 class Display(Protocol):
@@ -88,15 +88,15 @@ def task(title: str, total: float | None = None, *, unit: str = "", expected: fl
     """Report a task while the block runs. The arguments are attributes of `Task`."""
     global _innermost
     display, outer = _display, _innermost
-    found = _innermost = Task(title, total, unit, expected)
+    begun = _innermost = Task(title, total, unit, expected)
     if display is not None:
-        display.begin(found)
+        display.begin(begun)
     try:
-        yield found
+        yield begun
     finally:
         _innermost = outer
         if display is not None:
-            display.end(found)
+            display.end(begun)
 
 
 def set_item(item: str) -> None:
@@ -107,7 +107,7 @@ def set_item(item: str) -> None:
 
 def report_each(title: str, items: Iterable[Item], total: float | None = None) -> Iterator[Item]:
     """Report a loop over items as a task."""
-    with task(title, total) as found:
+    with task(title, total) as progress:
         for item in items:
             yield item
-            found.advance()
+            progress.advance()

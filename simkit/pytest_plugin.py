@@ -21,11 +21,12 @@ import os
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final, Unpack
 
 import pytest
 
 from simkit.diagnostics import shorten
+from simkit.run_fields import LoadArguments
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable
@@ -52,7 +53,7 @@ class WorldOpener:
     def __init__(self, folder: Path, opened: list[_Opened], stack: ExitStack) -> None:
         self._folder, self._opened, self._stack = folder, opened, stack
 
-    def __call__(self, source: str | os.PathLike[str], **options: Any) -> Simulation:
+    def __call__(self, source: str | os.PathLike[str], **options: Unpack[LoadArguments]) -> Simulation:
         """Open a world that is ready to step; it is closed when the test ends.
 
         Args:
@@ -185,7 +186,7 @@ def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestR
     return report
 
 
-def pytest_terminal_summary(terminalreporter: Any) -> None:
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
     """List the golden runs that were written."""
     reports = [report for some in terminalreporter.stats.values() for report in some]
     lines = sorted(line for report in reports for line in getattr(report, "simkit_golden", ()))

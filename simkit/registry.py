@@ -8,7 +8,6 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import inspect
-import logging
 import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -18,13 +17,18 @@ from importlib.metadata import EntryPoint
 from types import MappingProxyType
 from typing import Generic, TypeVar
 
-from simkit.packs import Pack, entry_points_of, foreign_packs, is_shipped_module, shipped_packs
+from simkit.entry_points import entry_points_of
+from simkit.packs import Pack, fault_text, foreign_packs, is_shipped_module, shipped_packs, warn_of_pack
 
 T = TypeVar("T")
 
 _TEXTS = re.compile(r"""[ ]*\((?:\s|,|"[^"\\\n]*"|'[^'\\\n]*'|#[^\n]*\n)*\)[ ]*(?:#[^\n]*)?\n""")
 _TEXT = re.compile(r"""#[^\n]*|"(?P<one>[^"\\\n]+)"|'(?P<two>[^'\\\n]+)'""")
 _FUNCTIONS = "\ndef ", "\nasync def "
+
+
+class _UnusableClass(Exception):
+    """Class, or other object, of another distribution that cannot be used; its text is for the user."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +44,17 @@ class _Source:
     module: str
     file: str
     point: EntryPoint | None = None
+
+    @property
+    def package(self) -> str:
+        """Name of the package."""
+        return self.module.partition(".")[0]
+
+    def describe(self, error: BaseException) -> str:
+        """Return place and text of an exception at the import; for an entry point, with its name."""
+        folder = os.path.dirname(self.file) or "\0"  # noqa: PTH120 - see `_modules_below`
+        text = str(error) if isinstance(error, _UnusableClass) else fault_text(error, folder)
+        return text if self.point is None else f"entry point {self.point.name} ({self.point.value}): {text}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,8 +86,10 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
         attributes: class attributes that `names` reads: tuples of texts.
         spell: function that converts a text of these attributes to a name, as `names` does.
 
+    When all classes are listed, a class of another distribution does not get a name that another class has already.
+
     Raises:
-        RuntimeError: two classes have the same name; raised when all classes are listed.
+        RuntimeError: two classes of simkit have the same name; raised when all classes are listed.
     """
 
     def __init__(
@@ -89,6 +106,7 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
         self._attributes, self._spell = attributes, spell
         self._assignment = re.compile(rb"\n    (?:%b)[ :=]" % "|".join(attributes).encode())
         self._found: dict[str, type[T] | None] = {}
+        self._faults: dict[_Source, str] = {}
 
     def __getitem__(self, name: str) -> type[T]:
         cls = self._find(name)
@@ -111,8 +129,8 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
         tiers = self._shipped_names, self._foreign_names
         classes = (cls for tier in tiers for source in tier.computed for cls in self._classes(source))
         texts = [text for cls in classes for attribute in self._attributes for text in getattr(cls, attribute, ())]
-        found = {name: text for tier in reversed(tiers) for name, (text, _) in tier.literal.items()}
-        return MappingProxyType(dict(sorted((found | {self._spell(text): text for text in texts}).items())))
+        literals = {name: text for tier in reversed(tiers) for name, (text, _) in tier.literal.items()}
+        return MappingProxyType(dict(sorted((literals | {self._spell(text): text for text in texts}).items())))
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({dict(self._all)!r})"
@@ -120,15 +138,29 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
     @cached_property
     def _all(self) -> Mapping[str, type[T]]:
         """All classes by name, sorted by name."""
-        sources = (*self._shipped, *self._foreign)
-        classes = dict.fromkeys(cls for source in sources for cls in self._classes(source))
         table: dict[str, type[T]] = {}
-        for cls in classes:
-            for name in self._names(cls):
-                if name in table and table[name] is not cls:
-                    raise RuntimeError(f"{name!r} is claimed by {table[name].__module__} and by {cls.__module__}")
-                table[name] = cls
+        for cls in dict.fromkeys(cls for source in self._shipped for cls in self._classes(source)):
+            for name, other in self._taken_names(cls, table).items():
+                raise RuntimeError(f"{name!r} is claimed by {other.__module__} and by {cls.__module__}")
+            table |= dict.fromkeys(self._names(cls), cls)
+        for source in self._foreign:
+            for cls in self._classes(source):
+                taken = self._taken_names(cls, table)
+                for other in dict.fromkeys(taken.values()):
+                    names = ", ".join(repr(name) for name in taken if taken[name] is other)
+                    text = f"class {cls.__name__} cannot have the name {names} of {other.__module__}.{other.__name__}"
+                    warn_of_pack(source.package, f"{_place_of(cls)}: {text}")
+                table |= {name: cls for name in self._names(cls) if name not in taken}
         return MappingProxyType(dict(sorted(table.items())))
+
+    def _taken_names(self, cls: type[T], table: Mapping[str, type[T]]) -> dict[str, type[T]]:
+        """Return those names of a class that other classes have, with these classes."""
+        return {name: table[name] for name in self._names(cls) if table.get(name, cls) is not cls}
+
+    def fault(self, name: str) -> str:
+        """Return the package, file, line and fault of a broken module that has a class of this name; else ""."""
+        sources = self._foreign_names.literal.get(name, ("", ()))[1]
+        return next((f"{s.package}: {self._faults[s]}" for s in sources if s in self._faults), "")
 
     def _find(self, name: str) -> type[T] | None:
         if "_all" in self.__dict__:
@@ -148,8 +180,8 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
     def _shipped(self) -> tuple[_Source, ...]:
         """Modules of the package, and of the packs that simkit ships."""
         root = importlib.import_module(self._package)
-        own = (_Source(*found) for found in _modules_below(root.__path__, root.__name__))
-        return *own, *self._of_packs(shipped_packs())
+        core = (_Source(*module) for module in _modules_below(root.__path__, root.__name__))
+        return *core, *self._of_packs(shipped_packs())
 
     @cached_property
     def _foreign(self) -> tuple[_Source, ...]:
@@ -163,7 +195,7 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
             place, name = os.path.join(pack.folder, folder), f"{pack.package}.{folder}"  # noqa: PTH118 - see below
             if os.path.isfile(file := os.path.join(place, "__init__.py")):  # noqa: PTH113, PTH118
                 yield _Source(name, file)
-            yield from (_Source(*found) for found in _modules_below([place], name))
+            yield from (_Source(*module) for module in _modules_below([place], name))
 
     @cached_property
     def _shipped_names(self) -> _Names:
@@ -195,35 +227,56 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
             source = content.decode().replace("\r\n", "\n")
         except (OSError, ValueError):
             return None
-        found: list[str] = []
+        literals: list[str] = []
         for start in (at for name in self._attributes for at in _assigned_name_pattern(source, name)):
             value = _TEXTS.match(source, start)
             if value is None:
                 return None
-            found += (text["one"] or text["two"] for text in _TEXT.finditer(value[0]) if text.lastgroup)
-        return found
+            literals += (text["one"] or text["two"] for text in _TEXT.finditer(value[0]) if text.lastgroup)
+        return literals
 
     def _classes(self, source: _Source) -> list[type[T]]:
         """Return the concrete classes of a source; none, with a warning, for a package of others that is broken."""
+        if source in self._faults:
+            return []
         try:
             loaded = importlib.import_module(source.module) if source.point is None else source.point.load()
-        except Exception as error:
+            if source.point is not None:
+                if inspect.isclass(loaded) and issubclass(loaded, self._base):
+                    return [loaded]
+                raise _UnusableClass(f"{loaded!r} is not a subclass of {self._base.__name__}")
+            own = (cls for cls in vars(loaded).values() if inspect.isclass(cls) and cls.__module__ == loaded.__name__)
+            classes = [cls for cls in own if issubclass(cls, self._base) and not inspect.isabstract(cls)]
+            if not is_shipped_module(source.module):
+                for cls in classes:
+                    self._check_names(cls)
+        except (Exception, SystemExit) as error:
             if is_shipped_module(source.module):
                 raise
-            self._warn(source, repr(error))  # one broken package must not keep the others from working
+            self._faults[source] = source.describe(error)  # one broken package must not keep the others from working
+            warn_of_pack(source.package, self._faults[source])
             return []
-        if source.point is not None:
-            if inspect.isclass(loaded) and issubclass(loaded, self._base):
-                return [loaded]
-            self._warn(source, f"{loaded!r} is not a subclass of {self._base.__name__}")
-            return []
-        own = (cls for cls in vars(loaded).values() if inspect.isclass(cls) and cls.__module__ == loaded.__name__)
-        return [cls for cls in own if issubclass(cls, self._base) and not inspect.isabstract(cls)]
+        return classes
 
-    def _warn(self, source: _Source, text: str) -> None:
-        point = source.point
-        place = f"module {source.module}" if point is None else f"entry point {point.name} ({point.value})"
-        logging.getLogger("simkit").warning("%s of %s: %s", place, self._group, text)
+    def _check_names(self, cls: type[T]) -> None:
+        """Check the names of a class of another distribution.
+
+        Raises:
+            _UnusableClass: the names are not a tuple of texts.
+        """
+        for attribute in self._attributes:
+            names = getattr(cls, attribute, ())
+            if not isinstance(names, (tuple, list)) or not all(isinstance(name, str) for name in names):
+                text = f"{cls.__name__}.{attribute}: found {names!r:.80}; expected a tuple of texts"
+                raise _UnusableClass(f"{_place_of(cls)}: {text}")
+
+
+def _place_of(cls: type) -> str:
+    """Return file and line of a class."""
+    try:
+        return f"{inspect.getsourcefile(cls)}:{inspect.getsourcelines(cls)[1]}"
+    except (OSError, TypeError):
+        return cls.__module__
 
 
 def _file_of(module: str) -> str:
@@ -252,8 +305,8 @@ def _modules_below(folders: Iterable[str], package: str) -> Iterator[tuple[str, 
     """
     for folder in filter(os.path.isdir, folders):
         with os.scandir(folder) as entries:
-            found = sorted((entry.name, entry.is_dir()) for entry in entries)
-        for name, is_folder in found:
+            listing = sorted((entry.name, entry.is_dir()) for entry in entries)
+        for name, is_folder in listing:
             path, stem = os.path.join(folder, name), name.removesuffix(".py")  # noqa: PTH118 - as above
             if not stem.isidentifier():  # not a module, for example `.#lidar.py`, the lock file of an editor
                 continue

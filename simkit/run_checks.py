@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Final, Literal
+from typing import Final, Literal
 
 from simkit.run_values import Texts
 
@@ -98,5 +99,5 @@ class Tolerance:
 class FinalConditions(Texts):
     """Checks; an option gives conditions that must hold at the end."""
 
-    def from_option(self, value: Any, option: str) -> Any:
-        return tuple(Check("final", expression=one, where=option) for one in value)
+    def from_option(self, value: Sequence[str], option: str) -> tuple[Check, ...]:
+        return tuple(Check("final", expression=condition, where=option) for condition in value)

@@ -43,6 +43,8 @@ class LoadOptions(SourceOptions, total=False):
     render_thread: bool | None
     on_error: PluginErrorPolicy | None
     renderer: RendererName | None
+    remap: NamedValues
+    start_controllers: bool
 
 
 class LoadArguments(LoadOptions, total=False):
@@ -80,6 +82,8 @@ class CommandOption(NamedTuple):
         parser: name of the text conversion in `simkit.cli.run_options`; empty for none.
         completion: name of a function in `simkit.cli.terminal.completion`; empty for none.
         is_there: True for a path that must exist.
+        of_field: field without which the option has no use, such as `until` for `--timeout`; empty for none. A command
+            that leaves out that field leaves out the option, for the same reason.
     """
 
     name: str
@@ -93,6 +97,7 @@ class CommandOption(NamedTuple):
     parser: str = ""
     completion: str = ""
     is_there: bool = False
+    of_field: str = ""
 
     @property
     def parameter(self) -> str:
@@ -134,7 +139,7 @@ _PYTHON_ONLY: Final = ValueKind()
 
 
 def run_field(
-    default: Any,
+    default: object,
     kind: ValueKind = _PYTHON_ONLY,
     option: CommandOption | None = None,
     *,
@@ -170,14 +175,15 @@ def run_field(
 
 def described_fields(run_class: type) -> dict[str, RunField]:
     """Return the descriptions of the fields of a class by name; fields from Python only have none."""
-    found: dict[str, RunField] = {}
+    fields: dict[str, RunField] = {}
     for field in dataclasses.fields(run_class):
-        given = field.metadata.get(_METADATA)
-        if given is not None and given["kind"] is not _PYTHON_ONLY:
-            key = given["key"]
-            rest = {**given, "key": field.name if key == "" else key, "default": field.default}
-            found[field.name] = RunField(field.name, **rest)
-    return found
+        description = field.metadata.get(_METADATA)
+        if description is not None and description["kind"] is not _PYTHON_ONLY:
+            key, factory = description["key"], field.default_factory
+            default = field.default if factory is dataclasses.MISSING else factory()
+            rest = {**description, "key": field.name if key == "" else key, "default": default}
+            fields[field.name] = RunField(field.name, **rest)
+    return fields
 
 
 def _load_options(*rows: RunField) -> dict[str, RunField]:
@@ -241,10 +247,17 @@ LOAD_FIELDS: Final = _load_options(
         ),
     ),
     RunField(
+        "remap", NamedTexts(), key="remap", default=(),
+        option=CommandOption(
+            "--remap", "OLD:=NEW", "Other name for a topic, service or action of the world; repeatable.", "world"
+        ),
+    ),
+    RunField(
         "strict", Flag(), packed="never", default=False,  # a packed world was accepted
         option=CommandOption("--strict", "", "Treat warnings as errors.", "world"),
     ),
     RunField("sleep", Flag(), packed="first", default=True),
+    RunField("start_controllers", Flag(), key="start_controllers", packed="first", default=True),
     RunField("render_thread", Flag(), packed="never"),  # it does not change the bits
 )  # fmt: skip
 """Load options by name, in the order of a command's help."""

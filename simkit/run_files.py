@@ -17,6 +17,8 @@ _NUMBER: Final = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _NUMBERS: Final = rf"\s*{_NUMBER}\s*(?:,\s*{_NUMBER}\s*)*"
 SPAWN_TEXT: Final = re.compile(rf"(?P<model>.+?):(?P<numbers>{_NUMBERS})(?::(?P<name>[^:/,]+))?")
 """Text of a model to spawn: `MODEL:x,y,yaw[:name]`."""
+SPAWN_KEYS: Final = ("model", "place", "name")
+"""Keys of a model to spawn that is a mapping: its source, its pose as in `SpawnedModel.place`, and its name."""
 
 
 def split_package_paths(paths: PackagePaths | None) -> tuple[dict[str, Path], list[Path]]:
@@ -48,8 +50,8 @@ def model_and_file(named: FilePath | tuple[str, FilePath]) -> tuple[str, str]:
 
 def split_spawn(text: str) -> tuple[str, str]:
     """Split `MODEL:x,y,yaw[:name]` into the model and the rest, which is empty for a model alone."""
-    found = SPAWN_TEXT.fullmatch(text.strip())
-    model = text.strip() if found is None else found["model"]
+    match = SPAWN_TEXT.fullmatch(text.strip())
+    model = text.strip() if match is None else match["model"]
     return model, text.strip()[len(model) :]
 
 
@@ -66,40 +68,40 @@ class FileName(NamedTuple):
 
     Attributes:
         text: path; a world or a model can also be a bare name, a URI or XML text.
-        role: what the name means. A world is a file, a model is a file or a folder. A bag is relative to the folder
-            of the run.
+        role: what the name means. A world is a file, a model is a file or a folder. A program is a file, or the name of
+            an executable of a package. A bag is relative to the folder of the run.
         keys: field and position in it, such as `("spawn", 0)`.
     """
 
     text: str
-    role: Literal["world", "model", "bag", "file", "folder"]
+    role: Literal["world", "model", "program", "bag", "file", "folder"]
     keys: tuple[str | int, ...]
 
     def path_in(self, folder: Path) -> Path | None:
-        """Return the path in a folder; None for the name of a world or model that is not a file there."""
+        """Return the path in a folder; None for the name of a world, model or program that is not a file there."""
         is_expanded = self.role in ("file", "folder")  # as where these are read
         path = folder / (expand_home(self.text) if is_expanded else self.text)
-        if self.role == "world":
+        if self.role in ("world", "program"):
             is_path = "<" not in self.text and os.path.isfile(path)  # noqa: PTH113 (a long name is no error)
         else:
             is_path = self.role != "model" or ("<" not in self.text and bool(self.text) and is_there(path))
         return path if is_path else None
 
     def used_path(self, folder: Path) -> Path | None:
-        """Return the path that a run in a folder uses; None for the name of a world or model.
+        """Return the path that a run in a folder uses; None for the name of a world, model or program.
 
         `simkit.load` looks for models, files and folders in the working directory.
 
         Args:
             folder: folder of the run.
         """
-        found, working = self.path_in(folder), self.path_in(Path())
-        if self.role in ("world", "bag"):
-            return found or working
+        in_folder, working = self.path_in(folder), self.path_in(Path())
+        if self.role in ("world", "program", "bag"):
+            return in_folder or working
         if working is None or not is_there(working):
-            return found
+            return in_folder
         is_used = self.role != "model" or "/" in self.text or working.is_file()
-        return working if is_used else found
+        return working if is_used else in_folder
 
 
 ChangeFile = Callable[[FileName], Any]

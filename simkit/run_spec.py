@@ -15,6 +15,8 @@ from pathlib import Path
 from typing import Any, Final, Protocol, cast
 
 from simkit.code_requests import CodeRequest, code_refusal
+from simkit.diagnostic_record import Diagnostic
+from simkit.errors import InputError
 from simkit.run_checks import Check, CheckKind, FinalConditions, Tolerance
 from simkit.run_fields import (
     LOAD_FIELDS,
@@ -30,13 +32,18 @@ from simkit.run_fields import (
     run_field,
 )
 from simkit.run_files import ChangeFile, FileName, FilePath, PackagePaths
+from simkit.run_nodes import Node
 from simkit.run_values import (
     BagText,
     Expression,
     Flag,
+    NamedTexts,
     NamedValues,
+    Nodes,
     Number,
     OneFile,
+    PlainValues,
+    ProgramName,
     Spawns,
     Text,
     Texts,
@@ -110,6 +117,12 @@ class RunSpec:
             (relative to `folder`), or a bare name. The model stands on what is below it.
         commands: commands to send during the run: mappings as in a `--script`, each with its file position under
             "where".
+        nodes: programs that run in lock-step: texts `PROGRAM ARGUMENT …`, or mappings of arguments of `sim.add_node`.
+        node_latency: `TIME` or `LEAST..MOST`, for all nodes without a latency; `NODE=TIME` for one node.
+        node_discovery: simulated time between the creation of a publisher or subscription and its match [s].
+        node_limit: wall time that a node may compute without waiting [s].
+        node_restart: simulated time after which a node that raised starts anew [s]; None for never.
+        ros_parameters: parameters of the parameter server of ROS 1 by absolute name, for all nodes.
         plugins: plugins made in Python, as for `simkit.load`; from Python only.
         topics: shell patterns of the topics to record or compare; empty for all topics except clocks.
         skip: shell patterns of topics to leave out.
@@ -136,7 +149,11 @@ class RunSpec:
         paused: start the run paused.
         steps: number of steps before a pause; None for no pause.
         change_world: function that receives the resolved world and returns the world to build. From Python only.
+        launch: launch file in place of a world, or `PACKAGE FILE`: the permission for its code replaces it by what it
+            starts. For scenario files; `simkit.launch` returns the run of a launch file.
+        launch_arguments: values of the arguments of the launch file by name.
         code_requests: code that the file asks for and the user has not allowed; such a run is refused.
+        diagnostics: warnings and notes of the file that describes the run.
     """
 
     world: str
@@ -164,7 +181,7 @@ class RunSpec:
         is_appended=True,
         is_loaded=True,
     )
-    spawn: tuple[str | SpawnRequest, ...] = run_field(
+    spawn: tuple[str | SpawnRequest | JsonMapping, ...] = run_field(
         (),
         Spawns(),
         CommandOption(
@@ -193,6 +210,61 @@ class RunSpec:
         is_loaded=True,
     )
     commands: tuple[JsonMapping, ...] = ()
+    nodes: tuple[Node, ...] = run_field(
+        (),
+        Nodes(),
+        CommandOption(
+            "--node",
+            "PROGRAM",
+            "Run FILE.py or PACKAGE/EXECUTABLE in lock-step with the world; --ros-args … may follow; repeatable.",
+        ),
+        is_appended=True,
+    )
+    node_latency: tuple[str, ...] = run_field(
+        (),
+        Texts(),
+        CommandOption(
+            "--node-latency",
+            "[NODE=]TIME",
+            "Delay of messages to nodes: 5ms, or drawn from 5ms..20ms; for all nodes or for one; repeatable.",
+            of_field="nodes",
+        ),
+        is_appended=True,
+    )
+    node_discovery: float = run_field(
+        0.0,
+        Number(least=0.0),
+        CommandOption(
+            "--node-discovery",
+            "S",
+            "Simulated time until publishers and subscriptions of nodes are matched; at least one step.",
+            least=0,
+            of_field="nodes",
+        ),
+    )
+    node_limit: float = run_field(
+        60.0,
+        Number(above=0.0),
+        CommandOption(
+            "--node-limit",
+            "S",
+            "Wall time that a node may compute without waiting; default: 60.",
+            parser="seconds",
+            of_field="nodes",
+        ),
+    )
+    node_restart: float | None = run_field(
+        None,
+        Number(least=0.0),
+        CommandOption(
+            "--node-restart",
+            "S",
+            "Start a node that raised an exception anew after S simulated seconds, in place of exit code 4.",
+            least=0,
+            of_field="nodes",
+        ),
+    )
+    ros_parameters: Mapping[str, Any] = run_field(dict, PlainValues())
     plugins: tuple[object, ...] = ()
     topics: tuple[str, ...] = run_field(
         (), Texts(), CommandOption("--topic", "PATTERN", "Record or compare only topics of this pattern; repeatable.")
@@ -216,7 +288,9 @@ class RunSpec:
     timeout: float | None = run_field(
         None,
         Number(above=0.0),
-        CommandOption("--timeout", "S", "Simulated time limit for --until; then exit 5.", parser="seconds"),
+        CommandOption(
+            "--timeout", "S", "Simulated time limit for --until; then exit 5.", parser="seconds", of_field="until"
+        ),
     )
     wall_timeout: float | None = run_field(
         None,
@@ -243,7 +317,9 @@ class RunSpec:
     play_topics: tuple[str, ...] = run_field(
         (),
         Texts(),
-        CommandOption("--play-topic", "TOPIC[:=NEW]", "Topic to play, optionally under a new name; repeatable."),
+        CommandOption(
+            "--play-topic", "TOPIC[:=NEW]", "Topic to play, optionally under a new name; repeatable.", of_field="play"
+        ),
     )
     velocity: str | None = run_field(
         None, Text(), CommandOption("--cmd-vel", "V,W", "Send a constant velocity: m/s forward, rad/s left."), key=None
@@ -274,7 +350,10 @@ class RunSpec:
         None, Whole(0), CommandOption("--step", "N", "Pause after N steps.", "session", least=0), key=None
     )
     change_world: Callable[[Any], Any] | None = None
+    launch: str = run_field("", ProgramName(), is_stored=False)
+    launch_arguments: NamedValues = run_field((), NamedTexts(), key="arguments", is_stored=False)  # noqa: RUF009
     code_requests: tuple[CodeRequest, ...] = ()
+    diagnostics: tuple[Diagnostic, ...] = ()
 
     def value_of(self, described: RunField) -> Any:
         """Return the value of a field or load option; the default for a load option that is not given."""
@@ -282,7 +361,7 @@ class RunSpec:
             return self.options.get(described.name, described.default)
         return getattr(self, described.name)
 
-    def with_values(self, values: Mapping[str, Any]) -> RunSpec:
+    def with_values(self, values: JsonMapping) -> RunSpec:
         """Return a specification with other values of fields and load options."""
         fields = run_fields()
         options = {name: value for name, value in values.items() if fields[name].is_load_option}
@@ -300,21 +379,26 @@ class RunSpec:
 
     def files(self) -> Iterator[FileName]:
         """Iterate over the names of files in all fields, except the world itself."""
-        found: list[FileName] = []
+        names: list[FileName] = []
 
         def note(name: FileName) -> str:
-            found.append(name)
+            names.append(name)
             return name.text
 
         self.with_files(note)
-        return iter(found)
+        return iter(names)
 
     def load_arguments(self) -> LoadArguments:
         """Return the keyword arguments of `simkit.load` for `source`; raise LoadError for code that is not allowed."""
         if self.code_requests:
             raise code_refusal(self.code_requests)
+        if self.launch:
+            message = f"the launch file {self.launch!r:.200} has not been executed"
+            raise InputError("SK-INPUT-002", message, help="use the specification that simkit.launch returns")
         loaded = {
-            name: getattr(self, name) for name, one in run_fields().items() if one.is_loaded and not one.is_load_option
+            name: getattr(self, name)
+            for name, run_field in run_fields().items()
+            if run_field.is_loaded and not run_field.is_load_option
         }
         loaded |= {"model_world": self.model_world_source, "plugins": self.plugins, "change_world": self.change_world}
         return cast(LoadArguments, {**loaded, **self.options})

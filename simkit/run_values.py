@@ -14,10 +14,12 @@ from simkit.home_folder import expand_home
 from simkit.run_files import (
     ChangeFile,
     FileName,
+    PackagePaths,
     model_and_file,
     split_package_paths,
     split_spawn,
 )
+from simkit.run_nodes import Node, moved_node, node_arguments
 
 NamedValues = Mapping[str, str] | Sequence[str]
 """Values by name, or texts `NAME:=VALUE` or `NAME=VALUE`."""
@@ -36,14 +38,14 @@ def named_values(values: NamedValues | None, option: str) -> dict[str, str]:
     """
     if values is None or isinstance(values, Mapping):
         return dict(values or {})
-    found: dict[str, str] = {}
+    value_by_name: dict[str, str] = {}
     for text in (values,) if isinstance(values, str) else values:
         name, equals, value = str(text).partition("=")
         name = name.strip().removesuffix(":").strip()
         if not equals or not name:
-            raise InputError(f"{_INVALID} {option}: found {text!r}; expected NAME:=VALUE or NAME=VALUE", _INVALID)
-        found[name] = value
-    return found
+            raise InputError(_INVALID, f"{option}: found {text!r}; expected NAME:=VALUE or NAME=VALUE")
+        value_by_name[name] = value
+    return value_by_name
 
 
 class ValueSource(Protocol):
@@ -56,6 +58,8 @@ class ValueSource(Protocol):
     def texts(self, key: str) -> tuple[str, ...]: ...
     def word(self, key: str, default: str, allowed: Sequence[str]) -> str: ...
     def named(self, key: str) -> dict[str, str] | tuple[str, ...]: ...
+    def mapping(self, key: str) -> dict[str, Any]: ...
+    def entries(self, key: str) -> tuple[str | Mapping[str, Any], ...]: ...
 
 
 class ValueKind:
@@ -101,16 +105,16 @@ class Text(ValueKind):
 
     option_type = str | None
 
-    def read(self, source: ValueSource, key: str, default: Any) -> Any:
+    def read(self, source: ValueSource, key: str, default: str) -> str:
         return source.text(key, default)
 
 
 class Expression(Text):
     """Expression in the language of conditions."""
 
-    def from_option(self, value: Any, option: str) -> Any:
+    def from_option(self, value: str, option: str) -> str:
         if not value.strip():  # its usual cause is an unset variable of a shell script
-            raise InputError(f"{_INVALID} {option}: the expression is empty", _INVALID)
+            raise InputError(_INVALID, f"{option}: the expression is empty")
         return value
 
 
@@ -119,7 +123,7 @@ class Flag(ValueKind):
 
     option_type = bool
 
-    def read(self, source: ValueSource, key: str, default: Any) -> Any:
+    def read(self, source: ValueSource, key: str, default: bool) -> bool:
         return source.flag(key, default)
 
 
@@ -135,7 +139,7 @@ class Whole(ValueKind):
     def __init__(self, least: int = 0) -> None:
         self._least = least
 
-    def read(self, source: ValueSource, key: str, default: Any) -> Any:
+    def read(self, source: ValueSource, key: str, default: int) -> int:
         return source.whole(key, default, self._least)
 
 
@@ -152,7 +156,7 @@ class Number(ValueKind):
     def __init__(self, least: float = -math.inf, above: float = -math.inf) -> None:
         self._least, self._above = least, above
 
-    def read(self, source: ValueSource, key: str, default: Any) -> Any:
+    def read(self, source: ValueSource, key: str, default: float | None) -> float | None:
         return source.number(key, default, least=self._least, above=self._above)
 
 
@@ -171,7 +175,7 @@ class Choice(ValueKind):
     def __init__(self, words: Sequence[str]) -> None:
         self.words = words
 
-    def read(self, source: ValueSource, key: str, default: Any) -> Any:
+    def read(self, source: ValueSource, key: str, default: str) -> str:
         return source.word(key, default, self.words)
 
 
@@ -180,7 +184,7 @@ class Texts(ValueKind):
 
     option_type = list[str]
 
-    def read(self, source: ValueSource, key: str, default: Any) -> Any:
+    def read(self, source: ValueSource, key: str, default: object) -> tuple[str, ...]:
         return source.texts(key)
 
 
@@ -189,11 +193,18 @@ class NamedTexts(ValueKind):
 
     option_type = list[str]
 
-    def read(self, source: ValueSource, key: str, default: Any) -> Any:
+    def read(self, source: ValueSource, key: str, default: object) -> dict[str, str] | tuple[str, ...]:
         return source.named(key)
 
     def from_option(self, value: Any, option: str) -> Any:
         return named_values(value, option)
+
+
+class PlainValues(ValueKind):
+    """Values by name: truth values, numbers, texts, and lists and mappings of these."""
+
+    def read(self, source: ValueSource, key: str, default: object) -> dict[str, Any]:
+        return source.mapping(key)
 
 
 class WorldName(Text):
@@ -208,7 +219,7 @@ class WorldName(Text):
     def __init__(self, words: Sequence[str] = ()) -> None:
         self._words = words
 
-    def move(self, value: Any, name: str, change: ChangeFile) -> Any:
+    def move(self, value: str, name: str, change: ChangeFile) -> Any:
         return value if value in self._words or "<" in value else change(FileName(value, "world", (name,)))
 
 
@@ -218,11 +229,20 @@ class BagText(Text):
     option_type = Path | None
     has_files = True
 
-    def from_option(self, value: Any, option: str) -> Any:
+    def from_option(self, value: str | os.PathLike[str], option: str) -> str:
         return os.fspath(value)
 
-    def move(self, value: Any, name: str, change: ChangeFile) -> Any:
+    def move(self, value: str, name: str, change: ChangeFile) -> Any:
         return change(FileName(value, "bag", (name,))) if value else value
+
+
+class ProgramName(Text):
+    """Path of a file that is code, or names in its place, such as `PACKAGE FILE`; empty for none."""
+
+    has_files = True
+
+    def move(self, value: str, name: str, change: ChangeFile) -> Any:
+        return str(change(FileName(value, "program", (name,)))) if value else value
 
 
 class OneFile(ValueKind):
@@ -231,30 +251,62 @@ class OneFile(ValueKind):
     option_type = Path | None
     has_files = True
 
-    def move(self, value: Any, name: str, change: ChangeFile) -> Any:
+    def move(self, value: str | os.PathLike[str] | None, name: str, change: ChangeFile) -> Path | None:
         return None if value is None else Path(change(FileName(os.fspath(value), "file", (name,))))
 
 
 class Spawns(Texts):
-    """Models to spawn: texts `MODEL:x,y,yaw[:name]`, or objects with the attribute `source`."""
+    """Models to spawn: texts `MODEL:x,y,yaw[:name]`, mappings, or objects with the attribute `source`."""
 
     has_files = True
 
+    def read(self, source: ValueSource, key: str, default: object) -> tuple[Any, ...]:
+        return source.entries(key)
+
+    def plain(self, value: Any) -> list[Any]:
+        return [
+            entry
+            if isinstance(entry, (str, Mapping))
+            else {"model": os.fspath(entry.source), "place": entry.place, "name": entry.name}
+            for entry in value
+        ]
+
     def move(self, value: Any, name: str, change: ChangeFile) -> Any:
-        found = []
-        for number, one in enumerate(value):
+        moved_entries: list[Any] = []
+        for number, entry in enumerate(value):
             keys = (name, number)
-            if isinstance(one, str):
-                model, rest = split_spawn(one)
-                found.append(f"{change(FileName(model, 'model', keys))}{rest}")
+            if isinstance(entry, str):
+                model, rest = split_spawn(entry)
+                moved_entries.append(f"{change(FileName(model, 'model', keys))}{rest}")
+            elif isinstance(entry, Mapping):
+                model = change(FileName(os.fspath(entry.get("model", "")), "model", keys))
+                moved_entries.append({**entry, "model": str(model)})
             else:
-                found.append(replace(one, source=change(FileName(os.fspath(one.source), "model", keys))))
-        return tuple(found)
+                moved_entries.append(replace(entry, source=change(FileName(os.fspath(entry.source), "model", keys))))
+        return tuple(moved_entries)
 
 
-def spawns_in(folder: Path, spawn: Sequence[str]) -> tuple[str, ...]:
-    """Return texts `MODEL:x,y,yaw[:name]` with the path of each model that is in a folder."""
-    return cast("tuple[str, ...]", Spawns().move(spawn, "spawn", lambda name: name.path_in(folder) or name.text))
+def spawns_in(folder: Path, spawn: Sequence[Any]) -> tuple[Any, ...]:
+    """Return models to spawn with the path of each model that is in a folder."""
+    return cast("tuple[Any, ...]", Spawns().move(spawn, "spawn", lambda name: name.path_in(folder) or name.text))
+
+
+class Nodes(ValueKind):
+    """Programs that run in lock-step: texts with the words of a command line, or mappings."""
+
+    option_type = list[str]
+    has_files = True
+
+    def read(self, source: ValueSource, key: str, default: object) -> tuple[Node, ...]:
+        return source.entries(key)
+
+    def from_option(self, value: Sequence[str], option: str) -> tuple[str, ...]:
+        for node in value:
+            node_arguments(node)
+        return tuple(value)
+
+    def move(self, value: Sequence[Node], name: str, change: ChangeFile) -> tuple[Node, ...]:
+        return tuple(moved_node(node, (name, number), change) for number, node in enumerate(value))
 
 
 class Folders(Texts):
@@ -270,14 +322,14 @@ class Folders(Texts):
     def __init__(self, must_exist: bool = False) -> None:
         self._must_exist = must_exist
 
-    def from_option(self, value: Any, option: str) -> Any:
+    def from_option(self, value: Sequence[Path], option: str) -> tuple[Path, ...]:
         for folder in value:
             if self._must_exist and not expand_home(folder).is_dir():
-                raise InputError(f"{_INVALID} {option}: there is no folder {str(folder)!r}", _INVALID)
+                raise InputError(_INVALID, f"{option}: there is no folder {str(folder)!r}")
         return tuple(value)
 
-    def move(self, value: Any, name: str, change: ChangeFile) -> Any:
-        return tuple(change(FileName(os.fspath(one), "folder", (name, number))) for number, one in enumerate(value))
+    def move(self, value: Sequence[str | os.PathLike[str]], name: str, change: ChangeFile) -> tuple[object, ...]:
+        return tuple(change(FileName(os.fspath(entry), "folder", (name, number))) for number, entry in enumerate(value))
 
 
 class ParameterFiles(Texts):
@@ -285,17 +337,17 @@ class ParameterFiles(Texts):
 
     has_files = True
 
-    def plain(self, value: Any) -> Any:
+    def plain(self, value: Any) -> list[str]:
         pairs = map(model_and_file, [value] if isinstance(value, (str, os.PathLike)) else value)
         return [f"{model}={file}" if model else file for model, file in pairs]
 
-    def move(self, value: Any, name: str, change: ChangeFile) -> Any:
-        found = []
-        for number, one in enumerate([value] if isinstance(value, (str, os.PathLike)) else value):
-            model, file = model_and_file(one)
+    def move(self, value: Any, name: str, change: ChangeFile) -> tuple[object, ...]:
+        moved_entries = []
+        for number, entry in enumerate([value] if isinstance(value, (str, os.PathLike)) else value):
+            model, file = model_and_file(entry)
             moved = change(FileName(file, "file", (name, number)))
-            found.append((model, moved) if isinstance(one, tuple) else f"{model}={moved}" if model else moved)
-        return tuple(found)
+            moved_entries.append((model, moved) if isinstance(entry, tuple) else f"{model}={moved}" if model else moved)
+        return tuple(moved_entries)
 
 
 class Packages(NamedTexts):
@@ -303,11 +355,11 @@ class Packages(NamedTexts):
 
     has_files = True
 
-    def from_option(self, value: Any, option: str) -> Any:
+    def from_option(self, value: Sequence[str], option: str) -> tuple[str, ...]:
         return tuple(value)
 
-    def move(self, value: Any, name: str, change: ChangeFile) -> Any:
-        def moved(path: Path, key: str | int) -> Any:
+    def move(self, value: PackagePaths, name: str, change: ChangeFile) -> object:
+        def moved(path: Path, key: str | int) -> object:
             return change(FileName(str(path), "folder", (name, key)))
 
         named, workspaces = split_package_paths(value)

@@ -55,6 +55,6 @@ class TopicLogger(InProcess, logging.Logger):
 
     def _topic(self) -> LogSink | None:
         sim = vars(self._owner).get("sim", self._owner)  # a plugin has no simulation before `load`
-        found = vars(sim).get("communication", sim)
-        topic: LogSink | None = vars(found).get("log_topic")
+        owner = vars(sim).get("communication", sim)
+        topic: LogSink | None = vars(owner).get("log_topic")
         return topic

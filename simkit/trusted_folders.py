@@ -199,11 +199,11 @@ def _links_below(search_path: Path) -> Iterator[str]:
         for folder in level:
             try:
                 with os.scandir(folder) as entries:
-                    found = [entry for entry in islice(entries, max(left, 0)) if not entry.name.startswith(".")]
+                    listed = [entry for entry in islice(entries, max(left, 0)) if not entry.name.startswith(".")]
             except OSError:
                 continue
-            left -= len(found)
-            for entry in found:
+            left -= len(listed)
+            for entry in listed:
                 if is_link_entry(entry):
                     target = os.path.realpath(entry.path)
                     if _has_any(target, _MANIFESTS) and not is_top_folder(Path(target)):

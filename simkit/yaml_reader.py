@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 import re
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from simkit.errors import SimkitError
+
+if TYPE_CHECKING:
+    import yaml
 
 _DEEPEST: Final = 100
 _MOST: Final = 1_000_000  # values; repeated aliases expand a short text to very many values
@@ -56,7 +59,7 @@ def compose_nodes(text: str) -> Any:
         raise NotYaml("the text is nested too deeply") from None
 
 
-def node_value(node: Any) -> Any:
+def node_value(node: yaml.Node) -> Any:
     """Return the value of a node.
 
     Raises:
@@ -65,8 +68,8 @@ def node_value(node: Any) -> Any:
     import yaml
 
     try:
-        found = yaml_loader()("").construct_document(node)
-        _check_size(found)
+        value = yaml_loader()("").construct_document(node)
+        _check_size(value)
     except yaml.YAMLError as error:
         raise _yaml_error(error) from None
     except RecursionError:
@@ -74,10 +77,10 @@ def node_value(node: Any) -> Any:
     except (ValueError, LookupError, TypeError, AttributeError, OverflowError) as error:  # it does not fit its tag
         reason = error.args[0] if error.args else ""
         raise NotYaml(f"a value does not fit its type: {str(reason).partition(';')[0]:.200}") from None
-    return found
+    return value
 
 
-def finite_number(value: Any) -> float | None:
+def finite_number(value: object) -> float | None:
     """Return a value as a float; None unless the value is a finite number."""
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return None
@@ -87,7 +90,7 @@ def finite_number(value: Any) -> float | None:
         return None
 
 
-def yaml_loader() -> Any:
+def yaml_loader() -> type[yaml.SafeLoader]:
     """Return PyYAML's safe loader with the number rules of `read_yaml` and a size limit for merges (`<<`)."""
     import yaml
 
@@ -96,14 +99,14 @@ def yaml_loader() -> Any:
 
         _merged = 0
 
-        def flatten_mapping(self, node: Any) -> None:
+        def flatten_mapping(self, node: yaml.MappingNode) -> None:
             super().flatten_mapping(node)
             self._merged += len(node.value)
             if self._merged > _MOST:
                 message = f"the text expands to more than {_MOST} values"
                 raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
 
-        def construct_yaml_int(self, node: Any) -> Any:
+        def construct_yaml_int(self, node: yaml.ScalarNode) -> int:
             # Python refuses to print an integer of more than 4300 digits, so that no message could show it
             if len(node.value) > _MOST_DIGITS:
                 message = f"an integer has more than {_MOST_DIGITS} digits"
@@ -118,13 +121,13 @@ def yaml_loader() -> Any:
     return Reader
 
 
-def _yaml_error(error: Any) -> NotYaml:
+def _yaml_error(error: object) -> NotYaml:
     mark = getattr(error, "problem_mark", None)
     why = getattr(error, "problem", None) or str(error).splitlines()[0]
     return NotYaml(why, None if mark is None else mark.line + 1)
 
 
-def _check_size(root: Any) -> None:
+def _check_size(root: object) -> None:
     """Raise an error if a tree is too large or too deep; a value that contains itself is too deep."""
     count, left = 0, [(root, 0)]
     while left:

@@ -8,13 +8,13 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 REPOSITORY = "https://github.com/simkit-robotics/simkit/"
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
-PACK_PAGES = sorted((ROOT / "packs").rglob("*.md"))
+PACK_PAGES = sorted(page for page in ROOT.glob("packs/**/*.md") if "node_modules" not in page.parts)
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("benchmarks/*.md"), *PACK_PAGES])
 TEXTS = [
     path
     for folder in ("simkit", "packs", "docs", "worlds", "assets", "examples", "benchmarks", "tests")
     for path in sorted((ROOT / folder).rglob("*"))
-    if path.suffix in {".py", ".md", ".sdf", ".yaml", ".config", ".obj", ".world"}
+    if path.suffix in {".py", ".md", ".sdf", ".yaml", ".config", ".obj", ".world"} and "node_modules" not in path.parts
 ]
 
 
@@ -100,7 +100,7 @@ def test_each_command_that_installs_simkit_names_the_repository() -> None:
     wrong = []
     found = 0
     for path in texts:
-        if ROOT / "tests" in path.parents:
+        if "tests" in path.relative_to(ROOT).parts:
             continue
         for line in path.read_text(encoding="utf-8").replace('\\"', '"').splitlines():
             for one in command.finditer(line):

@@ -6,6 +6,7 @@ import pickle
 
 import pytest
 
+from simkit.diagnostic_record import Where
 from simkit.diagnostics import Diagnostic
 from simkit.errors import InputError, LoadError, PluginError, RenderError, SimkitError, SimulationDiverged
 
@@ -15,7 +16,7 @@ FOUND = Diagnostic("SK-XML-001", "error", "no end", "a.sdf", 3)
 @pytest.mark.parametrize(
     "error",
     [
-        InputError("no such file", "SK-CLI-016"),
+        InputError("SK-CLI-016", "no such file"),
         LoadError([FOUND]),
         SimulationDiverged("wheel", 0.5, "a stiff spring"),
         PluginError("brake", "after_step", 1.0, "a.sdf:3", "a division by zero"),
@@ -27,3 +28,29 @@ def test_an_error_is_the_same_after_pickling(error: SimkitError) -> None:
     arrived = pickle.loads(pickle.dumps(error))
     assert type(arrived) is type(error)
     assert (str(arrived), arrived.code, vars(arrived)) == (str(error), error.code, vars(error))
+
+
+@pytest.mark.parametrize(
+    ("error", "text", "code"),
+    [
+        (InputError("SK-CLI-016", "no such file"), "SK-CLI-016 no such file", "SK-CLI-016"),
+        (InputError("SK-CLI-016", "no file", help="write it"), "SK-CLI-016 no file\n    help: write it", "SK-CLI-016"),
+        (InputError("SK-NAME-002", "link 'a' was removed", shows_code=False), "link 'a' was removed", "SK-NAME-002"),
+        (InputError("no such file"), "no such file", "SK-INPUT-001"),
+        (InputError("mine", "SK-X-001"), "mine", "SK-X-001"),
+        (RenderError("no display"), "SK-RENDER-001 no display", "SK-RENDER-001"),
+        (
+            RenderError("SK-RENDER-002", "no image", Where("w.sdf", 3)),
+            "SK-RENDER-002 no image (w.sdf:3)",
+            "SK-RENDER-002",
+        ),
+    ],
+)
+def test_an_error_writes_its_code_before_its_message(error: SimkitError, text: str, code: str) -> None:
+    assert (str(error), error.code) == (text, code)
+
+
+def test_an_error_has_its_message_and_its_help_apart() -> None:
+    error = InputError("SK-CLI-016", "no file", help="write it")
+    assert (error.message, error.help) == ("no file", "write it")
+    assert InputError("SK-CLI-014", "SK-CLI-014 a\nSK-CLI-014 b", shows_code=False).message == "a\nSK-CLI-014 b"

@@ -42,12 +42,48 @@ def test_each_pack_has_its_entry_point(build: ModuleType, checkout: Path) -> Non
     }
 
 
+def test_the_pytest_plugin_of_a_pack_has_an_entry_point(build: ModuleType, checkout: Path) -> None:
+    (checkout / "packs" / "cars" / "simkit_cars" / "pytest_plugin.py").touch()
+    hook = build.PackEntryPoints(str(checkout), {"entry-points": {"pytest11": {"simkit": "simkit.pytest_plugin"}}})
+    metadata: dict[str, dict[str, dict[str, str]]] = {}
+    hook.update(metadata)
+    assert metadata["entry-points"] == {
+        "pytest11": {"simkit": "simkit.pytest_plugin", "simkit_cars": "simkit_cars.pytest_plugin"},
+        "simkit.packs": {"boats": "simkit_boats", "cars": "simkit_cars"},
+    }
+
+
 def test_the_core_alone_has_none(build: ModuleType, checkout: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SIMKIT_PACKS", "none")
     assert build.declared_packs(checkout) == {}
     monkeypatch.setenv("SIMKIT_PACKS", "boats")
     with pytest.raises(ValueError, match="SIMKIT_PACKS=boats: expected all or none"):
         build.declared_packs(checkout)
+
+
+def test_the_core_alone_has_the_names_of_the_plugins_that_it_lacks(build: ModuleType, checkout: Path) -> None:
+    plugins = checkout / "packs" / "boats" / "simkit_boats" / "plugins"
+    plugins.mkdir()
+    (plugins / "sail.py").write_text(
+        """
+class Sail:
+    filenames: tuple = ()
+    filenames = ("libsail.so", "sail-system")
+    hooks = ("hoist",)
+    size = ("large",)
+"""
+    )
+    (checkout / "packs" / "boats" / "simkit_boats" / "cli").mkdir()
+    (checkout / "packs" / "boats" / "simkit_boats" / "cli" / "harbour.py").touch()
+    (checkout / "packs" / "boats" / "simkit_boats" / "sensors").mkdir()
+    (checkout / "packs" / "boats" / "simkit_boats" / "sensors" / "log.py").write_text(
+        "class Log:\n    kinds = ('log', 'chip_log')\n    names = ('no plugin',)\n"
+    )
+    names = build.left_out_names(checkout)
+    assert names["filenames"] == {"libsail.so": "boats", "sail-system": "boats"}
+    assert names["hooks"] == {"hoist": "boats"} and names["entities"] == {} and "size" not in names
+    assert names["kinds"] == {"log": "boats", "chip_log": "boats"} and names["names"] == {}
+    assert names["commands"] == {"harbour": "boats"}
 
 
 @pytest.mark.parametrize(

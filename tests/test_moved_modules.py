@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import subprocess
 import sys
 from pathlib import Path
 
@@ -29,3 +30,11 @@ def test_an_old_name_has_the_same_classes_and_a_warning(old: str, new: str, monk
 def test_a_module_that_never_was_is_not_found() -> None:
     with pytest.raises(ModuleNotFoundError, match=r"No module named 'simkit\.plugins\.world\.map_sever'"):
         importlib.import_module("simkit.plugins.world.map_sever")
+
+
+@pytest.mark.needs_packs
+def test_a_moved_module_runs_as_a_program_by_its_old_name() -> None:
+    ended = subprocess.run(
+        [sys.executable, "-m", "simkit.testing.certify"], capture_output=True, text=True, check=False
+    )
+    assert ended.returncode == 1 and "missing 2 required positional arguments: 'request' and 'result'" in ended.stderr

@@ -14,11 +14,10 @@ import pytest
 from simkit import output_file
 from simkit.bridges.live.socket_files import _lock_folder
 from simkit.errors import InputError
-from simkit.experiments.sweeps.folder_lock import locked_blocks, make_folder
 from simkit.output_file import open_regular, open_target
 from simkit.testing.golden.store import _locked_file
 from simkit.writers.atomic_output import write_atomically
-from simkit.writers.fuel.cache_entry import exclusive_file
+from simkit_fuel.cache_entry import exclusive_file
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="named pipes of POSIX")
 Make = Callable[[Path], object]
@@ -56,41 +55,6 @@ def test_a_regular_file_is_appended_to(tmp_path: Path) -> None:
         with open_regular(tmp_path / "x") as file:
             file.write(text)
     assert (tmp_path / "x").read_bytes() == b"ab"
-
-
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("name", ["folder.lock", "000000.lock"])
-def test_the_locks_of_a_sweep_are_regular_files(tmp_path: Path, kind: str, name: str) -> None:
-    (tmp_path / "locks").mkdir()
-    KINDS[kind][0](tmp_path / "locks" / name)
-    open_locks = make_folder if name == "folder.lock" else lambda folder: locked_blocks(folder, [0]).__enter__()
-    with pytest.raises(InputError, match=rf"SK-CLI-016 .*{name}: {KINDS[kind][1]}"):
-        open_locks(tmp_path)
-
-
-@pytest.mark.parametrize("name", ["rows", "timings", "locks"])
-def test_a_folder_of_a_sweep_does_not_lead_elsewhere(tmp_path: Path, name: str) -> None:
-    (tmp_path / "elsewhere").mkdir()
-    (tmp_path / "sweep").mkdir()
-    (tmp_path / "sweep" / name).symlink_to(tmp_path / "elsewhere")
-    with pytest.raises(InputError, match="symbolic link"):
-        make_folder(tmp_path / "sweep")
-
-
-def test_a_sweep_with_a_pipe_as_its_lock_ends_with_a_line(tmp_path: Path) -> None:
-    (tmp_path / "w.sdf").write_text('<sdf version="1.9"><world name="w"/></sdf>')
-    (tmp_path / "sweep.yaml").write_text("world: w.sdf\nduration: 0.01\nseeds: 1\nmetrics: {t: time}\n")
-    (tmp_path / "out/locks").mkdir(parents=True)
-    os.mkfifo(tmp_path / "out/locks/000000.lock")
-    result = subprocess.run(
-        [sys.executable, "-m", "simkit", "sweep", "run", "sweep.yaml", "-o", "out", "--jobs", "1"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        timeout=100,
-        check=False,
-    )
-    assert result.returncode == 2 and "it is a pipe" in result.stderr, result.stdout + result.stderr
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -12,7 +12,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *ROOT.glob("docs/**/*.md"), *ROOT.glob("examples/**/*.md")]
-PAGES += ROOT.glob("packs/**/*.md")
+PAGES += (page for page in ROOT.glob("packs/**/*.md") if "node_modules" not in page.parts)
 
 
 def blocks(page: Path) -> list[tuple[int, str]]:

@@ -36,7 +36,14 @@ def test_values_are_read_with_their_types_and_defaults():
     assert not problems(p)
 
 
-@pytest.mark.parametrize("text", ["x", "nan", "1_0", "inf", ""])
+def test_an_empty_number_has_the_default_as_in_sdformat():
+    p = block("<a></a>")
+    assert p.number("a", 4.0) == 4.0
+    assert problems(p) == [("SK-PARAM-005", "")]
+    assert block("<a></a>").number("a", 4.0, required=True) == 4.0
+
+
+@pytest.mark.parametrize("text", ["x", "nan", "1_0", "inf"])
 def test_an_invalid_number_is_an_error_and_returns_the_default(text):
     p = block(f"<a>{text}</a>")
     assert p.number("a", 4.0) == 4.0

@@ -117,7 +117,7 @@ def test_an_entry_point_without_a_class_of_the_base_is_skipped_with_a_warning(
     monkeypatch.setattr("simkit.registry.entry_points_of", lambda group: points)
     assert [cls.__name__ for source in animals._foreign for cls in animals._classes(source)] == ["Dog"]
     (warning,) = caplog.messages
-    assert warning.startswith("entry point stray (json) of animals.nobody: <module 'json'")
+    assert warning.startswith("package json: entry point stray (json): <module 'json'")
     assert warning.endswith("is not a subclass of Animal")
 
 
@@ -160,16 +160,18 @@ def test_a_look_up_imports_no_class_of_other_packages_that_has_another_name(tmp_
     assert done.returncode == 0, done.stderr
 
 
-def test_two_packages_with_one_name_are_reported_when_all_classes_are_listed(
-    animals: Kinds[Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_a_class_of_another_package_with_a_taken_name_is_left_out_of_the_list_with_a_warning(
+    animals: Kinds[Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     (tmp_path / "animals" / "broken.py").unlink()
     (tmp_path / "wolves.py").write_text(DOG)
     points = [EntryPoint("dog", "wolves:Dog", "zoo")]
     monkeypatch.setattr("simkit.registry.entry_points_of", lambda group: points)
     assert animals["dog"].__module__ == "animals.dog", "simkit's own class comes first"
-    with pytest.raises(RuntimeError, match=r"'dog' is claimed by animals\.dog and by wolves"):
-        len(animals)
+    assert list(animals) == ["bird 0", "bird 1", "cat", "dog", "hound"]
+    assert animals["dog"].__module__ == "animals.dog"
+    place = f"package wolves: {tmp_path / 'wolves.py'}:11"
+    assert caplog.messages == [f"{place}: class Dog cannot have the name 'dog', 'hound' of animals.dog.Dog"]
 
 
 def test_a_class_that_another_module_defines_is_found_through_its_entry_point(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from dataclasses import fields
+import re
+from dataclasses import dataclass, fields
 from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any
@@ -16,16 +17,16 @@ from simkit.cli import app
 from simkit.cli.run_options import NONE_GIVEN, PARTS, GivenOptions, OfferedOptions, scenario_spec, with_run_options
 from simkit.diagnostics import LoadError
 from simkit.packs import installed_packs
-from simkit.run_fields import LOAD_FIELDS, CommandOption, RunField
+from simkit.run_fields import LOAD_FIELDS, CommandOption, RunField, described_fields, run_field
 from simkit.run_spec import RunSpec, run_fields
-from simkit.run_values import ParameterFiles, Text
-from simkit.testing.bundles import open_bundle
-from simkit.testing.bundles.bundle_staging import WorldStager
-from simkit.testing.bundles.manifest import Manifest, RunEnd, read_manifest
-from simkit.testing.certify.certification import with_absolute_paths
+from simkit.run_values import Number, ParameterFiles, Text
 from simkit.testing.golden.record_encoding import decode_scenario, encode_scenario
 from simkit.testing.scenarios.readable_files import ReadableFiles
 from simkit.testing.scenarios.scenario_file import read_scenario
+from simkit_verification.testing.bundles import open_bundle
+from simkit_verification.testing.bundles.bundle_staging import WorldStager
+from simkit_verification.testing.bundles.manifest import Manifest, RunEnd, read_manifest
+from simkit_verification.testing.certify.certification import with_absolute_paths
 
 BALL = """<sdf version="1.9"><world name="w"><model name="ball"><pose>0 0 5 0 0 0</pose><link name="l"><inertial><mass>1
 </mass></inertial><sensor name="imu" type="imu"><always_on>1</always_on><topic>/imu</topic><update_rate>50</update_rate>
@@ -43,6 +44,7 @@ PYTHON_OR_OBJECTS = {
     "recording": "--record with --force, of simkit run and simkit motion play alone",
     "change_world": "function of Python",
     "code_requests": "refusal that the user lifts by --plugin-path or --allow-code",
+    "diagnostics": "messages about the description itself",
 }
 """Fields of `RunSpec` without a description, with the reason."""
 
@@ -53,12 +55,16 @@ NO_OPTION = {
     "test": "written by the pytest fixture",
     "bits": "written by the pytest fixture",
     "interfaces": "every command has --interfaces",
+    "launch": "key of scenario files; the command is simkit launch",
+    "launch_arguments": "as launch",
+    "ros_parameters": "mapping, in a scenario file; a node has -p /NAME:=VALUE",
     "sleep": "from Python alone",
+    "start_controllers": "from Python alone; a launch file with spawners sets it",
     "render_thread": "from Python alone; it changes no bits",
 }
 """Described fields without an option, with the reason."""
 
-RUN_A_WORLD = ("run", "plot", "bench", "bundle", "certify", "golden record", "view", "motion play", "check")
+RUN_A_WORLD = ("run", "launch", "plot", "bench", "bundle", "certify", "golden record", "view", "motion play", "check")
 LOAD_A_WORLD = ("map", "graph", "bag video")
 """Commands that load a world and send nothing to it: the parts run and session do not apply."""
 RUN_A_STORED_RUN = {
@@ -161,6 +167,17 @@ def test_a_new_field_with_files_moves_with_the_run(folder: Path, monkeypatch: py
     assert refused == [("masks", 0)]
 
 
+def test_the_field_of_the_architecture_page_has_an_option_a_key_and_a_place_in_bundles() -> None:
+    page = (Path(__file__).resolve().parents[1] / "docs" / "architecture.md").read_text(encoding="utf-8")
+    lines = re.search(r"^    settle: .*?^    \)$", page, re.M | re.S)
+    assert lines is not None
+    names = {"dataclass": dataclass, "run_field": run_field, "Number": Number, "CommandOption": CommandOption}
+    exec(f"@dataclass\nclass Run:\n{lines[0]}\n", names)
+    settle = described_fields(names["Run"])["settle"]
+    assert settle.option is not None
+    assert (settle.option.name, settle.key, settle.packed, settle.is_stored) == ("--settle", "settle", "changed", True)
+
+
 def test_each_field_of_a_run_has_a_description_or_a_reason() -> None:
     described = run_fields()
     assert {one.name for one in fields(RunSpec)} - described.keys() == PYTHON_OR_OBJECTS.keys()
@@ -176,11 +193,23 @@ def test_every_command_that_runs_a_world_has_every_option_or_a_reason(line: str)
     missing = {
         name
         for name, one in run_fields().items()
-        if one.option is not None and name not in offered.names and not reasons & {name, one.option.part}
+        if one.option is not None
+        and name not in offered.names
+        and not reasons & {name, one.option.part, one.option.of_field}
     }
     assert not missing
     known = {*PARTS, *run_fields()}
     assert offered.without.keys() <= known and all(len(reason) > 10 for reason in offered.without.values())
+
+
+def test_a_command_without_a_field_has_no_option_that_belongs_to_the_field() -> None:
+    @with_run_options("run", without={"until": "the command runs to its end"})
+    def command(given: GivenOptions = NONE_GIVEN) -> None: ...
+
+    names = command.offered_options.names  # type: ignore[attr-defined]
+    assert "wall_timeout" in names and not {"until", "timeout"} & {*names}
+    described = run_fields()
+    assert {one.option.of_field for one in described.values() if one.option is not None} <= {"", *described}
 
 
 @pytest.mark.parametrize("line", RUN_A_STORED_RUN)

@@ -9,9 +9,9 @@ import pytest
 import simkit
 from simkit.cli.run_options import NONE_GIVEN, GivenOptions, scenario_spec
 from simkit.run_spec import Check, Recording, RunSpec
-from simkit.testing.bundles import keep, open_bundle, write_bundle
 from simkit.testing.scenarios.scenario_file import read_scenario
 from simkit.testing.scenarios.scenario_run import open_scenario, resolve_commands, run_scenario
+from simkit_verification.testing.bundles import keep, open_bundle, write_bundle
 
 BALL = """<sdf version="1.9"><world name="w"><model name="ball"><pose>0 0 5 0 0 0</pose><link name="l"><inertial><mass>1
 </mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial></link></model></world></sdf>"""
@@ -74,7 +74,7 @@ def test_a_bundle_has_seed_overrides_and_options(world: Path) -> None:
     with open_bundle(path) as bundle:
         spec = bundle.manifest.run_spec
     assert (spec.seed, spec.overrides) == (7, ("ball::l.inertial.mass=2",))
-    assert spec.options == {"base": "fixed", "sleep": True, "on_error": "disable"}
+    assert spec.options == {"base": "fixed", "sleep": True, "on_error": "disable", "start_controllers": True}
 
 
 def test_a_run_ends_at_its_timeout_else_its_duration(world: Path) -> None:

@@ -12,9 +12,12 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 MODULES = sorted([*ROOT.glob("simkit/**/*.py"), *ROOT.glob("packs/*/simkit_*/**/*.py")])
-PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("packs/**/*.md")])
+PAGES = sorted(
+    [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("packs/*/*.md"), *ROOT.glob("packs/*/docs/**/*.md")]
+)
 
 OPENINGS = re.compile(r"(What|Whether|Of|Who|Whose|Where|That|Which)\b")
+QUOTED_OPENINGS = re.compile(rf"[\"'](\\\n)?{OPENINGS.pattern}")
 METAPHORS = re.compile(r"\b(doors?|crews?|worn|promis(?:e|es|ed)|hearers?|audience)\b", re.IGNORECASE)
 HOUSE = re.compile(r"\b(in|of|the) (the )?house\b(?! (?:world|from))", re.IGNORECASE)
 HAS_REAL_DOORS = re.compile(r"elevator|packs/open_rmf/|rmf\.md|index\.md|movers\.md|catalogue\.md|CHANGELOG\.md")
@@ -54,13 +57,18 @@ def _name(path: Path) -> str:
 
 def test_no_docstring_begins_with_a_relative_word() -> None:
     """A function begins with a verb, a class or an attribute with a noun."""
-    found = [f"{_name(p)}:{line}: {text[:60]}" for p in MODULES for line, text in docstrings(p) if OPENINGS.match(text)]
+    candidates = [p for p in MODULES if QUOTED_OPENINGS.search(p.read_text(encoding="utf-8"))]  # the others are clean
+    found = [
+        f"{_name(p)}:{line}: {text[:60]}" for p in candidates for line, text in docstrings(p) if OPENINGS.match(text)
+    ]
     assert not found, "\n".join(found)
 
 
 def test_no_docstring_comment_or_page_has_a_metaphor() -> None:
     found = []
     for path in MODULES:
+        if not any(_metaphors(_name(path), path.read_text(encoding="utf-8"))):  # to parse all files takes seconds
+            continue
         for line, text in [*docstrings(path), *comments(path)]:
             found += [f"{_name(path)}:{line}: {word}" for word in _metaphors(_name(path), text)]
     for page in PAGES:

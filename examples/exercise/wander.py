@@ -6,8 +6,7 @@ import math
 
 import numpy as np
 
-from simkit import ModelPlugin, Params
-from simkit.runtime import Model
+from simkit import Model, ModelPlugin, Params
 
 AHEAD = math.radians(35.0)
 CLEAR = 0.55  # [m] ahead that is enough to drive on

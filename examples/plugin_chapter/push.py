@@ -5,8 +5,7 @@ simkit run push.sdf --plugin-path . --duration 2
 
 from __future__ import annotations
 
-from simkit import ModelPlugin, Params
-from simkit.runtime import Model
+from simkit import Model, ModelPlugin, Params
 
 
 class ModelPush(ModelPlugin):

@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from simkit import Params, Pose, SensorPlugin, Simulation, VisualPlugin, WorldPlugin, msgs
-from simkit.runtime import Visual
+from simkit import Params, Pose, SensorPlugin, Simulation, Visual, VisualPlugin, WorldPlugin, msgs
 
 
 class SunWalk(WorldPlugin):

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from simkit import ModelPlugin, Params, msgs
-from simkit.runtime import Model
+from simkit import Model, ModelPlugin, Params, msgs
 
 
 class ArmTuner(ModelPlugin):

@@ -12,8 +12,7 @@ import math
 
 import numpy as np
 
-from simkit import ModelPlugin, Params, Pose, msgs
-from simkit.runtime import Model
+from simkit import Model, ModelPlugin, Params, Pose, msgs
 
 
 class SolarCompass(ModelPlugin):

@@ -139,7 +139,7 @@ def main(arguments: list[str]) -> None:
     pictures: list[Any] = []
 
     def watch(sim: simkit.Simulation) -> None:
-        from simkit.sensors.cameras.overview_image import render_view
+        from simkit import render_view
 
         view = {"eye": (2.6, -3.0, 1.9), "target": (-0.15, 0.15, 0.66), "vertical_fov": 0.56}
         shadows = {"quality": "gazebo", "passes": 16, "lit": (np.array((0.2, 0.0, 0.5)), 2.0)}

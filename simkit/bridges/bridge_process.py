@@ -12,11 +12,13 @@ import time
 from collections import deque
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from importlib import import_module
 from pathlib import Path
 from typing import IO, Any, Final, NamedTuple, Self
 
 from simkit.errors import InputError
 from simkit.process_control import kill_process_tree
+from simkit.run_spec import JsonObject
 
 _START_TIMEOUT: Final = 60.0  # [s]; the first import of rclpy on a slow disk takes several seconds
 _END_TIMEOUT: Final = 5.0  # [s] for passing on the last messages
@@ -46,7 +48,8 @@ class BridgeProcess:
     Args:
         title: name of the bridge in messages, such as `bridge to ROS 2`.
         codes: diagnostic codes of the bridge.
-        program: module with the function `main`, which receives the settings in the process.
+        program: module of simkit or of a pack with the function `main`, which receives the settings in the process.
+            The Python of the process need not have its package installed.
         settings: settings of the program, as JSON.
         report: callback for a line to the user.
         python: Python of the process; None for the Python of this process.
@@ -58,7 +61,7 @@ class BridgeProcess:
         title: str,
         codes: BridgeCodes,
         program: str,
-        settings: Mapping[str, Any],
+        settings: Mapping[str, object],
         report: Callable[[str], None],
         python: Path | None = None,
         environment: Mapping[str, str] | None = None,
@@ -67,9 +70,9 @@ class BridgeProcess:
         self._report, self._python, self._environment = report, python, environment
         self._process: subprocess.Popen[bytes] | None = None
         self._readers: list[threading.Thread] = []
-        self._lines: queue.SimpleQueue[dict[str, Any]] = queue.SimpleQueue()
+        self._lines: queue.SimpleQueue[JsonObject] = queue.SimpleQueue()
         self._errors: deque[str] = deque(maxlen=20)
-        self._last: dict[str, Any] = {}
+        self._last: JsonObject = {}
         self._is_over = False
         self._period_start: float | None = None
         self._note_count = 0
@@ -91,9 +94,11 @@ class BridgeProcess:
             InputError: the bridge cannot start; the message has the reason.
         """
         python, settings = self._python or sys.executable, {"socket": str(socket), **self._settings}
+        package = import_module(self._program.partition(".")[0])
+        folder = Path(str(package.__file__)).resolve().parent
         try:
             self._process = process = subprocess.Popen(
-                [str(python), "-P", str(Path(__file__).parent / "bridge_main.py"), self._program],
+                [str(python), "-P", str(Path(__file__).parent / "bridge_main.py"), self._program, str(folder)],
                 stdin=subprocess.PIPE,  # settings, which may contain a token; the pipe closes when this process ends
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
@@ -125,7 +130,7 @@ class BridgeProcess:
                 raise self.start_error(f"the bridge is not ready after {_START_TIMEOUT:g} s")
         self._report(self._ready_text(self._last["ready"]))
 
-    def _ready_text(self, found: Any) -> str:
+    def _ready_text(self, line: Any) -> str:
         """Return the line for the user about a bridge that is open."""
         raise NotImplementedError
 
@@ -135,10 +140,9 @@ class BridgeProcess:
 
     def start_error(self, reason: str) -> InputError:
         """Return the error for a bridge that cannot start."""
-        helps = self._start_help(reason)
-        code, suffix = self._codes.cannot_start, f"\n    help: {helps}" if helps else ""
         python = f" with {self._python}" if self._python else ""
-        return InputError(f"{code} the {self._title} cannot start{python}: {reason}{suffix}", code)
+        text = f"the {self._title} cannot start{python}: {reason}"
+        return InputError(self._codes.cannot_start, text, help=self._start_help(reason))
 
     def check(self) -> None:
         """Report new notes of a bridge whose run continues, and once the end of the process."""
@@ -187,19 +191,19 @@ class BridgeProcess:
 
     def _take_line(self, line: str) -> None:
         try:
-            found = json.loads(line)
+            note = json.loads(line)
         except ValueError:
             return
-        if isinstance(found, dict):
-            self._lines.put(found)
+        if isinstance(note, dict):
+            self._lines.put(note)
 
     def _report_notes(self) -> None:
         """Process the lines that have arrived."""
         while not self._lines.empty():
-            found = self._lines.get()
-            self._last.update(found)
-            if "note" in found:
-                self._report_note(str(found["note"]))
+            line = self._lines.get()
+            self._last.update(line)
+            if "note" in line:
+                self._report_note(str(line["note"]))
         self._report_omitted(time.monotonic() - _NOTE_PERIOD)
 
     def _report_note(self, text: str) -> None:

@@ -9,13 +9,12 @@ from __future__ import annotations
 import json
 import signal
 from collections.abc import Callable
-from typing import Any
 
 from simkit.bridges.live.protocol import LiveClosed, LiveError
 from simkit.child_process import exit_with_parent
 
 
-def tell(**words: Any) -> None:
+def tell(**words: object) -> None:
     """Write a line to the process that started the bridge."""
     print(json.dumps(words), flush=True)  # noqa: T201 - this is the protocol of the process
 

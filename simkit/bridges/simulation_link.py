@@ -32,8 +32,8 @@ def text_message(text: str) -> bytes:
 def robot_descriptions(graph: JsonObject) -> dict[str, str]:
     """Return the topics for the URDF of every robot, and the topic of the first one without a name, with the robots."""
     robots: list[str] = graph["robots"]
-    found = {f"/{name}/robot_description": name for name in robots}
-    return {**found, "/robot_description": robots[0]} if robots else found
+    robot_by_topic = {f"/{name}/robot_description": name for name in robots}
+    return {**robot_by_topic, "/robot_description": robots[0]} if robots else robot_by_topic
 
 
 def _ignore(*_: object) -> None:
@@ -47,15 +47,16 @@ class SimulationLink(ServerLink):
         path: path of the simulation's socket.
         report: callback for a note to the user.
         name: name of the bridge in the simulation's node lists.
+        is_bridge: False for a client whose services and actions are its own.
     """
 
-    def __init__(self, path: Path, report: Callable[[str], None], name: str = "ros") -> None:
+    def __init__(self, path: Path, report: Callable[[str], None], name: str = "ros", *, is_bridge: bool = True) -> None:
         self._report, self._pending = report, dict[int, tuple[Then, Failed]]()
         self._invalid: set[str] = set()
         super().__init__(path, node=name)
         self.timeout = _ANSWER_TIMEOUT
         self._socket.settimeout(_ANSWER_TIMEOUT)
-        self.request("node", {"name": name, "is_bridge": True})
+        self.info["node"] = self.request("node", {"name": name, "is_bridge": is_bridge, "skips_own": True})[0]
 
     @property
     def node(self) -> str:

@@ -68,7 +68,7 @@ def find_target(sim: Simulation, requested: str = "") -> TeleopTarget:
         if topic not in owners:
             known = f"velocity topics: {', '.join(owners)}" if owners else "the world has no velocity topic"
             hint = did_you_mean(topic, owners) or known
-            raise InputError(f"SK-CLI-051 --teleop: {topic!r} has no subscriber of velocities; {hint}", "SK-CLI-051")
+            raise InputError("SK-CLI-051", f"--teleop: {topic!r} has no subscriber of velocities; {hint}")
     else:
         topic = _choose_topic(owners)
     return _describe_target(sim, topic, owners[topic])
@@ -76,13 +76,13 @@ def find_target(sim: Simulation, requested: str = "") -> TeleopTarget:
 
 def find_targets(sim: Simulation) -> list[TeleopTarget]:
     """Return all robots that can be driven: one topic of each drive plugin, with `/cmd_vel` first."""
-    found: dict[int, tuple[str, object]] = {}
+    topic_by_owner: dict[int, tuple[str, object]] = {}
     for topic, endpoint, types, role in sim.communication.bus.endpoints():
         if role == "takes" and endpoint.active and any(type_name in TWISTS for type_name in types):
-            known = found.setdefault(id(endpoint.owner), (topic, endpoint.owner))
+            known = topic_by_owner.setdefault(id(endpoint.owner), (topic, endpoint.owner))
             if topic == "/cmd_vel" != known[0]:
-                found[id(endpoint.owner)] = (topic, endpoint.owner)
-    targets = [_describe_target(sim, topic, owner) for topic, owner in found.values()]
+                topic_by_owner[id(endpoint.owner)] = (topic, endpoint.owner)
+    targets = [_describe_target(sim, topic, owner) for topic, owner in topic_by_owner.values()]
     return sorted(targets, key=lambda target: target.topic != "/cmd_vel")
 
 
@@ -91,13 +91,13 @@ def _choose_topic(owners: dict[str, object]) -> str:
         return "/cmd_vel"
     if not owners:
         raise InputError(
-            "SK-CLI-051 --teleop: the world has no velocity topic (Twist or TwistStamped)\n"
-            "    help: add a robot with a drive plugin, such as --spawn turtlebot3_burger",
             "SK-CLI-051",
+            "--teleop: the world has no velocity topic (Twist or TwistStamped)",
+            help="add a robot with a drive plugin, such as --spawn turtlebot3_burger",
         )
     if len({id(owner) for owner in owners.values()}) > 1:
-        text = f"SK-CLI-051 --teleop: several robots have velocity topics: {', '.join(owners)}"
-        raise InputError(f"{text}\n    help: choose one with --teleop {next(iter(owners))}", "SK-CLI-051")
+        text = f"--teleop: several robots have velocity topics: {', '.join(owners)}"
+        raise InputError("SK-CLI-051", text, help=f"choose one with --teleop {next(iter(owners))}")
     return next(iter(owners))  # all topics belong to one drive plugin
 
 
@@ -126,9 +126,9 @@ def _speed_limits(model: Model | None, topic: str, owner: object) -> tuple[Bound
     They are the limits of the drive plugin. If it has none, they are those of a TurtleBot3; other robots have no limit.
     """
     speed_bounds = getattr(owner, "speed_bounds", None)
-    found: tuple[Bounds, Bounds] | None = None if speed_bounds is None else speed_bounds(topic)
-    if found is not None and any(math.isfinite(bound) for bounds in found for bound in bounds):
-        return found
+    limits: tuple[Bounds, Bounds] | None = None if speed_bounds is None else speed_bounds(topic)
+    if limits is not None and any(math.isfinite(bound) for bounds in limits for bound in bounds):
+        return limits
     most = None if model is None else _turtlebot3_limits(model)
     return (_UNLIMITED, _UNLIMITED) if most is None else ((-most[0], most[0]), (-most[1], most[1]))
 

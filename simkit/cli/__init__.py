@@ -64,10 +64,10 @@ def _exit_code(error: Exception) -> int:
     try:
         from simkit.cli.terminal.output import known_error, print_error
 
-        found = known_error(error)
-        if found is not None:
-            print_error(found)
-            return found.exit_code
+        simkit_error = known_error(error)
+        if simkit_error is not None:
+            print_error(simkit_error)
+            return simkit_error.exit_code
     except MemoryError:  # not even the message can be made
         os.write(2, b"error: SK-CORE-008 too little memory\n")
         return 1

@@ -10,12 +10,14 @@ import typer
 from typer import Option
 
 from simkit.cli.bag_record import record
-from simkit.cli.bag_video import video
 from simkit.cli.plot_sources import PlotRequest, draw_chart, is_bag, split_sources_and_fields
-from simkit.cli.terminal import options
+from simkit.cli.run_loop import Interrupts
+from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
+from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.options import argument, option, validate_word
 from simkit.cli.terminal.output import (
     absolute_name,
+    print_diagnostics,
     print_json,
     print_line,
     print_name,
@@ -97,6 +99,46 @@ def export(
 
 
 @report_errors_quietly
+@with_run_options("file", "world", usual={"model_world": "empty space"})
+def video(
+    recording: options.Recording,
+    world: Annotated[str, argument("World of the recorded run.", "WORLD", completion.worlds)],
+    output: Annotated[Path, option("Film to write: OUT.mp4, OUT.webm or OUT.gif.", "OUT", "--output", "-o")] = Path(
+        "bag.mp4"
+    ),
+    resolution: options.Resolution = None,
+    fps: options.Fps = None,
+    camera: options.FilmCamera = "auto",
+    start: options.Start = None,
+    end: options.End = None,
+    given: GivenOptions = NONE_GIVEN,
+    json_: options.Json = False,
+) -> int:
+    """Film a bag: its poses or odometry, joint states and scans, drawn in its world."""
+    from simkit.build import load
+    from simkit.recording.bags.reader import open_bag_to_read
+    from simkit.recording.films.film import film_bag, film_options
+    from simkit.sensors.cameras.overview_image import render_view
+    from simkit.sensors.cameras.renderer_choice import check_available
+
+    is_gif = output.suffix.lower() == ".gif"
+    film = film_options(output if is_gif else None, None if is_gif else output, resolution, fps, camera)
+    assert film is not None
+    with open_bag_to_read(recording) as bag, Interrupts() as interrupts:
+        with load(world, **given.load_arguments()) as sim:
+            check_available(sim)
+            print_diagnostics(sim.diagnostics, verbose=False)
+            count, moved = film_bag(sim, bag, film, render_view, (start, end), lambda: interrupts.exit_code != 0)
+        if not moved:
+            print_note(f"note: {recording} moves no model of {world}: it has no odometry or poses of its models")
+    if json_:
+        print_json({"output": str(output), "frames": count, "models": sorted(moved)})
+    else:
+        print_line(f"{output}: {count} frames, {float(film.frame_rate):g} per second")
+    return interrupts.exit_code
+
+
+@report_errors_quietly
 def play(
     recording: options.Recording,
     topics: Annotated[
@@ -121,7 +163,7 @@ def play(
         selected = [absolute_name(t) for t in topics] or _input_topics(client, bag_topics, names)
         if not selected:
             text = f"the world subscribes to no topic of {recording}; choose topics with --topics"
-            raise InputError(f"SK-CLI-030 {text}", "SK-CLI-030")
+            raise InputError("SK-CLI-030", text)
         for unknown in [t for t in selected if t not in bag_topics][:1]:
             next(reader.messages([unknown]))
         reader.define_types(selected)
@@ -141,13 +183,13 @@ def play(
 
 
 def _parse_remappings(pairs: list[str]) -> dict[str, str]:
-    found = {}
+    new_by_old = {}
     for text in pairs:
         old, sign, new = text.partition(":=")
         if not sign or not old or not new:
-            raise InputError(f"SK-CLI-018 --remap: found {text!r}; expected OLD:=NEW", "SK-CLI-018")
-        found[absolute_name(old)] = absolute_name(new)
-    return found
+            raise InputError("SK-CLI-018", f"--remap: found {text!r}; expected OLD:=NEW")
+        new_by_old[absolute_name(old)] = absolute_name(new)
+    return new_by_old
 
 
 def _input_topics(client: Client, topics: list[str], names: dict[str, str]) -> list[str]:
@@ -222,10 +264,12 @@ def recover(
     from simkit.recording.bags.recovery import recover_bag
 
     target = output or recovered or broken.with_name(f"{broken.stem}_recovered{broken.suffix}")
-    found = recover_bag(broken, target, overwrite=force)
-    for line in found.loss_lines()[:_LOSSES_LISTED]:
+    recovery = recover_bag(broken, target, overwrite=force)
+    for line in recovery.loss_lines()[:_LOSSES_LISTED]:
         print_note(f"note: {line}")
-    if len(found.losses) > _LOSSES_LISTED:
-        print_note(f"note: {len(found.losses) - _LOSSES_LISTED} more damaged parts")
-    span = (found.end - found.start) * 1e-9
-    print_line(f"{target}: {found.messages} messages on {found.topics} topics over {span:.3f} s ({found.state})")
+    if len(recovery.losses) > _LOSSES_LISTED:
+        print_note(f"note: {len(recovery.losses) - _LOSSES_LISTED} more damaged parts")
+    span = (recovery.end - recovery.start) * 1e-9
+    print_line(
+        f"{target}: {recovery.messages} messages on {recovery.topics} topics over {span:.3f} s ({recovery.state})"
+    )

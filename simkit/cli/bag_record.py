@@ -11,8 +11,7 @@ from typer import Option
 
 from simkit.cli.run_loop import Interrupts
 from simkit.cli.terminal import completion, options
-from simkit.cli.terminal.message_arguments import compile_pattern
-from simkit.cli.terminal.options import argument, option
+from simkit.cli.terminal.options import argument, compile_pattern, option
 from simkit.cli.terminal.output import absolute_name, print_json, print_note, report_errors_quietly
 from simkit.cli.terminal.topic_sources import LiveSource, connect_to_simulation
 from simkit.diagnostics import did_you_mean
@@ -59,7 +58,7 @@ def record(
         named, all_, compile_pattern(regex, "--regex"), compile_pattern(exclude, "--exclude-regex"), hidden
     )
     if storage != "mcap":
-        raise InputError(f"SK-CLI-018 --storage: found {storage!r}; expected mcap", "SK-CLI-018")
+        raise InputError("SK-CLI-018", f"--storage: found {storage!r}; expected mcap")
     target = output or Path(time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
     with connect_to_simulation(sim) as client:
         recording = _Recording(LiveSource(client), selection, duration)
@@ -92,7 +91,7 @@ class _TopicSelection:
     ) -> None:
         if not named and not all_ and regex is None:
             text = "no topics to record; give names, --all or --regex"
-            raise InputError(f"SK-CLI-018 {text}", "SK-CLI-018")
+            raise InputError("SK-CLI-018", text)
         self._named, self._all, self._regex, self._exclude, self._hidden = set(named), all_, regex, exclude, hidden
         self.named = named
 
@@ -126,8 +125,8 @@ class _Recording:
 
     def lost_by_topic(self) -> dict[str, int]:
         """Return the number of dropped messages of each topic that has lost any, the largest number first."""
-        found = {topic: count for feed in self._feeds for topic, count in feed.lost_by_topic().items() if count}
-        return dict(sorted(found.items(), key=lambda item: -item[1]))
+        lost = {topic: count for feed in self._feeds for topic, count in feed.lost_by_topic().items() if count}
+        return dict(sorted(lost.items(), key=lambda item: -item[1]))
 
     def run(self, bag: McapBag, stop: Interrupts) -> None:
         """Record until the end of the simulation, the end of the duration or Ctrl-C."""
@@ -178,22 +177,22 @@ class _Recording:
         if not self._feeds:
             time.sleep(wait)
             return []
-        found: list[ReceivedMessage] = []
+        messages: list[ReceivedMessage] = []
         size = 0
         for number, feed in enumerate(self._feeds):
             while size < _BATCH_BYTES:
-                received = feed.take(wait if number == 0 and not found else 0.0)
+                received = feed.take(wait if number == 0 and not messages else 0.0)
                 if received is None:
                     break
-                found.append(received)
+                messages.append(received)
                 size += len(received.data)
             if feed.is_over:
                 break
         for feed in self._feeds if any(f.is_over for f in self._feeds) else ():
             feed.is_over = True
             while (received := feed.take(0.0)) is not None:
-                found.append(received)
-        return sorted(found, key=lambda r: int(r.time_ns))
+                messages.append(received)
+        return sorted(messages, key=lambda r: int(r.time_ns))
 
     def subscribe(self) -> None:
         """Subscribe to new topics of the selection."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from typer import Option
 
@@ -11,6 +11,9 @@ from simkit.cli.terminal import options
 from simkit.cli.terminal.json_report import add_to_report, report_errors_and_json
 from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import stdout_console
+
+if TYPE_CHECKING:
+    from simkit.cli.bench_figures import Figure
 
 _HOUR = 3600.0
 
@@ -38,9 +41,10 @@ def bench(
     from simkit.cli.bench_figures import compare_with_bare_mujoco, measure_import_time, measure_memory_growth
 
     spec = given.run_spec(world)
-    stdout_console().print(f"{'':<52}{'simkit':>12}{'bare':>12}{'ratio':>8}{'goal':>8}")
-    figures = []
+    figures: list[Figure] = []
     for figure in compare_with_bare_mujoco(spec, rounds=rounds):
+        if not figures:  # after the load, whose errors need no table
+            stdout_console().print(f"{'':<52}{'simkit':>12}{'bare':>12}{'ratio':>8}{'goal':>8}")
         figures.append(figure)
         bare = "" if figure.bare is None else f"{figure.bare * 1e6:.1f} µs"
         ratio = "" if figure.ratio is None else f"{figure.ratio:.2f}"

@@ -122,13 +122,13 @@ class BareCamera:
 
 def _upload(model: mujoco.MjModel, quality: Quality) -> mujoco.MjrContext:
     """Create MuJoCo's context with the multisampling and the shadow map size of the simulation's cameras."""
-    own = model.vis.quality
-    original = own.offsamples, own.shadowsize
-    own.offsamples, own.shadowsize = quality.samples, quality.shadow_map
+    settings = model.vis.quality
+    original = settings.offsamples, settings.shadowsize
+    settings.offsamples, settings.shadowsize = quality.samples, quality.shadow_map
     try:
         context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100)
     finally:
-        own.offsamples, own.shadowsize = original
+        settings.offsamples, settings.shadowsize = original
     context.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR
     return context
 
@@ -214,7 +214,7 @@ class HandWrittenLoop(BareEngine):
         return lambda: (self.data.time, self.data.xpos[self._root].copy(), self.data.xquat[self._root].copy())
 
     def _imu(self, sensor: Sensor) -> Callable[[], object]:
-        model, data, body = self.model, self.data, sensor._body
+        model, data, body = self.model, self.data, int(self._sim.engine.names.link(sensor.scene.parent).body)
         twist, change = np.zeros(6), np.zeros(6)
         object_type = mujoco.mjtObj.mjOBJ_XBODY
 
@@ -229,7 +229,7 @@ class HandWrittenLoop(BareEngine):
 
     def _scan(self, sensor: Lidar) -> Callable[[], object]:
         cast = cast_bare_scan(sensor, self.model, self.data)
-        options, count = sensor.options, sensor._fan.count
+        options, count = sensor.options, sensor.fan.count
 
         def read() -> object:
             ranges = cast()
@@ -252,14 +252,16 @@ def cast_bare_scan(sensor: Lidar, model: mujoco.MjModel, data: mujoco.MjData) ->
     The rays have the same origin, geom groups and excluded body as the lidar's. The function returns the distances [m],
     shape (n,).
     """
-    fan = sensor._fan
+    fan = sensor.fan
     ids, distances, rotated = np.zeros(fan.count, np.int32), np.zeros(fan.count), np.zeros((fan.count, 3))
     origin, rotation = (np.array(part) for part in sensor._frame_in_world(data))
     np.matmul(fan.directions, rotation.T, out=rotated)
-    flat, own = rotated.reshape(-1), fan.body or -1
+    flat, excluded_body = rotated.reshape(-1), fan.body or -1
 
     def scan() -> Numbers:
-        mujoco.mj_multiRay(model, data, origin, flat, fan.groups, 1, own, ids, distances, None, fan.count, fan.reach)
+        mujoco.mj_multiRay(
+            model, data, origin, flat, fan.groups, 1, excluded_body, ids, distances, None, fan.count, fan.reach
+        )
         return distances
 
     return scan

@@ -160,7 +160,7 @@ def measure_memory_growth(sim: Simulation, duration: float) -> float:
 
 def _topics_without_images(sim: Simulation) -> set[str]:
     """Return the topics that need no rendering. Bounding boxes of a camera, for example, need rendering."""
-    drawn = {t for s in sim.contents.sensors.values() if isinstance(s, RenderedCamera) for t in s._topics.values()}
+    drawn = {t for s in sim.contents.sensors.values() if isinstance(s, RenderedCamera) for t in s.topics.values()}
     return {topic for topic, type_name in sim.communication.bus.topics().items() if type_name not in _CAMERAS} - drawn
 
 
@@ -235,8 +235,8 @@ def compare_sensor(sim: Simulation, sensor: Sensor, rounds: int) -> Figure:
     A scan is compared with its bare rays, an image of OpenGL with one bare rendering pass. Images have no noise here,
     and point clouds are not built.
     """
-    clouds = [p for p, product in sensor._products.items() if product.type_name == "sensor_msgs/msg/PointCloud2"]
-    taps = [sim.communication.bus.tap(t, _ignore_message) for p, t in sensor._topics.items() if p not in clouds]
+    topics = [t for p, t in sensor.topics.items() if sensor.product_type(p) != "sensor_msgs/msg/PointCloud2"]
+    taps = [sim.communication.bus.tap(topic, _ignore_message) for topic in topics]
     sim.engine.physics.fresh_accelerations()
     name, aim = f"{sensor.kind} {sensor.scoped}", None
     bare: Callable[[], object] | None = None

@@ -52,44 +52,44 @@ def check(
     if fix_inertia:
         return _fix_inertia(file, output, force, given.source_options().get("resource_paths", ()), json_)
     if output is not None:
-        raise InputError("SK-CLI-018 --output needs --fix-inertia", "SK-CLI-018")
-    found = list(check_file(file, **given.load_arguments()))
+        raise InputError("SK-CLI-018", "--output needs --fix-inertia")
+    diagnostics = list(check_file(file, **given.load_arguments()))
     if json_:
-        stdout_console().file.write(json.dumps([d.as_dict() for d in found], indent=2) + "\n")
+        stdout_console().file.write(json.dumps([d.as_dict() for d in diagnostics], indent=2) + "\n")
     else:
-        print_diagnostics(found, verbose=True, console=stdout_console(), every=every)
-        stdout_console().print(_counts(found))
+        print_diagnostics(diagnostics, verbose=True, console=stdout_console(), every=every)
+        stdout_console().print(_counts(diagnostics))
     bad = {"error", "warning"} if strict else {"error"}
-    return 2 if any(d.severity in bad for d in found) else 0
+    return 2 if any(d.severity in bad for d in diagnostics) else 0
 
 
-def _counts(found: Sequence[Diagnostic]) -> str:
-    counts = Counter(d.severity for d in found)
+def _counts(diagnostics: Sequence[Diagnostic]) -> str:
+    counts = Counter(d.severity for d in diagnostics)
     return ", ".join(f"{counts[s]} {s}{'' if counts[s] == 1 else 's'}" for s in ("error", "warning", "note"))
 
 
 def _fix_inertia(file: str, output: Path | None, force: bool, resource_paths: Sequence[FilePath], json_: bool) -> int:
     from simkit.writers.fix_inertia import find_inertia_fixes
 
-    found = find_inertia_fixes(Path(file), resource_paths)
+    result = find_inertia_fixes(Path(file), resource_paths)
     if output is not None:
         check_file(output, overwrite=force)
     if json_:
         fixes = [
             {"file": str(f.file), "line": f.line, "link": f.link, "mass": f.mass, "old": f.before, "new": f.numbers,
              "moments_old": f.old, "moments_new": f.new, "why": f.why}
-            for f in found.fixes
+            for f in result.fixes
         ]  # fmt: skip
         stdout_console().file.write(json.dumps(fixes, indent=2) + "\n")
     else:
-        for fix in found.fixes:
+        for fix in result.fixes:
             stdout_console().print(str(fix))
-        for problem in found.problems:
+        for problem in result.problems:
             stdout_console().print(problem)
-        stdout_console().print(f"{len(found.fixes)} impossible inertias")
+        stdout_console().print(f"{len(result.fixes)} impossible inertias")
     if output is not None:
-        count = found.write(output)
-        rest = f"; {len(found.elsewhere)} are in other files" if found.elsewhere else ""
+        count = result.write(output)
+        rest = f"; {len(result.elsewhere)} are in other files" if result.elsewhere else ""
         if not json_:
             stdout_console().print(f"{output}: {count} links changed{rest}")
     return 0

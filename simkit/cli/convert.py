@@ -47,8 +47,8 @@ def convert(
     elif ending in (".xml", ".mjcf"):
         count = _to_mjcf(file, output, source, strict=strict, force=force, verbose=verbose)
     else:
-        found = f"found the ending {output.suffix!r}; expected .xml, .mjcf, .sdf or .world"
-        raise InputError(f"SK-CLI-018 --output {output}: {found}", "SK-CLI-018")
+        text = f"found the ending {output.suffix!r}; expected .xml, .mjcf, .sdf or .world"
+        raise InputError("SK-CLI-018", f"--output {output}: {text}")
     stdout_console().print(f"{output}" + (f" and {count} files in {output.stem}_assets" if count else ""))
 
 
@@ -76,8 +76,8 @@ def _to_sdf(
     from simkit.build import read_scene
     from simkit.writers.asset_folder import write_sdf
 
-    scene, found = read_scene(file, missing_meshes=keep_uris, **source)
-    lost = Diagnostics(found)
+    scene, diagnostics = read_scene(file, missing_meshes=keep_uris, **source)
+    lost = Diagnostics(diagnostics)
     lost.raise_if_errors(strict)
     written = write_sdf(scene, output, lost, keep_uris=keep_uris, overwrite=force)
     print_diagnostics(lost, verbose=verbose)

@@ -1,6 +1,7 @@
 """Catalogue of diagnostic codes: reads them from `diagnostic_codes/<area>.toml` and formats them as text.
 
-A pack has its own areas in the folder `cli/diagnostic_codes` of its package.
+A pack has its own areas in the folder `cli/diagnostic_codes` of its package. It may also add codes to an area of the
+core, in a file with the name of this area and without a title.
 
 `simkit explain` prints codes. `python -m simkit.cli.diagnostic_catalogue > docs/diagnostics.md` writes the page of all
 codes. A test runs every example. A code keeps its meaning for ever and is never reused.
@@ -11,17 +12,20 @@ It has one table for each code, with the attributes of `Code`. A binary file of 
 
 from __future__ import annotations
 
+import re
 import sys
 import tomllib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from copy import deepcopy
+from dataclasses import dataclass, field, fields
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
 from typing import Literal
 
-from simkit.cli.terminal.output import JsonObject
-from simkit.packs import pack_folders
+from simkit.cli.terminal.output import JsonObject, JsonValue
+from simkit.diagnostics import did_you_mean
+from simkit.packs import foreign_packs, pack_folders, warn_of_pack
 
 Kind = Literal["xml", "command", "python"]
 
@@ -37,12 +41,13 @@ A test runs every example.
 
 | severity | |
 |---|---|
-| error | the input cannot be used; exit code 2 |
+| error | the input cannot be used; exit code 2; a sensor or plugin with errors is left out instead (SK-LOAD-013) |
 | warning | a part of the input has no effect, or a different effect than written; an error with `--strict` |
 | note | a conversion that keeps the meaning as closely as MuJoCo can represent it |
 | stop | the reason why a run ended, not a problem of a file; the row gives the exit code |
 """
 _LAST = sys.maxsize
+_SEVERITIES = frozenset(("error", "warning", "note", "stop"))
 _LANGUAGE_OF_KIND = {"xml": "xml", "command": "sh", "python": "python"}
 _LANGUAGE_OF_ENDING = {
     "py": "python",
@@ -115,7 +120,8 @@ def code_text(code: Code) -> str:
     if code.helps:
         lines.append(f"  help: {code.helps}")
     if code.example is None:
-        lines.append(f"  no example: {code.without}")
+        if code.without:
+            lines.append(f"  no example: {code.without}")
         return "\n".join(lines)
     for title, text in _example_files(code.example):
         lines += ["", f"  {title}", *(f"    {line}" for line in text.rstrip("\n").splitlines())]
@@ -133,18 +139,85 @@ def _area_names() -> list[str]:
 
 
 @cache
-def _area_files() -> dict[str, Path]:
-    """Return the file of each area by its name. Packs cannot replace an area of the core."""
-    folders = (*map(Path, reversed(pack_folders("cli/diagnostic_codes"))), _FOLDER)
-    return {path.stem.upper(): path for folder in folders for path in folder.glob("*.toml")}
+def _area_files() -> dict[str, list[Path]]:
+    """Return the files of each area by its name: first that of the core."""
+    files: dict[str, list[Path]] = {}
+    for folder in (_FOLDER, *map(Path, pack_folders("cli/diagnostic_codes"))):
+        for path in folder.glob("*.toml"):
+            files.setdefault(path.stem.upper(), []).append(path)
+    return files
 
 
 @cache
 def _area(name: str) -> Area:
-    """Read the file of one area."""
-    table = tomllib.loads(_area_files()[name].read_text(encoding="utf-8"))
-    title, position = table.pop("title"), table.pop("position", _LAST)
-    return Area(name, title, position, {code: _code(code, entry) for code, entry in sorted(table.items())})
+    """Read the files of one area. Packs cannot replace a code of the core.
+
+    A fault in a file of a pack of others causes a warning; the codes with faults are left out.
+    """
+    title, position, codes = "", _LAST, dict[str, Code]()
+    for path in _area_files()[name]:
+        package = _foreign_package(path)
+        if package is None:
+            table = tomllib.loads(path.read_text(encoding="utf-8"))
+        else:
+            table = _checked_table(path, package, has_title=bool(title))
+        title, position = title or table.pop("title", name), table.pop("position", position)
+        codes = {**{code: _code(code, entry) for code, entry in table.items()}, **codes}
+    return Area(name, title, position, dict(sorted(codes.items())))
+
+
+def _foreign_package(path: Path) -> str | None:
+    """Return the package of the pack of others that has a file; None for a file of simkit."""
+    return next((pack.package for pack in foreign_packs() if path.is_relative_to(pack.folder)), None)
+
+
+def _checked_table(path: Path, package: str, *, has_title: bool) -> JsonObject:
+    """Read a file of a pack of others, and leave out, with a warning, what is wrong in it."""
+    try:
+        text = path.read_text(encoding="utf-8")
+        table = tomllib.loads(text)
+    except (OSError, ValueError) as error:
+        warn_of_pack(package, f"{path}: {error}")
+        return {}
+    heads = {"title": str, "position": int}
+    faults = {key: "" if isinstance(table[key], kind) else "wrong type" for key, kind in heads.items() if key in table}
+    if "title" not in table and not has_title:
+        warn_of_pack(package, f'{path}: the area has no title; write title = "..." in the first line')
+    faults |= {name: _fault_of_code(name, path, entry) for name, entry in table.items() if name not in heads}
+    lines = text.splitlines()
+    for name, fault in faults.items():
+        if fault:
+            starts = (number for number, line in enumerate(lines, 1) if line.startswith((f"[{name}]", name)))
+            warn_of_pack(package, f"{path}:{next(starts, 1)}: {name}: {fault}; it is left out")
+            del table[name]
+    return table
+
+
+def _fault_of_code(name: str, path: Path, entry: JsonValue) -> str:
+    """Return what is wrong in the table of a code of a pack of others; empty if nothing is."""
+    if not re.fullmatch(rf"SK-{path.stem.upper()}-\d{{3}}", name):
+        return f"expected a code SK-{path.stem.upper()}-NNN"
+    if not isinstance(entry, dict):
+        return "expected a table"
+    known = {each.name for each in fields(Code)} - {"code"}
+    for key, value in entry.items():
+        if key not in known:
+            return f"unknown key {key!r}; {did_you_mean(key, known) or 'known: ' + ', '.join(sorted(known))}"
+        if not isinstance(value, dict if key == "example" else str):
+            return f"{key!r} has the wrong type"
+    missing = [key for key in ("severity", "meaning") if key not in entry]
+    if missing:
+        return f"{missing[0]!r} is missing"
+    wrong = set(entry["severity"].split(", ")) - _SEVERITIES
+    if wrong:
+        return f"severity {sorted(wrong)[0]!r}; expected {', '.join(sorted(_SEVERITIES))}"
+    try:
+        example = _code(name, deepcopy(entry)).example
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
+        return f"example: {type(error).__name__}: {error}"
+    if example is not None and (example.kind not in _LANGUAGE_OF_KIND or not isinstance(example.text, str)):
+        return f"example: kind {example.kind!r}; expected {', '.join(_LANGUAGE_OF_KIND)} and a text"
+    return ""
 
 
 def _code(name: str, entry: JsonObject) -> Code:
@@ -188,7 +261,8 @@ def _entry(code: Code) -> Iterator[str]:
     yield f"### {code.code}\n"
     yield f"{code.severity}: {code.meaning}." + (f" What helps: {code.helps}." if code.helps else "") + "\n"
     if code.example is None:
-        yield f"No example: {code.without}.\n"
+        if code.without:
+            yield f"No example: {code.without}.\n"
         return
     files = _example_files(code.example)
     for position, (title, text) in enumerate(files):

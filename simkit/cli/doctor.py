@@ -9,7 +9,6 @@ import subprocess
 import sys
 from importlib.metadata import PackageNotFoundError, distribution, version
 from pathlib import Path
-from typing import Any
 
 from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
 from simkit.cli.terminal import options
@@ -18,6 +17,7 @@ from simkit.cli.terminal.output import stdout_console
 from simkit.install_command import install_command
 from simkit.mujoco_import import REINSTALL
 from simkit.name_conflict import find_conflict
+from simkit.run_spec import JsonObject
 from simkit.version import __version__
 
 _PACKAGES = (
@@ -92,17 +92,17 @@ def doctor(
     software renderer draws there.
     """
     requested = given.values.get("renderer", "auto")
-    found: dict[str, str] = {}
+    facts: dict[str, str] = {}
     notes = list(filter(None, [find_conflict()]))
-    problems, engine = _versions(found), _engine(found)
-    problems += engine or _renderer(found, requested, notes)
-    for name, value in found.items():
+    problems, engine = _versions(facts), _engine(facts)
+    problems += engine or _renderer(facts, requested, notes)
+    for name, value in facts.items():
         _line(name, value)
     folders = _folders()
     for folder in folders:
         _line(folder["variable"], folder["folder"] + ("" if folder["exists"] else " (missing)"))
     _line("installed in", _location())
-    add_to_report(found=found, folders=folders, installed_in=_location(), problems=problems, notes=notes)
+    add_to_report(found=facts, folders=folders, installed_in=_location(), problems=problems, notes=notes)
     for note in notes:
         stdout_console().print(f"note: {note}")
     for problem in problems:
@@ -115,22 +115,22 @@ def _line(name: str, value: str) -> None:
     stdout_console().print(f"{name:<24}{value}")
 
 
-def _versions(found: dict[str, str]) -> list[str]:
-    """Add the versions to `found`, and return the problems."""
-    found["simkit"] = __version__
-    found["python"] = f"{platform.python_version()} ({sys.executable})"
-    found["platform"] = f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores"
+def _versions(facts: dict[str, str]) -> list[str]:
+    """Add the versions to `facts`, and return the problems."""
+    facts["simkit"] = __version__
+    facts["python"] = f"{platform.python_version()} ({sys.executable})"
+    facts["platform"] = f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores"
     problems = []
     for name in _PACKAGES:
         try:
-            found[name] = version(name)
+            facts[name] = version(name)
         except PackageNotFoundError:
-            found[name] = "missing"
+            facts[name] = "missing"
             problems.append(f"{name} is missing: {install_command(option='--force-reinstall')}")
     return problems
 
 
-def _engine(found: dict[str, str]) -> list[str]:
+def _engine(facts: dict[str, str]) -> list[str]:
     """Report the version of MuJoCo and a damaged installation, such as a mixture of 3.x and 4.x."""
     versions: dict[str, str] = {}
     for name in ("mujoco", "mujoco-core"):
@@ -138,7 +138,7 @@ def _engine(found: dict[str, str]) -> list[str]:
             versions[name] = version(name)
         except PackageNotFoundError:
             versions[name] = "missing"
-    found["mujoco"] = f"{versions['mujoco']} (core {versions['mujoco-core']})"
+    facts["mujoco"] = f"{versions['mujoco']} (core {versions['mujoco-core']})"
     probe = subprocess.run(
         [sys.executable, "-P", "-c", _IMPORT_ENGINE],
         capture_output=True,
@@ -154,8 +154,8 @@ def _engine(found: dict[str, str]) -> list[str]:
     return [f"SK-CORE-005 MuJoCo cannot be imported ({reason})\n    help: {REINSTALL}"]
 
 
-def _renderer(found: dict[str, str], requested: str, notes: list[str]) -> list[str]:
-    """Draw a small picture with the requested renderer; add the result to `found` and `notes`, return the problems."""
+def _renderer(facts: dict[str, str], requested: str, notes: list[str]) -> list[str]:
+    """Draw a small picture with the requested renderer; add the result to `facts` and `notes`, return the problems."""
     try:
         probe = subprocess.run(
             [sys.executable, "-P", "-c", _DRAW, requested],
@@ -165,15 +165,15 @@ def _renderer(found: dict[str, str], requested: str, notes: list[str]) -> list[s
             timeout=_RENDERER_TIMEOUT,
         )
     except subprocess.TimeoutExpired:
-        found["renderer"] = "hangs"
+        facts["renderer"] = "hangs"
         return [f"drawing a small picture took more than {_RENDERER_TIMEOUT:g} s\n{_USE_SOFTWARE}"]
     answer = next((line for line in probe.stdout.splitlines() if line[:3] in ("OK ", "NO ")), "")
     if answer.startswith("OK "):
-        found["renderer"], seconds, is_black, fallback = json.loads(answer[3:])
-        found["picture"] = f"320 × 240 px in {seconds * 1e3:.2g} ms"
+        facts["renderer"], seconds, is_black, fallback = json.loads(answer[3:])
+        facts["picture"] = f"320 × 240 px in {seconds * 1e3:.2g} ms"
         notes += fallback
-        return [f"the renderer draws only black images: {found['renderer']}\n{_USE_SOFTWARE}"] if is_black else []
-    found["renderer"] = "none"
+        return [f"the renderer draws only black images: {facts['renderer']}\n{_USE_SOFTWARE}"] if is_black else []
+    facts["renderer"] = "none"
     if answer:
         return [answer[3:]]
     if probe.returncode < 0:
@@ -181,7 +181,7 @@ def _renderer(found: dict[str, str], requested: str, notes: list[str]) -> list[s
     return [f"the renderer fails: {_last_line(probe.stderr)}"]
 
 
-def _folders() -> list[dict[str, Any]]:
+def _folders() -> list[JsonObject]:
     return [
         {"variable": name, "folder": folder, "exists": Path(folder).is_dir()}
         for name in _FOLDERS

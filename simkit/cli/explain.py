@@ -23,16 +23,16 @@ def explain(
 
     prefix = code.strip().upper()
     prefix = prefix if prefix.startswith("SK-") else f"SK-{prefix}"
-    found = list(catalogue(prefix).values())
-    if not found:
+    codes = list(catalogue(prefix).values())
+    if not codes:
         hint = did_you_mean(prefix, catalogue()) or "list all codes with `simkit explain SK-`"
-        raise InputError(f"SK-CLI-017 there is no code {code!r}; {hint}", "SK-CLI-017")
+        raise InputError("SK-CLI-017", f"there is no code {code!r}; {hint}")
     if json_:
-        stdout_console().file.write(json.dumps([asdict(c) for c in found], indent=2, default=_text) + "\n")
-    elif len(found) == 1:
-        stdout_console().print(code_text(found[0]))
+        stdout_console().file.write(json.dumps([asdict(c) for c in codes], indent=2, default=_text) + "\n")
+    elif len(codes) == 1:
+        stdout_console().print(code_text(codes[0]))
     else:
-        for entry in found:
+        for entry in codes:
             stdout_console().print(f"{entry.code}  {entry.severity:<14}  {entry.meaning}")
 
 

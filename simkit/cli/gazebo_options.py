@@ -44,12 +44,12 @@ def remove_gazebo_options(words: Sequence[str], with_value: Collection[str]) -> 
     Raises:
         LoadError: SK-CLI-052 other options of Gazebo, one problem for each, with the replacement.
     """
-    found = list(_split(words, with_value))
-    rest = [word for text, entry, _ in found if entry is None for word in text]
-    operands = [text[0] for text, entry, _ in found if entry is None and len(text) == 1 and text[0][:1] != "-"]
+    entries = list(_split(words, with_value))
+    rest = [word for text, entry, _ in entries if entry is None for word in text]
+    operands = [text[0] for text, entry, _ in entries if entry is None and len(text) == 1 and text[0][:1] != "-"]
     world = shlex.quote(operands[0]) if operands else "WORLD"
     notes, problems = [], []
-    for text, entry, value in found:
+    for text, entry, value in entries:
         if entry is None:
             continue
         answer = entry.answer.replace("{world}", world).replace("{value}", value or "VALUE")

@@ -49,19 +49,19 @@ def record_golden(spec: RunSpec, folder: Path, *, force: bool = False) -> RunRec
         SimkitError: the run failed; nothing is written.
     """
     from simkit.testing.golden.store import MAIN_FILE, write_golden
-    from simkit.testing.run_record.run_recorder import run_record
+    from simkit.testing.run_record.run_recorder import record_run
     from simkit.testing.scenarios.scenario_run import open_scenario, resolve_commands
 
     if (folder / MAIN_FILE).exists() and not force:
         raise InputError(
-            f"SK-GOLDEN-005 {folder} already contains a golden run\n"
-            "    help: update it with `simkit golden check --bless 'REASON'`, or replace it with --force",
             "SK-GOLDEN-005",
+            f"{folder} already contains a golden run",
+            help="update it with `simkit golden check --bless 'REASON'`, or replace it with --force",
         )
     with chdir("."):  # a plugin may change the working directory while it is loaded
         sim = open_scenario(spec)
     try:
-        record = run_record(resolve_commands(spec, sim.communication.bus.topics()), sim=sim)
+        record = record_run(resolve_commands(spec, sim.communication.bus.topics()), sim=sim)
         if record.error is not None:
             raise record.error
         write_golden(folder, record)
@@ -99,8 +99,8 @@ def report_results(
     if junit is not None:
         _write_junit(junit, results, verdicts)
     _print_results(results, blessed=blessed, quiet=quiet)
-    found = [result_dict(result) for result in results]
-    add_to_report(passed=all(one["passed"] for one in found), results=found)
+    rows = [result_dict(result) for result in results]
+    add_to_report(passed=all(row["passed"] for row in rows), results=rows)
     add_diagnostics(d for result in results if result.error is not None for d in error_diagnostics(result.error))
     for result in results:
         if result.error is not None:
@@ -156,7 +156,7 @@ def result_dict(result: CheckResult) -> JsonObject:
         return {"folder": str(result.folder), "passed": False, "error": {"code": code, "message": str(result.error)}}
     verdict = result.verdict
     comparison, explanation = verdict.comparison, verdict.explanation
-    found: JsonObject = {
+    content: JsonObject = {
         "folder": str(result.folder),
         "name": verdict.name,
         "passed": verdict.passed,
@@ -169,14 +169,14 @@ def result_dict(result: CheckResult) -> JsonObject:
         "checks": _check_dicts(verdict.checks),
     }
     if explanation is not None:
-        found["explanation"] = {
+        content["explanation"] = {
             "lines": list(explanation.lines),
             "tick": _json_number(explanation.tick),
             "time": _json_number(explanation.time),
             "quantity": explanation.quantity,
             "causes": [_json_number(vars(cause)) for cause in explanation.causes],
         }
-    return found
+    return content
 
 
 def _check_dicts(checks: Sequence[ConditionResult]) -> list[JsonObject]:
@@ -189,9 +189,9 @@ def _check_dicts(checks: Sequence[ConditionResult]) -> list[JsonObject]:
 def _json_number(value: JsonValue) -> object:
     """Convert a value to JSON; NaN and infinity become null."""
     if isinstance(value, dict):
-        return {str(key): _json_number(one) for key, one in value.items()}
+        return {str(key): _json_number(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)) or hasattr(value, "tolist"):
-        return _json_number(value.tolist()) if hasattr(value, "tolist") else [_json_number(one) for one in value]
+        return _json_number(value.tolist()) if hasattr(value, "tolist") else [_json_number(item) for item in value]
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     return value if isinstance(value, (bool, int, str)) or value is None else str(value)
@@ -221,19 +221,23 @@ def record(
     spec = scenario_spec(source, given, allow_code=allow_code)
     if without_permissions(source, loading) or any(not run_fields()[name].is_load_option for name in given.values):
         spec = replace(spec, file=None)  # the golden run itself keeps the changes to the scenario file
-    found = record_golden(spec, out_, force=force)
-    if found.simulation is not None:
-        print_diagnostics(found.simulation.diagnostics, verbose=False)
-        add_diagnostics(found.simulation.diagnostics)
-        found.simulation.close()
+    recorded = record_golden(spec, out_, force=force)
+    if recorded.simulation is not None:
+        print_diagnostics(recorded.simulation.diagnostics, verbose=False)
+        add_diagnostics(recorded.simulation.diagnostics)
+        recorded.simulation.close()
     _print_needed_folders(out_)
-    messages = sum(len(stream.times_ns) for stream in found.streams.values())
+    messages = sum(len(stream.times_ns) for stream in recorded.streams.values())
     size = sum(path.stat().st_size for path in out_.iterdir())
-    stdout_console().print(f"{out_}: {len(found.streams)} topics, {messages} messages, {size / 1000:.1f} kB")
+    stdout_console().print(f"{out_}: {len(recorded.streams)} topics, {messages} messages, {size / 1000:.1f} kB")
     add_to_report(
-        folder=str(out_), topics=len(found.streams), messages=messages, bytes=size, checks=_check_dicts(found.checks)
+        folder=str(out_),
+        topics=len(recorded.streams),
+        messages=messages,
+        bytes=size,
+        checks=_check_dicts(recorded.checks),
     )
-    for result in found.checks:
+    for result in recorded.checks:
         if not result.passed:
             print_status(f"warning: the scenario's own check failed: {result.check.title}: {result.message}")
 
@@ -244,8 +248,8 @@ def _print_needed_folders(folder: Path) -> None:
     from simkit.testing.golden.record_encoding import decode_scenario
     from simkit.testing.golden.store import read_main
 
-    found = refused_files(folder, decode_scenario(read_main(folder)["scenario"], folder))
-    needed = dict.fromkeys(problem.hint.removeprefix(HELP) for problem in found)
+    problems = refused_files(folder, decode_scenario(read_main(folder)["scenario"], folder))
+    needed = dict.fromkeys(problem.hint.removeprefix(HELP) for problem in problems)
     if needed:
         print_status(f"note: simkit golden check {shlex.quote(str(folder))} needs {' '.join(needed)}")
 

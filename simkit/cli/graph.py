@@ -52,8 +52,8 @@ def graph(
     from simkit.recording.graphs.graph_svg import graph_svg
 
     if output.suffix.lower() != ".svg":
-        found = output.suffix or "no suffix"
-        raise InputError(f"SK-CLI-016 cannot write {output}: found {found}; expected .svg", "SK-CLI-016")
+        suffix = output.suffix or "no suffix"
+        raise InputError("SK-CLI-016", f"cannot write {output}: found {suffix}; expected .svg")
     check_writable(output)
     is_running = any(sim.name == source for sim in simulations())
     if is_running:

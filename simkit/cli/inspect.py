@@ -34,16 +34,16 @@ def inspect(
     if paths:
         return _print_paths(file, source, pattern, json_)
     if pattern:
-        raise InputError(f"SK-CLI-018 found the argument {pattern!r}; it needs the option --paths", "SK-CLI-018")
-    found = describe(file, plugin_paths=given.values.get("plugin_paths", ()), **source)
+        raise InputError("SK-CLI-018", f"found the argument {pattern!r}; it needs the option --paths")
+    description = describe(file, plugin_paths=given.values.get("plugin_paths", ()), **source)
     if json_:
-        stdout_console().file.write(json.dumps(found, indent=2) + "\n")
+        stdout_console().file.write(json.dumps(description, indent=2) + "\n")
     else:
-        for line in _tree(found):
+        for line in _tree(description):
             stdout_console().print(line)
-        shown = (Diagnostic(**d) for d in found["diagnostics"] if d["severity"] != "note")
+        shown = (Diagnostic(**d) for d in description["diagnostics"] if d["severity"] != "note")
         print_diagnostics(shown, verbose=True)
-    return 2 if any(d["severity"] == "error" for d in found["diagnostics"]) else 0
+    return 2 if any(d["severity"] == "error" for d in description["diagnostics"]) else 0
 
 
 def _print_paths(file: str, source: SourceOptions, pattern: str, json_: bool) -> int:
@@ -55,23 +55,23 @@ def _print_paths(file: str, source: SourceOptions, pattern: str, json_: bool) ->
     scene, _ = read_scene(file, missing_meshes=True, **source)
     everything = settable_paths(scene.world, scene.arguments, read_parameters)
     is_part = not set("*?[") & set(pattern)
-    found = [p for p in everything if (pattern in p.path if is_part else fnmatch.fnmatchcase(p.path, pattern))]
-    if pattern and not found:
+    matching = [p for p in everything if (pattern in p.path if is_part else fnmatch.fnmatchcase(p.path, pattern))]
+    if pattern and not matching:
         names = {name for p in everything for name in (p.path, *p.path.split("."), *p.path.split("::"))}
         hint = did_you_mean(pattern, sorted(names)) or "without a pattern all paths are listed"
-        raise InputError(f"SK-CLI-014 no path matches {pattern!r}; {hint}", "SK-CLI-014")
+        raise InputError("SK-CLI-014", f"no path matches {pattern!r}; {hint}")
     if json_:
-        stdout_console().file.write(json.dumps([asdict(p) for p in found], indent=2) + "\n")
+        stdout_console().file.write(json.dumps([asdict(p) for p in matching], indent=2) + "\n")
         return 0
-    width = min(100, max((len(p.path) for p in found), default=0))
-    for path in found:
+    width = min(100, max((len(p.path) for p in matching), default=0))
+    for path in matching:
         unit = f"  [{path.unit}]" if path.unit else ""
         stdout_console().print(printable(f"{path.path:{width}}  {path.value}{unit}"), markup=False, soft_wrap=True)
     return 0
 
 
-def _tree(found: JsonObject) -> Iterator[str]:
-    for world in found["worlds"]:
+def _tree(description: JsonObject) -> Iterator[str]:
+    for world in description["worlds"]:
         physics = world["physics"]
         yield f"world {world['name']}  step {physics['max_step_size']:g} s, gravity {_numbers(world['gravity'])} m/s²"
         for light in world["lights"]:
@@ -79,10 +79,10 @@ def _tree(found: JsonObject) -> Iterator[str]:
         yield from _plugins(world, "  ")
         for model in world["models"]:
             yield from _model(model, "  ")
-    if found["model"]:
-        yield from _model(found["model"], "")
-    yield "total  " + ", ".join(f"{v:g} kg" if k == "mass" else f"{v} {k}" for k, v in found["totals"].items())
-    severities = [d["severity"] for d in found["diagnostics"]]
+    if description["model"]:
+        yield from _model(description["model"], "")
+    yield "total  " + ", ".join(f"{v:g} kg" if k == "mass" else f"{v} {k}" for k, v in description["totals"].items())
+    severities = [d["severity"] for d in description["diagnostics"]]
     if severities:
         counts = ", ".join(f"{severities.count(s)} {s}s" for s in ("error", "warning", "note") if s in severities)
         yield f"{counts}; show them with `simkit check`"

@@ -59,13 +59,13 @@ def map(
         check_writable(path)
     with load(world, **given.load_arguments()) as sim:
         print_diagnostics(sim.diagnostics, verbose=False)
-        found = _make(sim, height, resolution, place, everywhere=everywhere)
-    text = found.description(image.name).encode()  # before the image: the name may not be valid UTF-8
-    write_atomically(image, found.image())
+        grid = _make(sim, height, resolution, place, everywhere=everywhere)
+    text = grid.description(image.name).encode()  # before the image: the name may not be valid UTF-8
+    write_atomically(image, grid.image())
     write_atomically(description, text)
-    rows, columns = found.cells.shape
+    rows, columns = grid.cells.shape
     counts = {
-        name: int((found.cells == value).sum()) for name, value in (("occupied", 100), ("free", 0), ("unknown", -1))
+        name: int((grid.cells == value).sum()) for name, value in (("occupied", 100), ("free", 0), ("unknown", -1))
     }
     if json_:
         print_json({"output": [str(image), str(description)], "rows": rows, "columns": columns, **counts})
@@ -84,16 +84,16 @@ def _make(sim: Simulation, height: float, resolution: float, start: Place | None
         x, y, _ = robot.pose.position.tolist()
         begin = x, y
     contained = [begin] if begin is not None and not is_given else []
-    whole = make_map(sim.mj_model, sim.engine.physics.fresh(), height, resolution, contained)
+    full_map = make_map(sim.mj_model, sim.engine.physics.fresh(), height, resolution, contained)
     if begin is None:
-        return whole
-    found = whole.reachable_from(begin)
-    if found is None and is_given:
+        return full_map
+    reachable = full_map.reachable_from(begin)
+    if reachable is None and is_given:
         message = f"the start ({begin[0]:g}, {begin[1]:g}) is occupied or outside of the map"
         raise map_error(message, "--start X,Y chooses a free place")
-    if found is None and robot is not None:
+    if reachable is None and robot is not None:
         print_note(f"note: {robot.name} is not in a free cell, so every cell is free that is not occupied")
-    return found or whole
+    return reachable or full_map
 
 
 def _parse_place(text: str) -> Place:

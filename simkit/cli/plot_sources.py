@@ -86,19 +86,19 @@ def draw_chart(sources: Sequence[str], fields: Sequence[str], request: PlotReque
     check_suffix(request.output.name)
     check_writable(request.output)
     labels = _source_labels(sources)
-    found: list[tuple[Series, Style]] = []
+    curves: list[tuple[Series, Style]] = []
     for number, source in enumerate(sources):
         prefix = f"{labels[number]}: " if len(sources) > 1 else ""
-        found += _with_styles(_series(source, fields, request), number, prefix, alone=len(sources) == 1)
-    found = [(series, style) for series, style in found if _has_numbers(series)]
-    if not found:
-        raise InputError("SK-BAG-011 nothing to plot: the fields have no samples", "SK-BAG-011")
+        curves += _with_styles(_series(source, fields, request), number, prefix, alone=len(sources) == 1)
+    curves = [(series, style) for series, style in curves if _has_numbers(series)]
+    if not curves:
+        raise InputError("SK-BAG-011", "nothing to plot: the fields have no samples")
     if len(sources) > 1:
-        found.sort(key=lambda pair: pair[1].colour)
+        curves.sort(key=lambda pair: pair[1].colour)
     if not request.title:
         request = replace(request, title=_title(labels, fields, request.against))
-    write_atomically(request.output, render_chart(_chart(found, request), request.output.suffix))
-    _summary(request.output, [series for series, _ in found], json_=json_)
+    write_atomically(request.output, render_chart(_chart(curves, request), request.output.suffix))
+    _summary(request.output, [series for series, _ in curves], json_=json_)
 
 
 def _title(labels: Sequence[str], fields: Sequence[str], against: str | None) -> str:
@@ -129,17 +129,17 @@ def _has_numbers(series: Series) -> bool:
     return bool(series.count)
 
 
-def _chart(found: list[tuple[Series, Style]], request: PlotRequest) -> Chart:
+def _chart(curves: list[tuple[Series, Style]], request: PlotRequest) -> Chart:
     from simkit.recording.charts.chart import Chart
 
-    series = [curve for curve, _ in found]
+    series = [curve for curve, _ in curves]
     # with one source, each curve has its own colour; with several, equal fields have equal colours
     label, is_plane = "time [s]", False
     if request.against is not None:
         unit = series[0].base_unit
         label = request.against + (f" [{unit}]" if unit else "")
         is_plane = unit == "m" and {curve.unit for curve in series} == {"m"}
-    return Chart(series, [style for _, style in found], request.title, label, is_plane)
+    return Chart(series, [style for _, style in curves], request.title, label, is_plane)
 
 
 def _summary(output: Path, series: list[Series], *, json_: bool) -> None:
@@ -164,15 +164,15 @@ def _series(source: str, fields: Sequence[str], request: PlotRequest) -> list[Se
     path = Path(source)
     read_series = _bag_series if is_bag(path) else _world_series
     plotted = list(fields) if request.against is None else [*fields, request.against]
-    found, counts = read_series(source, plotted, request)
+    series_list, counts = read_series(source, plotted, request)
     if request.start is not None or request.end is not None:
-        found = [series.between(request.start, request.end) for series in found]
+        series_list = [series.between(request.start, request.end) for series in series_list]
     if request.against is None:
-        return found
-    base = found[-counts[-1] :]
+        return series_list
+    base = series_list[-counts[-1] :]
     if len(base) != 1:
-        raise InputError(f"SK-BAG-010 --against {request.against}: has {len(base)} numbers; expected 1", "SK-BAG-010")
-    return series_over(found[: -counts[-1]], base[0])
+        raise InputError("SK-BAG-010", f"--against {request.against}: has {len(base)} numbers; expected 1")
+    return series_over(series_list[: -counts[-1]], base[0])
 
 
 def _curves(
@@ -188,9 +188,9 @@ def _curves(
             f" and {len(names) - _TOPICS_LISTED} more" if len(names) > _TOPICS_LISTED else ""
         )
         text = f"give a field to plot, such as /odom.pose.pose.position.x; {where} has {listed or 'no topics'}"
-        raise InputError(f"SK-BAG-011 {text}", "SK-BAG-011")
-    found = [curves_of(text, topics, store_of, where, unit_of) for text in fields]
-    return [curve for curves in found for curve in curves], [len(curves) for curves in found]
+        raise InputError("SK-BAG-011", text)
+    groups = [curves_of(text, topics, store_of, where, unit_of) for text in fields]
+    return [curve for curves in groups for curve in curves], [len(curves) for curves in groups]
 
 
 def _bag_series(source: str, fields: Sequence[str], _: PlotRequest) -> tuple[list[Series], list[int]]:

@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
 _LONG, _SHORT = 0.05, 0.02  # [s] of wall time above which slices are halved, and below which they are doubled
 _PACED = 0.02  # [s] of wall time per slice with a limited real-time factor
-_PATH = 0.05  # [s] of simulated time between two points of a path
 _PAUSE_POLL_SECONDS = 0.02  # [s] of wall time between two checks for keys and for the end of a pause
 _MAX_LAG_SECONDS = 0.25  # [s] of wall time that a run catches up; after a longer lag (Ctrl-Z) the pace restarts
 
@@ -43,29 +42,6 @@ class CommandSender(Protocol):
         ...
 
 
-class RunView(Protocol):
-    """Protocol of a live view, which the loop updates between slices.
-
-    Attributes:
-        driving: sender of the commands of the pages.
-        address: address of the page.
-    """
-
-    @property
-    def driving(self) -> CommandSender: ...
-
-    @property
-    def address(self) -> str: ...
-
-    def update(self) -> None:
-        """Execute the requests of the pages, and send the pages what has changed."""
-        ...
-
-    def slices(self, *lengths: float) -> tuple[float, ...]:
-        """Return the lengths of slices [s, wall time], adapted to the open pages."""
-        ...
-
-
 class RunLoop:
     """Loop that runs a simulation to its end.
 
@@ -75,16 +51,17 @@ class RunLoop:
         interrupts: Ctrl-C handler, checked between slices.
         watchers: callbacks after every slice.
         rtf: highest real-time factor, until a client changes it; None keeps the simulation's current limit.
-        follow: True for slices that are short enough to draw a path (0.05 s of simulated time).
 
     Attributes:
-        keep_going: check between slices; False ends the run early.
-        is_over: check between slices; True ends the run because it has reached its goal.
-        before_slice: callback before each slice.
+        watchers: callbacks after every slice.
         senders: all senders of commands.
-        poll_keys: callback between slices and during waits, for the keyboard.
+        pollers: callbacks between slices and during waits, for the keyboard and the requests of users.
+        before_slice: callbacks before each slice.
+        slice_limits: functions that adapt two lengths of slices [s, wall time]: slices above the first are halved,
+            slices below the second are doubled.
+        early_ends: checks between slices; a text, the reason, ends the run before its end.
+        is_over: check between slices; True ends the run because it has reached its goal.
         server: server for other processes.
-        view: live view in a browser.
         on_pause: callback when the world becomes paused.
     """
 
@@ -96,21 +73,20 @@ class RunLoop:
         watchers: list[Callable[[], object]],
         *,
         rtf: float | None = None,
-        follow: bool = False,
     ) -> None:
-        self._sim, self._interrupts, self._watchers = sim, interrupts, watchers
+        self._sim, self._interrupts, self.watchers = sim, interrupts, watchers
         if rtf is not None:
             sim.control.pausing.pace = rtf
-        self._longest = max(1, round(_PATH / sim.timestep)) if follow else 1 << 30
-        self._slice = min(max(1, round(0.01 / sim.timestep)), self._longest)
+        self._longest = 1 << 30
+        self._slice = max(1, round(0.01 / sim.timestep))
         self._restart_pace()
         self.senders: list[CommandSender] = [commands]
-        self.keep_going: Callable[[], bool] = lambda: True
+        self.pollers: list[Callable[[], object]] = []
+        self.before_slice: list[Callable[[], object]] = []
+        self.slice_limits: list[Callable[[float, float], tuple[float, ...]]] = []
+        self.early_ends: list[Callable[[], str]] = []
         self.is_over: Callable[[], bool] = lambda: False
-        self.before_slice: Callable[[], None] | None = None
-        self.poll_keys: Callable[[], None] | None = None
         self.server: Server | None = None
-        self.view: RunView | None = None
         self.on_pause: Callable[[], None] = self._say_paused
 
     def run(self, duration: float | None) -> bool:
@@ -125,13 +101,13 @@ class RunLoop:
         was_paused = False
         with sim.control.pausing.served():
             while end is None or sim.engine.steps < end:
-                if self._interrupts.exit_code or not self.keep_going() or self.is_over():
+                if self._interrupts.exit_code or self.early_end() or self.is_over():
                     return False
                 before = sim.tick
                 self._take_commands()
                 if not sim.paused:
                     self._advance(end)
-                for watch in self._watchers:
+                for watch in self.watchers:
                     watch()
                 if sim.paused and not was_paused:
                     self.on_pause()
@@ -141,23 +117,25 @@ class RunLoop:
                 self._wait(_PAUSE_POLL_SECONDS if was_paused else self._ahead())
         return True
 
-    def show(self, view: RunView) -> None:
-        """Update a live view between slices, and send the commands of its pages at their ticks."""
-        self.view = view
-        self.senders.append(view.driving)
+    def early_end(self) -> str:
+        """Return the reason why the run must end before its end; empty to continue."""
+        return next(filter(None, (check() for check in self.early_ends)), "")
+
+    def limit_slices(self, seconds: float) -> None:
+        """Make no slice longer than a simulated time [s]."""
+        self._longest = max(1, round(seconds / self._sim.timestep))
+        self._slice = min(self._slice, self._longest)
 
     def _take_commands(self) -> None:
         """Process the input between two slices: keys, due commands and requests of clients."""
-        if self.poll_keys is not None:
-            self.poll_keys()
+        for poll in self.pollers:
+            poll()
         for sender in self.senders:
             sender.send_due()
-        if self.before_slice is not None:
-            self.before_slice()
+        for callback in self.before_slice:
+            callback()
         if self.server is not None:
             self.server.poll()
-        if self.view is not None:
-            self.view.update()
 
     def _say_paused(self) -> None:
         print_status(f"paused at t={self._sim.time:g} s until a service resumes it (Ctrl-C ends)")
@@ -194,10 +172,8 @@ class RunLoop:
                 time.sleep(min(left, _PAUSE_POLL_SECONDS))
             else:
                 self.server.poll(min(left, _PAUSE_POLL_SECONDS))
-            if self.poll_keys is not None:
-                self.poll_keys()
-            if self.view is not None:
-                self.view.update()
+            for poll in self.pollers:
+                poll()
             if (sim.paused, sim.control.pausing.pace, sim.control.pausing.until) != (was_paused, pace, until):
                 return
 
@@ -213,16 +189,16 @@ class RunLoop:
         for ahead in [sender.next_tick for sender in self.senders]:
             if ahead is not None:
                 stop = min(stop, max(ahead, sim.tick + 1))
-        whole = stop - sim.tick == self._slice
+        is_full_slice = stop - sim.tick == self._slice
         begun = time.perf_counter()
         sim.control.pausing.advance(stop - sim.tick)
         elapsed = time.perf_counter() - begun
         long, short = (_LONG, _SHORT) if self.server is None else self.server.slices(_LONG, _SHORT)
-        if self.view is not None:
-            long, short = self.view.slices(long, short)
+        for limits in self.slice_limits:
+            long, short = limits(long, short)
         if elapsed > long:
             self._slice = max(1, self._slice // 2)
-        elif whole and elapsed < short:
+        elif is_full_slice and elapsed < short:
             self._slice = min(self._slice * 2, self._longest)
 
 
@@ -266,8 +242,8 @@ class Interrupts:
 
     def _note(self, number: int, frame: FrameType | None) -> None:
         if self.exit_code:
-            found = describe_blocking_plugin(frame)
-            raise KeyboardInterrupt(f"in the middle of {found[1]}" if found else "")
+            blocker = describe_blocking_plugin(frame)
+            raise KeyboardInterrupt(f"in the middle of {blocker[1]}" if blocker else "")
         self.exit_code = 128 + number
         note_stop_request()
         if self._noted is not None:

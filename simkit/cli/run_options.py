@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import functools
 import inspect
-import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any, Final, NamedTuple, TypeVar, cast, get_args
@@ -13,25 +12,25 @@ from typing import Annotated, Any, Final, NamedTuple, TypeVar, cast, get_args
 import typer
 
 from simkit.cli.terminal import completion
-from simkit.cli.terminal.given_interfaces import interface_folders
+from simkit.cli.terminal.interfaces_option import interface_folders
 from simkit.cli.terminal.options import option, validate_word
 from simkit.run_fields import CommandOption, LoadArguments, OptionPart, RunField
 from simkit.run_files import FileName
-from simkit.run_spec import FilePath, LoadOptions, RunSpec, SourceOptions, run_fields
+from simkit.run_nodes import seconds_of
+from simkit.run_spec import FilePath, JsonObject, LoadOptions, RunSpec, SourceOptions, run_fields
 from simkit.run_values import Choice
 
-_Command = TypeVar("_Command", bound=Callable[..., Any])
+Command = TypeVar("Command", bound=Callable[..., Any])
+"""Function of a command."""
 PARTS: Final = get_args(OptionPart)
-_TIME: Final = re.compile(r"(\d+\.?\d*|\.\d+)\s*(s|ms|min|)")
-_UNITS: Final = {"": 1.0, "s": 1.0, "ms": 1e-3, "min": 60.0}
 
 
 def parse_seconds(text: str) -> float:
     """Parse a time: `30`, `30s`, `500ms` or `2min`."""
-    match = _TIME.fullmatch(text.strip())
-    if match is None or not float(match[1]) > 0:
+    seconds = seconds_of(text)
+    if not seconds:
         raise typer.BadParameter(f"{text!r} is not a time; expected times above 0 such as 30, 30s, 500ms or 2min")
-    return float(match[1]) * _UNITS[match[2]]
+    return seconds
 
 
 _PARSERS: Final = {"seconds": parse_seconds}
@@ -50,13 +49,15 @@ class GivenOptions:
     def names(self, excluded: Sequence[str] = ()) -> list[str]:
         """Return the names of the options, without those of some fields."""
         fields = run_fields()
-        return [one.name for name in self.values if name not in excluded and (one := fields[name].option) is not None]
+        return [
+            option.name for name in self.values if name not in excluded and (option := fields[name].option) is not None
+        ]
 
     def load_options(self) -> LoadOptions:
         """Return the load options, with the folders of `--interfaces`."""
-        found = {name: value for name, value in self.values.items() if run_fields()[name].is_load_option}
+        load_values = {name: value for name, value in self.values.items() if run_fields()[name].is_load_option}
         folders = interface_folders()
-        return cast(LoadOptions, {**found, **({"interfaces": folders} if folders else {})})
+        return cast(LoadOptions, {**load_values, **({"interfaces": folders} if folders else {})})
 
     def source_options(self) -> SourceOptions:
         """Return the options for reading a file."""
@@ -65,8 +66,8 @@ class GivenOptions:
 
     def load_arguments(self) -> LoadArguments:
         """Return the arguments of `simkit.load` for a command that loads a world without a run specification."""
-        found = {name: value for name, value in self.values.items() if run_fields()[name].is_loaded}
-        return cast(LoadArguments, {**found, **self.load_options()})
+        loaded = {name: value for name, value in self.values.items() if run_fields()[name].is_loaded}
+        return cast(LoadArguments, {**loaded, **self.load_options()})
 
     def run_spec(self, world: str, **fields: Any) -> RunSpec:
         """Return the specification of a run of a world.
@@ -89,11 +90,11 @@ class GivenOptions:
             if not described.is_load_option:
                 moved = value if spec.folder == Path() else described.kind.move(value, name, _from_working_folder)
                 values[name] = (*getattr(spec, name), *moved) if described.is_appended else moved
-        found = spec.with_values(values)
-        if "timeout" in values and not found.until:
+        changed = spec.with_values(values)
+        if "timeout" in values and not changed.until:
             message = "--timeout needs --until; limit the run with --duration S"
             raise typer.BadParameter(message, param_hint="--timeout")
-        return found
+        return changed
 
 
 NONE_GIVEN: Final = GivenOptions()
@@ -102,7 +103,7 @@ NONE_GIVEN: Final = GivenOptions()
 
 def _from_working_folder(name: FileName) -> str:
     """Return the absolute path of a file that a run would look for in its own folder."""
-    path = name.path_in(Path.cwd()) if name.role in ("world", "bag") else None
+    path = name.path_in(Path.cwd()) if name.role in ("world", "program", "bag") else None
     return name.text if path is None else str(path)
 
 
@@ -120,75 +121,101 @@ class OfferedOptions(NamedTuple):
 
 def with_run_options(
     *names: str, without: Mapping[str, str] | None = None, usual: Mapping[str, str] | None = None
-) -> Callable[[_Command], _Command]:
+) -> Callable[[Command], Command]:
     """Return a decorator that replaces the parameter `given` of a command by options of a run.
 
     The command receives a `GivenOptions`. The options stand at the place of the parameter, in the order of the fields.
 
     Args:
         names: parts of a run ("file", "world", "run", "session") and fields.
-        without: fields, or parts, that the command does not offer, with the reason.
+        without: fields, or parts, that the command does not offer, with the reason; options of a field follow it.
         usual: text for the default in the help of an option, by field.
     """
     left_out, texts = dict(without or {}), dict(usual or {})
     offered = {
-        name: one
-        for name, one in run_fields().items()
-        if one.option is not None and {name, one.option.part} & {*names} and name not in left_out
+        name: run_field
+        for name, run_field in run_fields().items()
+        if run_field.option is not None
+        and {name, run_field.option.part} & {*names}
+        and not {name, run_field.option.of_field} & left_out.keys()
     }
 
-    def decorate(command: _Command) -> _Command:
-        @functools.wraps(command)
-        def run(**arguments: Any) -> Any:
+    def decorate(command: Command) -> Command:
+        def given_options(arguments: JsonObject) -> GivenOptions:
             values = {}
             for name, described in offered.items():
                 assert described.option is not None
-                value = arguments.pop(described.option.parameter, described.option.default)
+                value = arguments[described.option.parameter]
                 if value is not None and value is not False and value not in ([], described.option.default):
                     if isinstance(described.kind, Choice):
                         validate_word(described.option.name, value, described.kind.words)
                     values[name] = described.kind.from_option(value, described.option.name)
-            return command(**arguments, given=GivenOptions(values))
+            return GivenOptions(values)
 
-        parameters: list[inspect.Parameter] = []
-        for one in inspect.signature(command, eval_str=True).parameters.values():
-            if one.name == "given":
-                parameters += [_parameter(described, texts.get(name)) for name, described in offered.items()]
-            else:
-                parameters.append(one.replace(kind=inspect.Parameter.KEYWORD_ONLY))
-        described_command: Any = run
-        described_command.__signature__ = inspect.Signature(parameters)
-        described_command.__annotations__ = {one.name: one.annotation for one in parameters}
-        described_command.offered_options = OfferedOptions(tuple(offered), left_out)
-        return cast(_Command, run)
+        parameters = [_parameter(described, texts.get(name)) for name, described in offered.items()]
+        run: Any = replace_parameter(command, "given", parameters, given_options)
+        run.offered_options = OfferedOptions(tuple(offered), left_out)
+        return cast(Command, run)
 
     return decorate
 
 
+def replace_parameter(
+    command: Command, name: str, options: Iterable[inspect.Parameter], value_of: Callable[[JsonObject], object]
+) -> Command:
+    """Return a command that has options at the place of one parameter.
+
+    Args:
+        command: function of the command.
+        name: name of the parameter.
+        options: parameters of the options.
+        value_of: function that receives the values of the options and returns the value of the parameter.
+    """
+    added = list(options)
+
+    @functools.wraps(command)
+    def run(**arguments: object) -> object:
+        values = {option.name: arguments.pop(option.name, option.default) for option in added}
+        return command(**arguments, **{name: value_of(values)})
+
+    parameters: list[inspect.Parameter] = []
+    for parameter in inspect.signature(command, eval_str=True).parameters.values():
+        parameters += added if parameter.name == name else [parameter]
+    described: Any = run
+    described.__signature__ = inspect.Signature(
+        [parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY) for parameter in parameters]
+    )
+    described.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
+    return cast(Command, run)
+
+
 def _parameter(described: RunField, usual: str | None) -> inspect.Parameter:
     """Return the parameter of a command's function for a field."""
-    found = described.option
-    assert found is not None
+    option = described.option
+    assert option is not None
     value_type = described.kind.option_type
-    default: Any = [] if value_type in (list[str], list[Path]) else False if value_type is bool else found.default
+    default: object = [] if value_type in (list[str], list[Path]) else False if value_type is bool else option.default
     if isinstance(default, str):
         value_type = str
-    declaration = _option(found, found.usual if usual is None else usual, value_type)
+    declaration = _option(option, option.usual if usual is None else usual)
     annotation: Any = Annotated[value_type, declaration]
-    return inspect.Parameter(found.parameter, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
+    return inspect.Parameter(option.parameter, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
 
 
-def _option(found: CommandOption, usual: str, value_type: Any) -> Any:
+def _option(command_option: CommandOption, usual: str) -> object:
     """Return the declaration of an option for Typer."""
-    text = found.help.replace("{default}", usual)
-    if value_type is bool:
-        return typer.Option(found.name, help=text)
-    complete = getattr(completion, found.completion) if found.completion else None
+    text = command_option.help.replace("{default}", usual)
+    complete = getattr(completion, command_option.completion) if command_option.completion else None
     made = option(
-        text, found.metavar, found.name, min=found.least, max=found.most, complete=complete,
-        parser=_PARSERS.get(found.parser),
-    )  # fmt: skip
-    made.exists = found.is_there
+        text,
+        command_option.metavar or None,
+        command_option.name,
+        min=command_option.least,
+        max=command_option.most,
+        complete=complete,
+        parser=_PARSERS.get(command_option.parser),
+    )
+    made.exists = command_option.is_there
     return made
 
 
@@ -229,11 +256,13 @@ def scenario_spec(
 
     options = given.load_options()
     folders = options.get("resource_paths", ())
-    found = read_run(world, usual_duration, folders) if isinstance(world, str) else world
-    own = found.options.get("resource_paths", ())
-    if own and "resource_paths" in options:  # the option allows files; it does not replace the scenario's folders
-        options = {**options, "resource_paths": (*options["resource_paths"], *own)}
-    spec = given.applied(add_options(found, options, allow_code))
+    scenario = read_run(world, usual_duration, folders) if isinstance(world, str) else world
+    scenario_folders = scenario.options.get("resource_paths", ())
+    if (
+        scenario_folders and "resource_paths" in options
+    ):  # the option allows files; it does not replace the scenario's folders
+        options = {**options, "resource_paths": (*options["resource_paths"], *scenario_folders)}
+    spec = given.applied(add_options(scenario, options, allow_code))
     if spec.played_bag is not None and spec.file is None and "duration" not in given.values:
         from simkit.recording.bags.reader import open_bag_to_read
 

@@ -2,40 +2,34 @@
 
 from __future__ import annotations
 
-import sys
 import time
-from collections.abc import Callable, Sequence
+from collections import Counter
+from collections.abc import Sequence
 from contextlib import ExitStack
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from simkit.cli.run_bridges import start_bridges
-from simkit.cli.run_display import RunDisplay
 from simkit.cli.run_loop import Interrupts, RunLoop
-from simkit.cli.run_pictures import check_renderer, draw_picture, film_run, note_missing_gl
+from simkit.cli.run_part import OpenRun, RunPart
 from simkit.cli.run_verdict import RunVerdict
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins
 from simkit.cli.terminal.json_report import add_diagnostics, add_to_report
 from simkit.cli.terminal.output import JsonObject, print_diagnostics, print_status, stderr_console, stdout_console
-from simkit.cli.terminal.page_options import open_later, open_page
 from simkit.diagnostics import NOWHERE, Diagnostics, name_hint
-from simkit.errors import InputError
+from simkit.errors import InputError, RenderError
+from simkit.plugins.discovery.left_out import DRIVE_CODE as LEFT_OUT_DRIVE
 from simkit.recording.bags.bag_contents import matches_topic
 from simkit.run_spec import RunSpec
 from simkit.runtime.engine.snapshot import state_hash
 
 if TYPE_CHECKING:
-    from simkit.bridges.bridge_process import BridgeProcess
-    from simkit.bridges.teleop import Teleop
-    from simkit.cli.terminal.keyboard import Keyboard, WindowsKeyboard
     from simkit.cli.terminal.progress import Progress
     from simkit.recording.bags.playback import Playback
     from simkit.recording.bags.recorder import Recorder
     from simkit.recording.command_script import Command
-    from simkit.recording.run_picture import DrivenPath
     from simkit.recording.topic_counts import TopicCount, TopicCounter
     from simkit.runtime import Simulation
+    from simkit.runtime.world_control import Program
 
 
 def print_summary(
@@ -77,6 +71,49 @@ def print_summary(
     )
 
 
+def print_nodes(sim: Simulation) -> None:
+    """Print one line for each node: its state, the number of its turns and of the lines of its log.
+
+    With `--json`, the report gets the same values.
+    """
+    rows = [(program, _node_state(program)) for program in sim.nodes]
+    counts = Counter(program.name for program, _ in rows)
+    for program, state in rows:
+        name = program.name if counts[program.name] == 1 else program.label
+        if program.awaited:
+            stdout_console().print(f"node {name}: {state}")
+            continue
+        numbers = f"{program.hand_overs} turns, {len(program.log)} log lines"
+        restarts = f", {program.restarts} restarts" if program.restarts else ""
+        style = "red" if program.error is not None else None
+        stdout_console().print(f"node {name}: {state}, {numbers}{restarts}", style=style)
+    if rows:
+        add_to_report(
+            nodes=[
+                {
+                    "name": program.name,
+                    "state": state,
+                    "turns": program.hand_overs,
+                    "restarts": program.restarts,
+                    "log": list(program.log),
+                    "error": program.failure or None,
+                }
+                for program, state in rows
+            ]
+        )
+
+
+def _node_state(program: Program) -> str:
+    """Return the state of a node at the end of a run."""
+    if program.awaited:
+        return f"not started (waits for {program.awaited})"
+    if isinstance(program.error, SystemExit):
+        return f"failed with exit code {program.exit_code}"
+    if program.error is not None:
+        return f"failed with {type(program.error).__name__}"
+    return "ended" if program.done else "running"
+
+
 def _topic_dict(row: TopicCount) -> JsonObject:
     """Return the counts of a topic for the JSON report; null for numbers that are not known."""
     return {
@@ -85,22 +122,6 @@ def _topic_dict(row: TopicCount) -> JsonObject:
         "messages": row.count if row.counted else None,
         "rate": row.rate() if row.counted else None,
     }
-
-
-def check_keyboard(display: RunDisplay) -> None:
-    """Check before a run whether keys can be read for --teleop.
-
-    Raises:
-        InputError: SK-CLI-050 standard input is not a terminal.
-    """
-    from simkit.cli.terminal.keyboard import open_keyboard
-
-    if display.teleop is not None and open_keyboard(sys.stdin) is None:
-        raise InputError(
-            "SK-CLI-050 --teleop needs a terminal, but standard input is not a terminal\n"
-            "    help: drive with --cmd-vel V,W or --script FILE.yaml, or with `simkit topic pub` in another terminal",
-            "SK-CLI-050",
-        )
 
 
 def run_length(spec: RunSpec, played: float | None = None) -> float | None:
@@ -123,9 +144,37 @@ def _endless_text(spec: RunSpec) -> str:
 
 def _interrupt_text(interrupts: Interrupts, loop: RunLoop) -> str:
     """Return the reason for an early end of a run; empty if the run was not interrupted."""
-    if interrupts.exit_code:
-        return "an interrupt"
-    return "" if loop.keep_going() else "the viewer's"
+    return "an interrupt" if interrupts.exit_code else loop.early_end()
+
+
+def _report_unsent_velocity(problem: str) -> None:
+    """Warn that no command of `--cmd-vel` was sent during the run.
+
+    Args:
+        problem: reason.
+    """
+    diagnostics = Diagnostics()
+    diagnostics.warning("SK-CLI-010", f"no command was sent: {problem}", NOWHERE)
+    print_diagnostics(diagnostics, verbose=True)
+    add_diagnostics(diagnostics)
+
+
+def _note_missing_gl(sim: Simulation) -> None:
+    """Print a note if the simulation has cameras and this machine has no OpenGL.
+
+    With the renderer `auto`, the note names the software renderer. Only the first image opens OpenGL, so that a run
+    whose cameras nobody reads starts without it.
+    """
+    if not any(sensor.needs_renderer for sensor in sim.contents.sensors.values()) or sim.world.renderer == "software":
+        return
+    from simkit.sensors.cameras.renderer_choice import chosen_renderer
+    from simkit.sensors.cameras.rendering.gl_context import find_library
+
+    try:
+        find_library()
+    except RenderError as error:
+        if chosen_renderer(sim) == "gl":
+            print_status(f"note: {error.code} cameras have no images: {error.message}")
 
 
 class Session:
@@ -133,128 +182,123 @@ class Session:
 
     Args:
         spec: run specification.
-        display: display, keyboard and report options.
+        parts: parts of the run.
         sim: loaded simulation.
         blocked: reporter of plugins that block the run.
         verdict: result of the run.
-        bridges: bridges to other programs, which are not started yet.
+        quiet: True to print no table of topics.
     """
 
     def __init__(
         self,
         spec: RunSpec,
-        display: RunDisplay,
+        parts: Sequence[RunPart],
         sim: Simulation,
         blocked: BlockedPlugins,
         verdict: RunVerdict,
-        bridges: Sequence[BridgeProcess] = (),
+        *,
+        quiet: bool,
     ) -> None:
-        self.spec, self.display, self._bridges = spec, display, bridges
+        self.spec, self.parts, self.quiet = spec, parts, quiet
         self.sim, self.blocked, self.verdict = sim, blocked, verdict
-        self._teleop: Teleop | None = None
         self._printed = frozenset(sim.diagnostics)  # before the run
 
     def execute(self) -> int:
         """Run the simulation to its end and return the exit code."""
-        from simkit.recording.command_script import Commands
+        from simkit.recording.command_script import Commands, LateVelocity
         from simkit.recording.topic_counts import RENDERED, TopicCounter
 
-        spec, display, sim = self.spec, self.display, self.sim
-        if display.picture is not None or display.film is not None:
-            check_renderer(sim)
-        commands, self._teleop = Commands(sim, self._commands()), self._driver()
+        spec, sim = self.spec, self.sim
+        for part in self.parts:
+            part.after_loading(sim)
+        commands = Commands(sim, self._commands())
         played = self._played()
         duration = run_length(spec, played.duration if played is not None else None)
         conditions = self.verdict.watch(sim, duration)
-        driven = self._driven_path()
         with ExitStack() as stack:
             if played is not None:
                 stack.enter_context(played)
             interrupts = stack.enter_context(Interrupts(self.blocked.hasten))
             recording = self._start_recording(stack)
-            note_missing_gl(sim)
+            _note_missing_gl(sim)
             counter = TopicCounter(sim, RENDERED, recording.records if recording is not None else None)
-            keyboard = self._keyboard()
-            view = None if display.page is None else open_page(sim, display.page, stack)
             begun = time.perf_counter()
-            progress = stack.enter_context(self._progress(counter, duration))
-            watchers: list[Callable[[], object]] = [progress.update]
+            loop = RunLoop(sim, commands, interrupts, [], rtf=spec.pace)
+            velocity: LateVelocity | None = None
+            if spec.velocity is not None and sim.nodes:
+                velocity = LateVelocity(sim, spec.velocity)
+                loop.senders.append(velocity)
             if recording is not None:
-                watchers.append(recording.check)
-            if driven is not None:
-                watchers.append(driven.sample)
-            loop = RunLoop(sim, commands, interrupts, watchers, rtf=spec.pace, follow=driven is not None)
+                loop.watchers.append(recording.check)
             if played is not None:
                 loop.senders.append(played)
-            film = stack.enter_context(film_run(sim, display.film, driven, loop.senders))
-            if view is not None:
-                loop.show(view)
-            if display.view:
-                self._open_viewer(stack, loop, watchers)
-            if keyboard is not None:
-                stack.enter_context(keyboard)
-                self._connect_keys(keyboard, loop)
             self._serve(stack, loop)
-            start_bridges(self._bridges, loop, interrupts, watchers)
+            run = OpenRun(spec, sim, loop, interrupts, loop.run)
+            for part in self.parts:
+                stack.enter_context(part.around_loop(run))
+            progress = stack.enter_context(_progress(run, counter, duration))
+            loop.watchers.append(progress.update)
             if duration is None:
                 print_status(_endless_text(spec))  # other terminals can connect from now on
             self._hold()
             stack.enter_context(conditions)
-            loop.is_over = self.verdict.is_over
-            advance = self._watched(loop, interrupts, watchers) if display.watch else loop.run
+            loop.is_over = self._is_over
             try:
-                advance(duration)
-                film()
+                run.advance(duration)
+                sim.check_nodes()
             except BaseException as error:
                 self.verdict.end(error, "")
                 raise
             else:
+                if sim.ended_by:
+                    print_status(f"the node {sim.ended_by} has ended the run at t={sim.time:g} s")
                 self.verdict.end(None, _interrupt_text(interrupts, loop))
             finally:
                 elapsed = time.perf_counter() - begun
                 progress.__exit__(None, None, None)
                 if recording is not None:
                     recording.close()
-                print_summary(sim, counter, recording, elapsed, quiet=display.quiet)
+                print_summary(sim, counter, recording, elapsed, quiet=self.quiet)
+                print_nodes(sim)
                 self.verdict.print_results()
                 self._report_new_warnings()
                 self._report_fallen_models()
+                if velocity is not None and velocity.problem:
+                    _report_unsent_velocity(velocity.problem)
                 if recording is not None:
                     self._report_unmatched_topics()
-        if driven is not None and display.picture is not None:
-            draw_picture(sim, display.picture, driven)
         return interrupts.exit_code or self.verdict.code
 
-    def _driven_path(self) -> DrivenPath | None:
-        """Start to record the path of the robot, if the run draws a picture or a film."""
-        if self.display.picture is None and self.display.film is None:
-            return None
-        from simkit.recording.run_picture import DrivenPath  # 4 ms
-
-        return DrivenPath(self.sim)
+    def _is_over(self) -> bool:
+        """Check whether the run has ended before its duration."""
+        return self.verdict.is_over() or bool(self.sim.ended_by)
 
     def _report_new_warnings(self) -> None:
-        """Print the warnings that the run has caused, such as ignored commands; disabled plugins are logged at once."""
-        found = [d for d in self.sim.diagnostics if d.severity == "warning" and d not in self._printed]
-        print_diagnostics([d for d in found if d.code != "SK-PLUGIN-020"], verbose=True)
+        """Print the warnings that the run has caused, such as ignored commands; disabled plugins are logged at once.
+
+        A drive that was left out is told again, because the user waits for a motion.
+        """
+        warnings = [d for d in self.sim.diagnostics if d.severity == "warning"]
+        new_warnings = [d for d in warnings if d not in self._printed or d.code == LEFT_OUT_DRIVE]
+        print_diagnostics([d for d in new_warnings if d.code != "SK-PLUGIN-020"], verbose=True)
 
     def _report_fallen_models(self) -> None:
         """Warn of models that fell out of the world."""
         from simkit.runtime.fallen_models import find_fallen_models
 
-        found = find_fallen_models(self.sim)
-        print_diagnostics(found, verbose=True)
-        add_diagnostics(found)
+        diagnostics = find_fallen_models(self.sim)
+        print_diagnostics(diagnostics, verbose=True)
+        add_diagnostics(diagnostics)
 
     def _report_unmatched_topics(self) -> None:
         """Warn of selected topics that no topic of the recorded run matches."""
-        found, topics = Diagnostics(), self.sim.communication.bus.all_topics()
+        diagnostics, topics = Diagnostics(), self.sim.communication.bus.all_topics()
         for pattern in self.spec.topics:
             if not any(matches_topic(topic, [pattern]) for topic in topics):
                 text = f"the recording selects the topic {pattern!r}, but no topic of this run matches"
-                found.warning("SK-BAG-017", text, NOWHERE, name_hint(pattern, topics))
-        print_diagnostics(found, verbose=True)
-        add_diagnostics(found)
+                diagnostics.warning("SK-BAG-017", text, NOWHERE, name_hint(pattern, topics))
+        print_diagnostics(diagnostics, verbose=True)
+        add_diagnostics(diagnostics)
 
     def _start_recording(self, stack: ExitStack) -> Recorder | None:
         """Start the recorder that the specification requests; the stack closes it."""
@@ -286,20 +330,20 @@ class Session:
     def _commands(self) -> list[Command]:
         from simkit.recording.command_script import read_script, steady_velocity
 
-        topics = self.sim.communication.bus.topics()
-        found = []
-        if self.spec.velocity is not None:
-            found.append(steady_velocity(self.spec.velocity, topics))
+        topics, has_nodes = self.sim.communication.bus.topics(), bool(self.sim.nodes)
+        commands = []
+        if self.spec.velocity is not None and not has_nodes:
+            commands.append(steady_velocity(self.spec.velocity, topics))
         if self.spec.script is not None:
-            found += read_script(self.spec.script, topics)
-        return found
+            commands += read_script(self.spec.script, None if has_nodes else topics)
+        return commands
 
     def _played(self) -> Playback | None:
         """Open the bag to play, if the specification names one."""
         bag = self.spec.played_bag
         if bag is None:
             if self.spec.play_topics:
-                raise InputError("SK-CLI-018 --play-topic needs --play BAG", "SK-CLI-018")
+                raise InputError("SK-CLI-018", "--play-topic needs --play BAG")
             return None
         from simkit.recording.bags.playback import Playback  # 5 ms: the formats of bags
 
@@ -310,62 +354,12 @@ class Session:
         print_status(f"playing {', '.join(remappings)} of {bag}")
         return played
 
-    def _driver(self) -> Teleop | None:
-        from simkit.bridges.teleop import Teleop, find_target
-
-        display = self.display
-        if display.teleop is None:
-            return None
-        return Teleop(self.sim, find_target(self.sim, display.teleop), display.key_timeout)
-
-    def _keyboard(self) -> Keyboard | WindowsKeyboard | None:
-        """Open the terminal's keyboard for teleop, or if the options pause the run and its output is on the terminal.
-
-        Keys that are typed during any other run are for the shell, which reads them after the run. If the output goes
-        to a pager, the pager reads the keys. simkit then reads them only for teleop.
-        """
-        from simkit.cli.terminal.keyboard import open_keyboard
-
-        if self._teleop is None:
-            is_paused_by_options = self.spec.paused or self.spec.steps is not None
-            has_output = sys.stdout is not None and not sys.stdout.closed and sys.stdout.isatty()
-            if not (is_paused_by_options and has_output):
-                return None
-        return open_keyboard(sys.stdin)
-
-    def _connect_keys(self, keyboard: Keyboard | WindowsKeyboard, loop: RunLoop) -> None:
-        """Connect the keyboard to the loop, so that keys pause, step and drive the run."""
-        from simkit.cli.run_keys import RunKeys
-
-        keys = RunKeys(self.sim, keyboard, self._teleop)
-        loop.poll_keys, loop.on_pause = keys.poll, keys.say_paused
-        if self._teleop is not None:
-            loop.senders.append(self._teleop)
-
-    def _progress(self, counter: TopicCounter, duration: float | None) -> Progress:
-        from simkit.cli.terminal.progress import Progress
-        from simkit.cli.terminal.teleop_display import DriverLine
-
-        if self._teleop is None:
-            return Progress(self.sim, counter, duration, stdout_console())
-        console = stdout_console() if stdout_console().is_interactive else stderr_console()
-        return Progress(self.sim, counter, duration, console, DriverLine(self.sim, self._teleop).lines)
-
     def _hold(self) -> None:
         """Start the run paused, or pause it after some steps, as specified."""
         if self.spec.steps is not None:
             self.sim.control.pausing.step(self.spec.steps)
         elif self.spec.paused:
             self.sim.paused = True
-
-    # ------------------------------------------------------------------ viewer, clients and plugin files
-
-    def _open_viewer(self, stack: ExitStack, loop: RunLoop, watchers: list[Callable[[], object]]) -> None:
-        from simkit.bridges.viewer import Viewer
-
-        viewer = stack.enter_context(Viewer(self.sim))
-        watchers.append(viewer.update)
-        loop.keep_going = viewer.is_open
 
     def _serve(self, stack: ExitStack, loop: RunLoop) -> None:
         """Open the socket for other terminals."""
@@ -378,17 +372,14 @@ class Session:
         if loop.server is None:
             print_status(note)
         else:
-            loop.server.open_view = partial(open_later, loop, self.sim, stack)
             stack.enter_context(loop.server)
 
-    def _watched(
-        self, loop: RunLoop, interrupts: Interrupts, watchers: list[Callable[[], object]]
-    ) -> Callable[[float | None], object]:
-        """Return a function that runs the loop and reloads plugins whose files change."""
-        from simkit.cli.plugin_watch import PluginWatch
 
-        folders = [Path(folder) for folder in self.spec.options.get("plugin_paths", ())]
-        watch = PluginWatch(self.sim, folders, interrupts, waits=self.spec.recording is None)
-        watchers.append(watch.poll)
-        loop.before_slice = watch.keep
-        return partial(watch.run, loop)
+def _progress(run: OpenRun, counter: TopicCounter, duration: float | None) -> Progress:
+    """Return the display on the terminal, with the lines of a part if it has some."""
+    from simkit.cli.terminal.progress import Progress
+
+    console = stdout_console()
+    if run.progress_lines is not None and not console.is_interactive:
+        console = stderr_console()
+    return Progress(run.sim, counter, duration, console, run.progress_lines)

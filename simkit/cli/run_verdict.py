@@ -1,11 +1,10 @@
-"""Verdict on a run: its conditions, its time limits, and its JUnit XML report."""
+"""Verdict on a run: its conditions and its time limits."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
-from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from simkit.cli.terminal.json_report import add_to_report, print_report_now
@@ -17,7 +16,6 @@ from simkit.run_spec import RunSpec
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
     from simkit.testing.conditions import CheckResult, Watch
-    from simkit.testing.junit import JunitCase
 
 FAILED: Final = RegressionError.exit_code
 
@@ -27,44 +25,45 @@ class RunVerdict:
 
     Args:
         spec: run specification.
-        junit: JUnit XML report to write; None for none.
 
     Attributes:
+        name: name of the run for reports.
+        begun: start of the run, of `time.perf_counter` [s].
+        reports: callbacks after the end of the run, also after an error, which they receive. They run in another
+            thread if the run is blocked beyond its wall time limit.
         code: exit code.
         reason: reason for the end of the run, as in `Watch.results`; empty before the end.
         results: results of the conditions.
     """
 
-    def __init__(self, spec: RunSpec, junit: Path | None = None) -> None:
+    def __init__(self, spec: RunSpec) -> None:
         self.code = 0
         self.reason = ""
         self.results: tuple[CheckResult, ...] = ()
         self._end = ""  # for the JSON report
-        self._spec, self._junit = spec, junit
-        self._name = spec.world if "<" not in spec.world else "world"
+        self.reports: list[Callable[[BaseException | None], object]] = []
+        self._spec = spec
+        self.name = spec.world if "<" not in spec.world else "world"
         self._watch: Watch | None = None
         self._has_begun = self._has_end = False
-        self._begun = time.perf_counter()
+        self.begun = time.perf_counter()
         self._wall = WallTimeLimit(spec.wall_timeout, print_status, self._give_up)
 
     def __enter__(self) -> RunVerdict:
-        from simkit.writers.atomic_output import check_writable
-
-        check_writable(self._junit)
         self._wall.__enter__()
         return self
 
     def __exit__(self, kind: object, error: BaseException | None, trace: object) -> bool:
-        """Write the report. The interrupt of the wall time limit fails the run, but its exception is suppressed."""
+        """Write the reports. The interrupt of the wall time limit fails the run, but its exception is suppressed."""
         self._wall.__exit__()
         if error is not None and not self.reason:
             self._conclude(error)
         if isinstance(error, WallTimeExceeded):
             self.code = FAILED
             if not self._has_begun:
-                print_status(self._wall_timeout_text())
+                print_status(self.wall_timeout_text())
         if error is None or isinstance(error, (SimkitError, KeyboardInterrupt)):
-            self._write(error)
+            self._report(error)
         return isinstance(error, WallTimeExceeded)
 
     # ------------------------------------------------------------------ the run
@@ -109,7 +108,7 @@ class RunVerdict:
     def print_results(self) -> None:
         """Print one line per condition."""
         if self.reason == "wall_timeout":
-            stdout_console().print(f"FAILED  {self._wall_timeout_text()}", style="red")
+            stdout_console().print(f"FAILED  {self.wall_timeout_text()}", style="red")
         for result in self.results:
             word, style = ("passed", None) if result.passed else ("FAILED", "red")
             stdout_console().print(f"{word}  {result.check.title}: {result.message}", style=style)
@@ -143,41 +142,19 @@ class RunVerdict:
             return interrupted_by
         return "timeout" if self._spec.until else "duration"
 
-    def _wall_timeout_text(self) -> str:
+    def wall_timeout_text(self) -> str:
         """Return the failure message of a run that reached its wall time limit."""
         blocked = f", while it waited for {self._wall.blocked_by}" if self._wall.blocked_by else ""
         return f"the run was stopped after {self._wall.seconds:g} s of wall time (--wall-timeout){blocked}"
 
-    # ------------------------------------------------------------------ the file
-
-    def _write(self, error: BaseException | None) -> None:
-        if self._junit is not None:
-            from simkit.testing.junit import write_junit
-
-            write_junit(self._junit, f"simkit run {self._name}", self._cases(error))
-
-    def _cases(self, error: BaseException | None) -> Sequence[JunitCase]:
-        from simkit.testing.junit import JunitCase
-
-        seconds, group = time.perf_counter() - self._begun, f"simkit.{self._name.replace('.', '_')}"
-        text = self._wall_timeout_text() if self.reason == "wall_timeout" else ""
-        failed = (text, text) if text else None
-        raised = None
-        if error is not None and not text:
-            lines = str(error).splitlines() or [type(error).__name__]
-            raised = (lines[0], "\n".join(lines))
-        cases = [JunitCase("run", group, seconds, failure=failed, error=raised)]
-        for result in self.results:
-            failure = None if result.passed else (result.message, f"{result.check.title}: {result.message}")
-            cases.append(
-                JunitCase(result.check.title, group, failure=failure, output=result.message if result.passed else "")
-            )
-        return cases
+    def _report(self, error: BaseException | None) -> None:
+        for report in self.reports:
+            report(error)
 
     def _give_up(self) -> int:
-        """Write the report from the time limit's thread, because the run is blocked; return the exit code."""
+        """Write the reports from the time limit's thread, because the run is blocked; return the exit code."""
         self.reason = "wall_timeout"
-        self._write(None)
+        self._report(None)
         add_to_report(end=self.reason)
         print_report_now(FAILED)
         return FAILED

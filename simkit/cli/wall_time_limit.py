@@ -70,14 +70,14 @@ class WallTimeLimit:
         self.is_over = True
         if self._ended.wait(GRACE_SECONDS):
             return
-        found = self._at_work()
-        blocker = self.blocked_by = found[1] if found else "code outside plugins"
+        blocking = self._at_work()
+        blocker = self.blocked_by = blocking[1] if blocking else "code outside plugins"
         self._say(f"the wall time of {self.seconds:g} s is over; interrupting {blocker}")
         deadline, is_first = time.monotonic() + ABORT_SECONDS, True
         while time.monotonic() < deadline:
             now = self._at_work()
             if self._may_alarm and (
-                is_first or (found and now and found[0] is now[0])
+                is_first or (blocking and now and blocking[0] is now[0])
             ):  # a plugin may catch the first interrupt
                 signal.pthread_kill(self._thread_id, _ALARM)  # type: ignore[arg-type]
             is_first = False

@@ -14,9 +14,9 @@ from weakref import WeakKeyDictionary
 import mujoco
 import numpy as np
 
-from simkit.compiler.meshes.companion_files import Pixels, read_pixels
-from simkit.compiler.meshes.content_digest import content_digest
-from simkit.compiler.meshes.mesh_part import Colour, Floats, Ints, MeshPart
+from simkit.loaders.meshes.companion_files import Pixels, read_pixels
+from simkit.loaders.meshes.mesh_cache import content_digest
+from simkit.loaders.meshes.mesh_part import Colour, Floats, Ints, MeshPart
 from simkit.scene import Material, SceneVisual
 
 if TYPE_CHECKING:
@@ -273,10 +273,10 @@ def _relative_ambient(material: Material) -> float:
 
     The result is 1 for a black or mostly emissive material.
     """
-    own = brightness(material.diffuse)
-    if own <= 0.0 or brightness(material.emissive) > own:
+    diffuse = brightness(material.diffuse)
+    if diffuse <= 0.0 or brightness(material.emissive) > diffuse:
         return 1.0
-    return brightness(material.ambient) / own
+    return brightness(material.ambient) / diffuse
 
 
 def _colour_and_emission(material: Material) -> tuple[Colour, float]:
@@ -284,14 +284,14 @@ def _colour_and_emission(material: Material) -> tuple[Colour, float]:
 
     MuJoCo emits in the surface's own colour, so a mostly emissive material uses its emissive colour.
     """
-    own, glow = brightness(material.diffuse), brightness(material.emissive)
+    diffuse, glow = brightness(material.diffuse), brightness(material.emissive)
     if glow <= 0.0:
         return material.diffuse, 0.0
-    if glow > own:
+    if glow > diffuse:
         strongest = max(material.emissive[:3])
         r, g, b = (c / strongest for c in material.emissive[:3])
         return (r, g, b, material.diffuse[3]), strongest
-    return material.diffuse, glow / own
+    return material.diffuse, glow / diffuse
 
 
 def brightness(colour: Colour) -> float:

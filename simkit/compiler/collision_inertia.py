@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from simkit.compiler.meshes.mesh_part import Floats, MeshPart, join_parts
 from simkit.diagnostics import Diagnostics
 from simkit.float_sum import float_sum
 from simkit.linear_algebra import matmul
+from simkit.loaders.meshes.mesh_part import Floats, MeshPart, join_parts
 from simkit.loaders.sdf.solid_moments import Solid, solid_of, solid_of_triangles
 from simkit.scene import Mesh, SceneCollision, SceneLink
 
@@ -34,11 +34,11 @@ def collision_inertia(links: Sequence[SceneLink], mass: float, diagnostics: Diag
     solids: list[tuple[float, Floats, Matrix]] = []
     for link in links:
         for collision in link.collisions:
-            found = _solid(collision, diagnostics)
-            if found is None or not (found[0] > 0.0 and np.isfinite(found[2]).all()):
+            solid = _solid(collision, diagnostics)
+            if solid is None or not (solid[0] > 0.0 and np.isfinite(solid[2]).all()):
                 continue
             pose = link.pose_world @ collision.pose_link
-            solids.append((found[0], pose.transform(found[1]), matmul(pose.matrix, found[2], pose.matrix.T)))
+            solids.append((solid[0], pose.transform(solid[1]), matmul(pose.matrix, solid[2], pose.matrix.T)))
     volume = float_sum(part for part, _, _ in solids)
     if not solids or not np.isfinite(volume):
         return None
@@ -58,7 +58,7 @@ def _solid(collision: SceneCollision, diagnostics: Diagnostics) -> Solid | None:
         return solid_of(shape)
     from scipy.spatial import ConvexHull, QhullError
 
-    from simkit.compiler.meshes.mesh_reader import load_mesh
+    from simkit.loaders.meshes.mesh_reader import load_mesh
 
     vertices, _ = join_parts([] if shape.missing else load_mesh(shape, diagnostics, collision.where))
     try:

@@ -103,8 +103,8 @@ class Couplings:
             turns = other.type in ("revolute", "continuous") and bool(other.joint_names)
             if not turns or ends != {joint.gearbox_reference, link}:
                 continue
-            own = other.scene.axes[0].xyz_world
-            along = dot(joint.axes[axis].xyz_world, own) if axis < len(joint.axes) else 1.0
+            other_axis = other.scene.axes[0].xyz_world
+            along = dot(joint.axes[axis].xyz_world, other_axis) if axis < len(joint.axes) else 1.0
             if abs(along) < _ALONG:
                 continue
             sign = 1.0 if along > 0.0 else -1.0
@@ -177,8 +177,8 @@ class Couplings:
     def _leader(self, joint: SceneJoint, axis: int, law: Mimic) -> JointBinding | None:
         known = self.record.joints
         leader = known.get(law.joint) or known.get(joint.scoped.removesuffix(joint.name) + law.joint)
-        own = known.get(joint.scoped)
-        if own is not None and leader is not None and _has_axis(own, axis) and _has_axis(leader, law.axis):
+        follower = known.get(joint.scoped)
+        if follower is not None and leader is not None and _has_axis(follower, axis) and _has_axis(leader, law.axis):
             return leader
         hint = did_you_mean(law.joint, [j.name for j in (b.scene for b in known.values())]) if leader is None else ""
         message = f"joint {joint.scoped}: its mimic of {law.joint} is ignored: the joint or its axis does not exist"

@@ -29,10 +29,10 @@ def plan_light(world: SceneWorld, change: EntityChange) -> list[SpecEdit] | None
     old, new = change.old, change.new
     if change.owner is not None or world.mjcf is not None or "type" in change.fields:
         return None
-    found = Diagnostics()
+    problems = Diagnostics()
     for light in (old, new):
-        report_light(light, world, found)
-    if list(found):
+        report_light(light, world, problems)
+    if list(problems):
         return None  # a new load reports the problems
     return [lambda spec: write_light(spec.light(new.scoped), new, new.pose_world, world.surroundings.shadows)]
 
@@ -94,10 +94,10 @@ def plan_moved_link(spec: mujoco.MjSpec, record: ModelRecord, old: SceneLink, ne
     edits: list[SpecEdit] = []
     shapes: list[SceneCollision | SceneVisual] = [*old.collisions, *old.visuals]
     for shape in shapes:
-        found = plan_shape(spec, record, new, shape, moves=True)
-        if found is None:
+        shape_edits = plan_shape(spec, record, new, shape, moves=True)
+        if shape_edits is None:
             return None
-        edits += found
+        edits += shape_edits
     return edits
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
@@ -14,13 +15,12 @@ from simkit.compiler import shape_geometry
 from simkit.compiler.assets import Assets, geom_colours
 from simkit.compiler.contact_friction import contact_properties
 from simkit.compiler.geom_groups import COLLISION, COLLISION_CONTACT, COLLISION_RAY, DRAWN_COLLISION, VISUAL
-from simkit.compiler.meshes.companion_files import Pixels
-from simkit.compiler.meshes.mesh_part import Colour, Floats, MeshFileError, MeshPart, has_area, join_parts, report_once
 from simkit.compiler.name_map import GeomOwner, ModelRecord
 from simkit.compiler.wheel_cylinders import RoundMesh, TurningAxis, round_mesh
-from simkit.compiler.world_geoms import WorldGeoms
 from simkit.diagnostics import Diagnostics, Where
 from simkit.linear_algebra import matmul
+from simkit.loaders.meshes.companion_files import Pixels
+from simkit.loaders.meshes.mesh_part import Colour, Floats, MeshFileError, MeshPart, has_area, join_parts, report_once
 from simkit.pose import Pose
 from simkit.scene import (
     Cone,
@@ -38,6 +38,72 @@ from simkit.scene import (
 
 if TYPE_CHECKING:
     from simkit.compiler.meshes.convex_decomposition import ConvexBodies
+
+
+DIRECT: Final = 500
+"""Number of geoms that are added to the world body itself."""
+
+BLOCK: Final = 2500
+"""Number of geoms in one attached specification; the time of an attachment grows with the square of this number."""
+
+
+class WorldGeoms:
+    """Writer of the geoms of the world body, in the order of their addition.
+
+    A large world has tens of thousands of them. At each `add_geom`, MuJoCo lists all elements of the specification
+    again: 80,000 geoms would take 15 s. Therefore all but the first geoms are added to a small specification, which is
+    attached when it is full. The numbers of the compiled model are the same.
+
+    Args:
+        spec: specification of the world; before others use it, attach the geoms that wait.
+        count: number of geoms that were added before.
+        blocks: names of the geoms in each attached frame, by the name of the frame.
+    """
+
+    def __init__(self, spec: mujoco.MjSpec, count: int = 0, blocks: dict[str, frozenset[str]] | None = None) -> None:
+        self.spec, self._count = spec, count
+        self._blocks = dict(blocks or {})
+        self._waiting: mujoco.MjSpec | None = None
+        self._names: list[str] = []
+
+    def add(self, name: str, **settings: object) -> None:
+        """Add a geom; it is in the specification at the latest after `attach_waiting`."""
+        self._count += 1
+        if self._count <= DIRECT:
+            self.spec.worldbody.add_geom(name=name, **settings)
+            return
+        if self._waiting is None:
+            self._waiting = mujoco.MjSpec()
+        self._waiting.worldbody.add_geom(name=name, **settings)
+        self._names.append(name)
+        if len(self._names) >= BLOCK:
+            self.attach_waiting()
+
+    def attach_waiting(self) -> None:
+        """Attach the geoms that wait."""
+        if self._waiting is None:
+            return
+        waiting, self._waiting = self._waiting, None
+        names, self._names = self._names, []
+        block = f"{names[0]}#block"
+        self.spec.attach(waiting, prefix="", frame=self.spec.worldbody.add_frame(name=block))
+        self._blocks[block] = frozenset(names)
+
+    def remove(self, names: Iterable[str]) -> None:
+        """Remove geoms; a whole block of them is removed as one frame, which is as fast as one geom."""
+        rest = set(names)
+        for block, inside in list(self._blocks.items()):
+            if inside <= rest:
+                rest -= inside
+                self.spec.delete(self.spec.frame(block))
+                del self._blocks[block]
+        for name in sorted(rest):
+            self.spec.delete(self.spec.geom(name))
+
+    def copy_to(self, spec: mujoco.MjSpec) -> WorldGeoms:
+        """Return the writer of a copy of the specification, in which no geoms wait."""
+        return WorldGeoms(spec, self._count, self._blocks)
+
 
 _HALF_SPACE = (50.0, 50.0, 0.05)
 _OVER = Pose((0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0))  # rotated by 180° about x
@@ -99,12 +165,12 @@ class GeomWriter:
         self._world, self._ambient, self._has_rolling = world, ambient, has_rolling
         self._count: Counter[str] = Counter()
 
-    def _add(self, parent: GeomParent, owner: GeomOwner, pose: Pose, **settings: Any) -> None:
+    def _add(self, parent: GeomParent, owner: GeomOwner, pose: Pose, **settings: object) -> None:
         local = parent.offset @ pose
         self._add_at(parent, owner, local.position, local.quaternion, **settings)
 
     def _add_at(
-        self, parent: GeomParent, owner: GeomOwner, position: Floats, quaternion: Floats, **settings: Any
+        self, parent: GeomParent, owner: GeomOwner, position: Floats, quaternion: Floats, **settings: object
     ) -> None:
         base = owner.scoped + ("#v" if owner.is_visual else "#")
         name = f"{base}{self._count[base]}"
@@ -231,10 +297,10 @@ class GeomWriter:
         frame, rotation = parent.offset @ pose, np.zeros(9)
         mujoco.mju_quat2Mat(rotation, frame.quaternion)
         turn = rotation.reshape(3, 3)
-        for at, axes, own in geoms:
+        for at, axes, piece in geoms:
             quaternion = np.zeros(4)
             mujoco.mju_mat2Quat(quaternion, matmul(turn, axes).reshape(9))
-            self._add_at(parent, owner, frame.position + matmul(turn, at), quaternion, **own, **settings)
+            self._add_at(parent, owner, frame.position + matmul(turn, at), quaternion, **piece, **settings)
 
     def _wheel(
         self, parent: GeomParent, owner: GeomOwner, collision: SceneCollision, wheel: RoundMesh, solid: GeomSettings
@@ -346,7 +412,7 @@ class GeomWriter:
 
     def _visual_parts(self, shape: Geometry, where: Where) -> list[MeshPart]:
         if isinstance(shape, Mesh):
-            from simkit.compiler.meshes.mesh_reader import load_mesh  # 4 ms: the formats
+            from simkit.loaders.meshes.mesh_reader import load_mesh  # 4 ms: the formats
 
             return [] if shape.missing else load_mesh(shape, self.diagnostics, where)
         if isinstance(shape, Cone):

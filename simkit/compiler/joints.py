@@ -47,12 +47,6 @@ def _report_odd_values(joint: SceneJoint, axis: Axis, diagnostics: Diagnostics) 
             "both limits are ignored"
         )
         diagnostics.warning("SK-JOINT-006", message, joint.where)
-    elif axis.lower > 0.0 or axis.upper < 0.0:
-        message = (
-            f"joint {joint.scoped} starts at 0, outside its limits [{axis.lower:g}, {axis.upper:g}]: "
-            "the first steps push it inside"
-        )
-        diagnostics.warning("SK-JOINT-007", message, joint.where, "limits are relative to the pose in the file")
     if axis.limit_stiffness is not None and axis.limit_stiffness < _RIGID and math.isfinite(axis.upper - axis.lower):
         message = f"joint {joint.scoped}: its limits are rigid; limit stiffness {axis.limit_stiffness:g} is ignored"
         diagnostics.note("SK-JOINT-014", message, joint.where)

@@ -178,5 +178,5 @@ class JointIndex:
         """Return the joints that connect two of the links, or one of them and the world, in the order of the file."""
         numbers = sorted({number for link in links for number in self._numbers.get(link, ())})
         ends = links | {WORLD}
-        found = (self._joints[number] for number in numbers)
-        return [joint for joint in found if {joint.parent_link, joint.child_link} <= ends]
+        candidates = (self._joints[number] for number in numbers)
+        return [joint for joint in candidates if {joint.parent_link, joint.child_link} <= ends]

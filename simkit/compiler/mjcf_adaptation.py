@@ -11,6 +11,7 @@ from typing import Any, Final
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
 from simkit.compiler.contact_friction import MU_MOST, friction_priority
 from simkit.compiler.kinematic_tree import WORLD
@@ -110,7 +111,7 @@ _OPTION_NAMES: Final[dict[str, Any]] = {
 }
 
 
-def _text(name: str, value: Any) -> str:
+def _text(name: str, value: float | npt.NDArray[np.float64]) -> str:
     if name in _OPTION_NAMES:
         return str(_OPTION_NAMES[name](int(value)).name).split("_", 1)[1].lower()
     return " ".join(f"{float(v):g}" for v in np.ravel(value))
@@ -227,10 +228,10 @@ def keep_only_model(child: mujoco.MjSpec, source: MjcfSource) -> None:
     for body in list(child.worldbody.bodies):
         if body.name not in source.roots:
             child.delete(body)
-    own = set(source.geoms) if WORLD in source.bodies.values() else set()
-    for kind, kept in (("geoms", own), ("lights", set()), ("sites", set()), ("cameras", set())):
+    own_geoms = set(source.geoms) if WORLD in source.bodies.values() else set()
+    for kind, names in (("geoms", own_geoms), ("lights", set()), ("sites", set()), ("cameras", set())):
         for element in list(getattr(child.worldbody, kind)):
-            if element.name not in kept:
+            if element.name not in names:
                 child.delete(element)
     for key in list(child.keys):
         child.delete(key)

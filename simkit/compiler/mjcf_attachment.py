@@ -142,8 +142,8 @@ def _holding_joint(
 ) -> SceneJoint | None:
     """Return the fixed joint that connects the only, free root of a model to a recorded link; None if there is none."""
     roots = [scoped for scoped, body in source.bodies.items() if body in source.roots]
-    held = {j.child_link for j in model.joints if source.joints.get(j.scoped)}
-    if len(roots) != 1 or roots[0] in held or WORLD in source.bodies.values():
+    jointed = {j.child_link for j in model.joints if source.joints.get(j.scoped)}
+    if len(roots) != 1 or roots[0] in jointed or WORLD in source.bodies.values():
         return None
     return next(
         (j for j in joints if j.type == "fixed" and j.child_link == roots[0] and j.parent_link in record.links), None
@@ -290,5 +290,5 @@ def without_attached(model: SceneModel) -> SceneModel:
     """Return a model without nested models that have a specification of their own."""
     if all(nested.mjcf is None for nested in model.all_models()[1:]):
         return model
-    kept = tuple(without_attached(nested) for nested in model.models if nested.mjcf is None)
-    return replace(model, models=kept)
+    models = tuple(without_attached(nested) for nested in model.models if nested.mjcf is None)
+    return replace(model, models=models)

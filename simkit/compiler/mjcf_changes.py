@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import fields, replace
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import mujoco
 import numpy as np
@@ -21,10 +21,14 @@ from simkit.scene import geometry as shapes
 from simkit.scene.differences import EntityChange, entity_changes
 from simkit.scene.mjcf_source import Mass, MjcfSource
 
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+
 _SAME_PLACE: Final = 1e-9
 """Largest difference of two equal poses [m, and components of a quaternion]; moved models have rounding errors."""
 
-_SIZES: Final[dict[type, Any]] = {
+_SIZES: Final[dict[type, Callable[[Any], Sequence[float]]]] = {
     shapes.Sphere: lambda s: (s.radius, 0.0, 0.0),
     shapes.Capsule: lambda s: (s.radius, s.length / 2, 0.0),
     shapes.Cylinder: lambda s: (s.radius, s.length / 2, 0.0),
@@ -98,9 +102,9 @@ def _in_file(source: MjcfSource, link: SceneLink) -> Pose:
     return source.place.inverse() @ link.pose_world if source.prefix else link.pose_world
 
 
-def _is_same(one: Pose, other: Pose) -> bool:
-    turned = min(np.abs(one.quaternion - other.quaternion).max(), np.abs(one.quaternion + other.quaternion).max())
-    return bool(np.abs(one.position - other.position).max() <= _SAME_PLACE and turned <= _SAME_PLACE)
+def _is_same(pose: Pose, other: Pose) -> bool:
+    turned = min(np.abs(pose.quaternion - other.quaternion).max(), np.abs(pose.quaternion + other.quaternion).max())
+    return bool(np.abs(pose.position - other.position).max() <= _SAME_PLACE and turned <= _SAME_PLACE)
 
 
 def _changes(read: SceneModel, model: SceneModel) -> Iterable[EntityChange]:
@@ -130,7 +134,9 @@ def _refuse(what: str, model: SceneModel, diagnostics: Diagnostics) -> None:
     diagnostics.error("SK-CLI-014", text, model.where, "change the file")
 
 
-def _move(element: Any, pose: Pose, what: str, model: SceneModel, diagnostics: Diagnostics) -> None:
+def _move(
+    element: mujoco.MjsBody | mujoco.MjsGeom, pose: Pose, what: str, model: SceneModel, diagnostics: Diagnostics
+) -> None:
     """Give a body or geom another pose in its parent body's frame."""
     if element.frame is not None and element.frame.name != "world":
         _refuse(f"the pose of {what}, which is in a <frame>,", model, diagnostics)
@@ -173,7 +179,7 @@ def _write_geom(geom: mujoco.MjsGeom, change: EntityChange, model: SceneModel, d
         geom.rgba[3] = 1.0 - new.transparency
 
 
-def _differing(old: Any, new: Any) -> set[str]:
+def _differing(old: DataclassInstance, new: object) -> set[str]:
     return {f.name for f in fields(old) if f.name != "where" and getattr(old, f.name) != getattr(new, f.name)}
 
 

@@ -172,12 +172,12 @@ def measure_length_ranges(
             timeout=RANGE_TIMEOUT,
             check=False,
         )
-        found = json.loads(done.stdout) if done.returncode == 0 else {}
+        answer = json.loads(done.stdout) if done.returncode == 0 else {}
     except (subprocess.TimeoutExpired, OSError, ValueError):
-        found = {}
-    if "ranges" in found:
-        return {name: (low, high) for name, (low, high) in zip(names, found["ranges"], strict=False)}
-    reason = found.get("problem", f"the measurement did not converge within {RANGE_TIMEOUT:g} s")
+        answer = {}
+    if "ranges" in answer:
+        return {name: (low, high) for name, (low, high) in zip(names, answer["ranges"], strict=False)}
+    reason = answer.get("problem", f"the measurement did not converge within {RANGE_TIMEOUT:g} s")
     diagnostics.error(
         "SK-MJCF-014",
         f"the length ranges of the muscles cannot be measured: {' '.join(str(reason).split())}",
@@ -204,10 +204,10 @@ def _collect_warnings() -> Iterator[list[str]]:
 
 def _report_refusal(text: str, file: MjcfText, diagnostics: Diagnostics) -> None:
     message, where = _locate_message(text, file)
-    found = _UNKNOWN_NAME.search(message)
+    match = _UNKNOWN_NAME.search(message)
     hint = ""
-    if found is not None:
-        name = found[2] or found[3] or ""
+    if match is not None:
+        name = match[2] or match[3] or ""
         hint = did_you_mean(name, _element_names(file))
     diagnostics.error("SK-MJCF-001", f"MuJoCo refuses the file: {message}", where, hint)
 
@@ -220,8 +220,8 @@ def _locate_message(text: str, file: MjcfText) -> tuple[str, Where]:
     line = place[2] if place is not None and place[2] else None
     if place is not None:
         text = text[: place.start()] + (f" (element {place[1]!r})" if place[1] else "")
-    elif (found := _MESSAGE_LINE.search(text)) is not None:
-        line = found[1]
+    elif (match := _MESSAGE_LINE.search(text)) is not None:
+        line = match[1]
     if line is not None:
         where = file.where(int(line))
     return " ".join(text.split()), where

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import Final
 
@@ -9,18 +10,62 @@ import mujoco
 import numpy as np
 
 from simkit import progress
-from simkit.compiler.engine_messages import user_message
+from simkit.compiler.assets import mesh_bytes
 from simkit.compiler.engine_options import apply_size, choose_islands, set_extent
 from simkit.compiler.first_state import first_mass_matrix, first_state, inverse_inertia
 from simkit.compiler.lights import refine_for_lamps
 from simkit.compiler.mjcf_attachment import assign_geom_groups, silence_engine_warnings
-from simkit.compiler.name_map import JointBinding, ModelRecord, NameMap
+from simkit.compiler.name_map import GeomOwner, ModelRecord, NameMap
 from simkit.compiler.refused_inertias import restore_file_inertias
 from simkit.compiler.servo_gains import tune_servos
 from simkit.diagnostics import Diagnostics, Where
 from simkit.linear_algebra import matmul
 from simkit.memory_error import find_memory_error
-from simkit.scene import SceneWorld
+from simkit.scene import SceneCollision, SceneVisual, SceneWorld
+
+_ASSET: Final = re.compile(r"\b(mesh|texture|material|heights)[#_][0-9a-f]{6,}(#textured)?(\.\w+)?")
+_GEOM_NUMBER: Final = re.compile(r"#v?\d+(?=')")
+_ENGINE_NUMBER: Final = re.compile(r",? (at )?id -?\d+")
+
+
+def user_message(text: str, spec: mujoco.MjSpec, records: Sequence[ModelRecord], where: Where) -> tuple[str, Where]:
+    """Return an engine's message with the names of the user's file, and the place of the element that it concerns.
+
+    A mesh, material or height map has an internal name such as `mesh#f7af`. The message names its file and the
+    collision or visual instead. Numbers of the engine's elements are removed.
+
+    Args:
+        text: message of the engine.
+        spec: specification that the engine refused.
+        records: elements of the models in the specification.
+        where: place for a message that concerns no collision or visual.
+    """
+    place = where
+    for match in dict.fromkeys(m.group() for m in _ASSET.finditer(text)):
+        shape = _shape_with_asset(match, spec, records)
+        name = "an asset of simkit"
+        if shape is not None:
+            name, place = f"{getattr(shape.geometry, 'uri', '') or 'the shape'} of {shape.scoped}", shape.where
+        text = text.replace(f"'{match}'", name).replace(match, name)
+    return _ENGINE_NUMBER.sub("", _GEOM_NUMBER.sub("", text)), place
+
+
+def _shape_with_asset(
+    name: str, spec: mujoco.MjSpec, records: Sequence[ModelRecord]
+) -> SceneCollision | SceneVisual | None:
+    """Return the first collision or visual whose geoms use an asset; None if there is none."""
+    owners = {geom: owner for record in records for geom, owner in record.geoms.items()}
+    links = {scoped: binding.scene for record in records for scoped, binding in record.links.items()}
+    for geom in spec.geoms:
+        owner: GeomOwner | None = owners.get(geom.name)
+        names = (geom.meshname, geom.hfieldname, geom.material)
+        if owner is None or not any(n and (n == name or name.startswith(n.replace("#", "_"))) for n in names):
+            continue
+        link = links.get(owner.link)
+        shapes: Sequence[SceneCollision | SceneVisual] = () if link is None else (*link.collisions, *link.visuals)
+        return next((shape for shape in shapes if shape.scoped == owner.scoped), None)
+    return None
+
 
 _NO_INERTIA: Final = 1e-9
 """Least effective inertia [kg·m² or kg] of a joint that moves a mass; massless frames have a tenth of it."""
@@ -114,14 +159,6 @@ def _joint_inertia(model: mujoco.MjModel, data: mujoco.MjData, dof: int) -> floa
     return 1.0 / inverse if inverse > 0.0 else 0.0
 
 
-def place_followers(data: mujoco.MjData, joints: Iterable[JointBinding]) -> None:
-    """Set the initial positions of followers with an offset, so that their constraints start without an error."""
-    for joint in joints:
-        for follower in joint.followers:
-            if follower.offset and follower.qpos >= 0:
-                data.qpos[follower.qpos] = follower.offset
-
-
 REPORTED_DEPTH: Final = 0.005
 """Depth [m] up to which initial overlaps are common and not reported; the contact separates the bodies gently."""
 
@@ -201,7 +238,7 @@ def compile_spec(
     compiling = progress.task(f"compiling {moving} moving links", expected=1.0 + _COMPILE_SECONDS * moving**2)
     try:
         with silence_engine_warnings(), compiling:
-            return spec.compile()
+            return _compile_with_plates(spec, world, records, diagnostics)
     except ValueError as problem:
         if too_little := find_memory_error(problem):
             raise too_little from problem
@@ -209,6 +246,65 @@ def compile_spec(
         diagnostics.error("SK-PHYS-023", f"MuJoCo refuses the model: {text}", where)
         diagnostics.raise_if_errors()
         raise AssertionError("unreachable") from problem
+
+
+_COPLANAR: Final = re.compile(r"mesh '([^']+)' has coplanar vertices")
+_FLAT: Final = 1e-6
+"""Thickness of a mesh in relation to its size below which it is made a plate."""
+_PLATE: Final = 1e-3
+"""Thickness of a plate in relation to its size."""
+
+
+def _compile_with_plates(
+    spec: mujoco.MjSpec, world: SceneWorld, records: Sequence[ModelRecord], diagnostics: Diagnostics
+) -> mujoco.MjModel:
+    """Compile a specification; flat convex pieces of meshes, which MuJoCo refuses, become thin plates.
+
+    Raises:
+        ValueError: MuJoCo refuses the model for another reason.
+    """
+    thickened: set[str] = set()
+    while True:
+        try:
+            return spec.compile()
+        except ValueError as problem:
+            refused = _COPLANAR.search(str(problem))
+            if refused is None or refused.group(1) in thickened:
+                raise
+            for mesh in spec.meshes:  # all flat pieces at once, because each attempt takes long
+                if mesh.name not in thickened and _make_plate(spec, mesh, is_refused=mesh.name == refused.group(1)):
+                    thickened.add(mesh.name)
+                    shape = _shape_with_asset(mesh.name, spec, records)
+                    name = f" of {shape.scoped}" if shape is not None else ""
+                    text = f"a piece of a mesh{name} is flat: it collides as a thin plate"
+                    diagnostics.note("SK-MESH-007", text, world.where if shape is None else shape.where)
+            if refused.group(1) not in thickened:
+                raise
+
+
+def _make_plate(spec: mujoco.MjSpec, mesh: mujoco.MjsMesh, *, is_refused: bool) -> bool:
+    """Give a flat mesh without own faces a thickness; return False if it is not flat, or is only a line."""
+    content = spec.assets.get(mesh.file)
+    if content is None:
+        return False
+    count, _, _, face_count = np.frombuffer(content, "<i4", 4).tolist()
+    if face_count and not is_refused:
+        return False
+    vertices = np.frombuffer(content, "<f4", 3 * count, 16).reshape(-1, 3).astype(float)
+    edges = vertices - vertices[0]
+    longest = edges[int(np.argmax((edges * edges).sum(axis=1)))]
+    normals = np.cross(edges, longest)
+    normal = normals[int(np.argmax((normals * normals).sum(axis=1)))]
+    size, height = float(np.sqrt((longest * longest).sum())), float(np.sqrt((normal * normal).sum()))
+    if height <= _FLAT * size * size:
+        return False
+    distances = (edges * (normal / height)).sum(axis=1)
+    if not is_refused and float(np.ptp(distances)) > _FLAT * size:
+        return False
+    shift = normal / height * (0.5 * _PLATE * size)
+    mesh.file = f"plate_{mesh.file}"
+    spec.assets[mesh.file] = mesh_bytes(np.vstack([vertices - shift, vertices + shift]), np.zeros((0, 3), np.int32))
+    return True
 
 
 def finish_model(

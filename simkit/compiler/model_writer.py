@@ -11,14 +11,13 @@ import mujoco
 
 from simkit.compiler.assets import Assets
 from simkit.compiler.bodies import KINEMATIC_ARMATURE, add_body, is_massless
-from simkit.compiler.geoms import GeomParent, GeomWriter
+from simkit.compiler.geoms import GeomParent, GeomWriter, WorldGeoms
 from simkit.compiler.joints import JointWriter
 from simkit.compiler.kinematic_tree import WORLD, KinematicTree, plan_tree
 from simkit.compiler.lights import add_light, report_light
 from simkit.compiler.name_map import LightBinding, LinkBinding, ModelRecord
 from simkit.compiler.refused_inertias import BodyInertia, plan_inertials
 from simkit.compiler.wheel_cylinders import turning_axis
-from simkit.compiler.world_geoms import WorldGeoms
 from simkit.diagnostics import Diagnostics
 from simkit.pose import IDENTITY
 from simkit.scene import SceneJoint, SceneLink, SceneModel, SceneWorld
@@ -318,15 +317,15 @@ def exclude_self_collisions(
     owns = {link.scoped: m.self_collide for m in model.all_models() for link in m.links}
     solid = [link for link in moving if link.collisions]
     touchy = {k.scoped for k in solid if model.self_collide or k.self_collide or owns[k.scoped]}
-    whole = _jointed_groups(model, joints)
-    is_one = len({whole[link.scoped] for link in solid}) < 2
+    groups = _jointed_groups(model, joints)
+    is_one = len({groups[link.scoped] for link in solid}) < 2
     many = is_one and len(solid) * (len(solid) - 1) // 2 > PAIRS_MOST
     if not touchy and many and record.own_bit and _is_plain(solid):
         _mark_geom(spec, record, {link.scoped for link in solid})
         return
     record.own_bit = 0
     for a, b in combinations(solid, 2):
-        if whole[a.scoped] != whole[b.scoped]:
+        if groups[a.scoped] != groups[b.scoped]:
             continue
         collide = a.scoped in touchy or b.scoped in touchy
         if not collide or frozenset((a.scoped, b.scoped)) in joined:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import mujoco
 
@@ -48,10 +48,10 @@ def plan_moved_model(
     record = builder.records.get(model.scoped)
     if record is None or not _is_separate(builder, record) or any(map(_has_other_shape, changes)):
         return None
-    found = Diagnostics()
-    source = type(builder)(replace(world, models=(model,), joints=(), lights=(), plugins=(), actors=()), found)
+    problems = Diagnostics()
+    source = type(builder)(replace(world, models=(model,), joints=(), lights=(), plugins=(), actors=()), problems)
     moved = source.records[model.scoped]
-    if found.has_errors or moved.geoms.keys() != record.geoms.keys() or moved.joints.keys() != record.joints.keys():
+    if problems.has_errors or moved.geoms.keys() != record.geoms.keys() or moved.joints.keys() != record.joints.keys():
         return None
     if any(builder.spec.geom(name).type != source.spec.geom(name).type for name in record.geoms):
         return None
@@ -60,16 +60,16 @@ def plan_moved_model(
 
 def other_changes(changes: Sequence[EntityChange]) -> list[EntityChange]:
     """Return the changes of a moved model that are not poses or shapes. The axes of its joints turn with it."""
-    found = []
+    others = []
     for change in changes:
         fields, old = change.fields - SHAPE_FIELDS, change.old
         if isinstance(old, SceneJoint) and len(old.axes) == len(change.new.axes):
             pairs = zip(old.axes, change.new.axes, strict=True)
-            old = replace(old, axes=tuple(replace(one, xyz_world=other.xyz_world) for one, other in pairs))
+            old = replace(old, axes=tuple(replace(old_axis, xyz_world=other.xyz_world) for old_axis, other in pairs))
             fields -= {"axes"} if old.axes == change.new.axes else set()
         if fields:
-            found.append(replace(change, old=old, fields=fields))
-    return found
+            others.append(replace(change, old=old, fields=fields))
+    return others
 
 
 def _has_other_shape(change: EntityChange) -> bool:
@@ -88,8 +88,8 @@ def _is_separate(builder: SpecBuilder, record: ModelRecord) -> bool:
     others = record.equalities, record.attached, record.massless, record.exact, record.lights, record.actuators
     if any(others) or record.sites or record.world_sites or record.world_cameras:
         return False
-    own = {link.body_name for link in record.links.values()}
-    return not any({item.name1, item.name2} & own for item in builder.spec.equalities)
+    bodies = {link.body_name for link in record.links.values()}
+    return not any({item.name1, item.name2} & bodies for item in builder.spec.equalities)
 
 
 def _write_model(spec: mujoco.MjSpec, record: ModelRecord, source: mujoco.MjSpec, moved: ModelRecord) -> None:
@@ -104,6 +104,6 @@ def _write_model(spec: mujoco.MjSpec, record: ModelRecord, source: mujoco.MjSpec
         record.joints[scoped] = replace(joint, **poses)
 
 
-def _copy(target: Any, source: Any, names: Sequence[str]) -> None:
+def _copy(target: object, source: object, names: Sequence[str]) -> None:
     for name in names:
         setattr(target, name, getattr(source, name))

@@ -9,10 +9,11 @@ from typing import Any, TypeVar
 import mujoco
 
 from simkit.compiler.geom_groups import COLLISION, COLLISION_CONTACT, COLLISION_RAY, DRAWN_COLLISION
+from simkit.compiler.kinematic_tree import WORLD
 from simkit.compiler.state_transfer import JOINT_WIDTHS
 from simkit.diagnostics import did_you_mean
 from simkit.pose import IDENTITY, Pose
-from simkit.scene import SceneJoint, SceneLight, SceneLink, SceneModel
+from simkit.scene import Mesh, SceneJoint, SceneLight, SceneLink, SceneModel
 
 T = TypeVar("T")
 
@@ -49,6 +50,12 @@ class LinkBinding:
     geoms: tuple[int, ...] = ()
     ray_geoms: tuple[int, ...] = ()
     visuals: tuple[int, ...] = ()
+
+    @property
+    def has_missing_visuals(self) -> bool:
+        """Check whether the link has visuals, but their mesh files are missing, so that none of them is drawn."""
+        shapes = [visual.geometry for visual in self.scene.visuals]
+        return bool(shapes) and not self.visuals and all(isinstance(s, Mesh) and s.missing for s in shapes)
 
 
 @dataclass(frozen=True, slots=True)
@@ -212,6 +219,20 @@ class ModelRecord:
                 setattr(same, name, content.copy())
         return same
 
+    def replace_scene(self, model: SceneModel) -> None:
+        """Refer to the entities of the description of the model with other numbers."""
+        self.scene = model
+        links = {link.scoped: link for link in model.all_links()}
+        joints = {joint.scoped: joint for joint in model.all_joints()}
+        for name, binding in self.links.items():
+            scene = links.get(name, binding.scene)
+            # a static link is part of the world body, so its offset is its pose in the world; an attached model in
+            # MuJoCo's own format has offsets of its own
+            is_of_world = binding.body_name == WORLD and not self.attached
+            offset = scene.pose_world if is_of_world else binding.offset
+            self.links[name] = replace(binding, scene=scene, offset=offset)
+        self.joints = {n: replace(b, scene=joints.get(n, b.scene)) for n, b in self.joints.items()}
+
 
 def lookup(items: Mapping[str, T], name: str, kind: str) -> T:
     """Return `items[name]`; a KeyError suggests the closest name."""
@@ -231,6 +252,7 @@ class NameMap:
         self.links, self.joints, self.lights = links, joints, lights
         self._owners: dict[int, GeomOwner] = {}
         self._model: mujoco.MjModel | None = None
+        # a compile makes a new map, so values of the old model vanish without a call to each sensor
         self._shared: dict[str, Any] = {}
 
     def shared(self, key: str, make: Callable[[], T]) -> T:
@@ -243,6 +265,14 @@ class NameMap:
     def forget_shared(self, key: str) -> None:
         """Let the next call of `shared` compute the value of a key again."""
         self._shared.pop(key, None)
+
+    def replace_scenes(self, records: Iterable[ModelRecord]) -> None:
+        """Refer to the descriptions that the records of the models refer to."""
+        for record in records:
+            links = {n: b.scene for n, b in record.links.items() if self.links[n].scene is not b.scene}
+            joints = {n: b.scene for n, b in record.joints.items() if self.joints[n].scene is not b.scene}
+            self.links.update({n: replace(self.links[n], scene=scene) for n, scene in links.items()})
+            self.joints.update({n: replace(self.joints[n], scene=scene) for n, scene in joints.items()})
 
     def link(self, scoped: str) -> LinkBinding:
         """Return a link; a KeyError suggests the closest name."""
@@ -283,11 +313,11 @@ class NameMap:
 
     def drawn(self, link: str) -> dict[str, tuple[int, ...]]:
         """Return the drawn geoms of a link by the scoped name of their visual."""
-        found: dict[str, tuple[int, ...]] = {}
+        geoms: dict[str, tuple[int, ...]] = {}
         for geom in self.link(link).visuals:
             scoped = self.geom_owner(geom)[1]
-            found[scoped] = (*found.get(scoped, ()), geom)
-        return found
+            geoms[scoped] = (*geoms.get(scoped, ()), geom)
+        return geoms
 
     def model_frame(self, model: SceneModel) -> tuple[int, Pose]:
         """Return the body that moves with the frame of a model, and the pose of the frame in the frame of the body.
@@ -339,12 +369,15 @@ class NameMap:
                 if owner.is_visual:
                     drawn.setdefault(owner.link, []).append(i)
                 else:
+                    # contacts and rays may use different geoms: a mesh collides as convex pieces that no ray hits, and
+                    # rays hit an exact copy that never collides
                     if group[i] == DRAWN_COLLISION:
                         drawn.setdefault(owner.link, []).append(i)
                     if group[i] in (COLLISION, COLLISION_CONTACT, DRAWN_COLLISION):
                         collide.setdefault(owner.link, []).append(i)
                     if group[i] in (COLLISION, COLLISION_RAY, DRAWN_COLLISION):
                         seen.setdefault(owner.link, []).append(i)
+        # new bindings, because the record keeps those without ids for the next compile
         for scoped, link in self.links.items():
             body = number(mujoco.mjtObj.mjOBJ_BODY, link.body_name)
             free = number(mujoco.mjtObj.mjOBJ_JOINT, link.free_joint) if link.free_joint else -1
@@ -385,6 +418,7 @@ class NameMap:
             qpos=tuple(int(model.jnt_qposadr[i]) for i in ids),
             dofs=tuple(dofs),
             followers=tuple(followers),
+            # a twin is no link of the file, so only its body's name leads to it
             moved_body=number_of(joint.twin) if joint.twin else (carried.body if carried else 0),
             parent_body=parent.body if parent else 0,
             child_body=child.body if child else 0,

@@ -7,7 +7,7 @@ is compiled from the changed world.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
@@ -19,10 +19,9 @@ from simkit.compiler.engine_options import apply_options
 from simkit.compiler.first_state import first_state
 from simkit.compiler.geometry_edits import SpecEdit, is_plain_obstacle, plan_light, plan_moved_link, plan_shape
 from simkit.compiler.joints import is_valid_axis, write_dynamics
-from simkit.compiler.kinematic_tree import WORLD
 from simkit.compiler.model_compilation import apply_velocity_decay
 from simkit.compiler.moved_models import SHAPE_FIELDS, moved_models, other_changes, plan_moved_model
-from simkit.compiler.name_map import ModelRecord, NameMap
+from simkit.compiler.name_map import ModelRecord
 from simkit.compiler.refused_inertias import BodyInertia, repair_inertia
 from simkit.compiler.servo_gains import tune_servos
 from simkit.compiler.spec_builder import Compiled
@@ -41,6 +40,7 @@ from simkit.scene import (
     Surface,
 )
 from simkit.scene.differences import EntityChange
+from simkit.scene.model import Axis
 
 Edit = Callable[[], None]
 """Function that writes one change to the specification and to the compiled model."""
@@ -98,23 +98,23 @@ def plan_number_edits(compiled: Compiled, world: SceneWorld, changes: Sequence[E
     shapes: list[SpecEdit] = []
     moved, rest = moved_models(changes), []
     for model in moved.values():
-        own = [change for change in changes if change.owner is model]
-        edits = plan_moved_model(compiled.builder, world, model, own)
+        of_model = [change for change in changes if change.owner is model]
+        edits = plan_moved_model(compiled.builder, world, model, of_model)
         if edits is None:
             return None
         shapes += edits
-        rest += other_changes(own)
+        rest += other_changes(of_model)
     rest += [change for change in changes if change.owner is None or change.owner.scoped not in moved]
     for change in rest:
         is_light = isinstance(change.new, SceneLight)
         is_shape = is_light or change.fields <= SHAPE_FIELDS
         if is_light:
-            found: Any = plan_light(world, change)
+            planned: Any = plan_light(world, change)
         else:
-            found = _plan_shape(compiled, change) if is_shape else _plan(compiled, world, change)
-        if found is None:
+            planned = _plan_shape(compiled, change) if is_shape else _plan(compiled, world, change)
+        if planned is None:
             return None
-        (shapes if is_shape else numbers).extend(found)
+        (shapes if is_shape else numbers).extend(planned)
     are_derived = any(change.fields & _BASIC_FIELDS for change in changes)
     return NumberEdits(tuple(numbers), tuple(shapes), are_derived)
 
@@ -151,10 +151,10 @@ def refresh_derived_numbers(compiled: Compiled) -> None:
 
 def set_mean_values(compiled: Compiled) -> None:
     """Set the mean mass and inertia, which scale the tolerance of the engine's solver, by the compiler's formula."""
-    model, given = compiled.model, compiled.builder.spec.stat
-    if math.isnan(given.meaninertia) and model.nv:
+    model, statistics = compiled.model, compiled.builder.spec.stat
+    if math.isnan(statistics.meaninertia) and model.nv:
         model.stat.meaninertia = max(mujoco.mjMINVAL, float_sum(model.dof_M0.tolist()) / model.nv)
-    if math.isnan(given.meanmass) and model.nbody > 1:
+    if math.isnan(statistics.meanmass) and model.nbody > 1:
         model.stat.meanmass = max(mujoco.mjMINVAL, float_sum(model.body_mass.tolist()[1:]) / (model.nbody - 1))
 
 
@@ -188,10 +188,10 @@ def _plan_inertial(
     binding = record.links.get(new.scoped)
     if binding is not None and binding.static:
         return []
-    found = body_numbers(compiled, world, old, new.inertial)
-    if binding is None or found is None:
+    of_body = body_numbers(compiled, world, old, new.inertial)
+    if binding is None or of_body is None:
         return None
-    body, numbers = found
+    body, numbers = of_body
 
     def write() -> None:
         for field, values in numbers.items():
@@ -204,7 +204,7 @@ def _plan_inertial(
 
 def body_numbers(
     compiled: Compiled, world: SceneWorld, link: SceneLink, inertial: Inertial
-) -> tuple[int, dict[str, Any]] | None:
+) -> tuple[int, dict[str, object]] | None:
     """Return the body of a link, and the rows of model fields that the compiler writes for another mass and inertia.
 
     Returns:
@@ -262,9 +262,9 @@ def _plan_surface(
         return None
     if has_directional_friction(old.surface) or has_directional_friction(new.surface):
         return None
-    found = Diagnostics()
-    contact = surface_numbers(compiled, new.surface, found)
-    if list(found):
+    problems = Diagnostics()
+    contact = surface_numbers(compiled, new.surface, problems)
+    if list(problems):
         return None  # a new load reports the problems
     geoms = [n for n, o in record.geoms.items() if o.scoped == new.scoped and not o.is_visual]
     model, spec = compiled.model, compiled.builder.spec
@@ -282,11 +282,11 @@ def _plan_surface(
     return [write]
 
 
-def surface_numbers(compiled: Compiled, surface: Surface, diagnostics: Diagnostics | None = None) -> dict[str, Any]:
+def surface_numbers(compiled: Compiled, surface: Surface, diagnostics: Diagnostics | None = None) -> dict[str, object]:
     """Return the contact properties of a rigid surface as the compiler writes them."""
     timestep = float(compiled.model.opt.timestep)
-    found = Diagnostics() if diagnostics is None else diagnostics  # an empty collection counts as False
-    return contact_properties(surface, timestep, 0.0, found)._asdict()
+    problems = Diagnostics() if diagnostics is None else diagnostics  # an empty collection counts as False
+    return contact_properties(surface, timestep, 0.0, problems)._asdict()
 
 
 # ---------------------------------------------------------------------- joints
@@ -298,13 +298,13 @@ def _plan_axes(compiled: Compiled, record: ModelRecord, old: SceneJoint, new: Sc
         return None
     if any(not _only_differs(a, b) for a, b in zip(old.axes, new.axes, strict=True)):
         return None
-    found = Diagnostics()
-    if not all(is_valid_axis(new, axis, found) for axis in new.axes) or list(found):
+    problems = Diagnostics()
+    if not all(is_valid_axis(new, axis, problems) for axis in new.axes) or list(problems):
         return None  # a new load reports the problems
     return [lambda: _write_axes(compiled, binding.joint_names, new)]
 
 
-def _only_differs(old: Any, new: Any) -> bool:
+def _only_differs(old: Axis, new: Axis) -> bool:
     """Check whether two axes differ in editable fields only."""
     return all(
         name in _EDITABLE_AXIS or getattr(old, name) == getattr(new, name) for name in type(old).__dataclass_fields__
@@ -327,24 +327,3 @@ def _write_axes(compiled: Compiled, names: Sequence[str], joint: SceneJoint) -> 
             model.qpos_spring[int(model.jnt_qposadr[number])] = made.springref
         model.jnt_limited[number] = made.limited == mujoco.mjtLimited.mjLIMITED_TRUE
         model.jnt_range[number] = made.range
-
-
-def replace_scenes(record: ModelRecord, model: SceneModel) -> None:
-    """Make the record of a model refer to the entities of the changed scene."""
-    record.scene = model
-    links = {link.scoped: link for link in model.all_links()}
-    joints = {joint.scoped: joint for joint in model.all_joints()}
-    for name, binding in record.links.items():
-        scene = links.get(name, binding.scene)
-        is_of_world = binding.body_name == WORLD and not record.attached
-        record.links[name] = replace(binding, scene=scene, offset=scene.pose_world if is_of_world else binding.offset)
-    record.joints = {n: replace(b, scene=joints.get(n, b.scene)) for n, b in record.joints.items()}
-
-
-def bind_scenes(names: NameMap, records: Iterable[ModelRecord]) -> None:
-    """Make the bindings of a compiled model refer to the changed scenes of its records."""
-    for record in records:
-        links = {n: b.scene for n, b in record.links.items() if names.links[n].scene is not b.scene}
-        joints = {n: b.scene for n, b in record.joints.items() if names.joints[n].scene is not b.scene}
-        names.links.update({n: replace(names.links[n], scene=scene) for n, scene in links.items()})
-        names.joints.update({n: replace(names.joints[n], scene=scene) for n, scene in joints.items()})

@@ -138,9 +138,9 @@ def repair_inertia(inertial: Inertial, slack: float = 2 * _ROUNDING) -> InertiaR
     return InertiaRepair(_with_inertial(inertial, new, axes), verdict, old, _as_vector(new), part)
 
 
-def is_point(found: InertiaRepair) -> bool:
+def is_point(repair: InertiaRepair) -> bool:
     """Check whether a repaired inertia is that of a point: no moment is larger than that of the smallest body."""
-    return found.verdict == "mended" and found.old[2] <= max(LEAST_MOMENT, LEAST_RADIUS**2 * found.inertial.mass)
+    return repair.verdict == "mended" and repair.old[2] <= max(LEAST_MOMENT, LEAST_RADIUS**2 * repair.inertial.mass)
 
 
 def plan_inertials(
@@ -198,8 +198,8 @@ def _with_some_mass(members: list[SceneLink], diagnostics: Diagnostics) -> dict[
     message = f"link {foot.scoped}: {foot.inertial.mass:g} kg is too light to move; {LEAST_MASS:g} kg are used"
     diagnostics.warning("SK-PHYS-011", message, foot.where)
     written = {m.scoped: _file_inertia(repair_inertia(m.inertial).inertial) for m in members}
-    own = written[foot.scoped]
-    written[foot.scoped] = BodyInertia(LEAST_MASS, own.com, own.inertia, own.exact)
+    inertia = written[foot.scoped]
+    written[foot.scoped] = BodyInertia(LEAST_MASS, inertia.com, inertia.inertia, inertia.exact)
     return written
 
 
@@ -243,13 +243,13 @@ def _substitute_inertias(
     elif total.verdict == "mended":
         new = collision_inertia(members, mass, diagnostics) if is_point(total) else None
         extra = (inertia_matrix(total.inertial.inertia) if new is None else new) - tensor
-        own = judged[foot.scoped].inertial
+        inertial = judged[foot.scoped].inertial
         exact = inertia_moments(inertia_matrix(foot.inertial.inertia) + _rotate_from_world(foot, extra))
-        valid = Inertial(own.mass, own.com, exact)
+        valid = Inertial(inertial.mass, inertial.com, exact)
         if repair_inertia(valid).inertial is valid:
             written[foot.scoped] = _file_inertia(valid)
         else:
-            written[foot.scoped] = BodyInertia(own.mass, own.com, own.inertia, exact)
+            written[foot.scoped] = BodyInertia(inertial.mass, inertial.com, inertial.inertia, exact)
         used = total.new if new is None else _as_vector(eigh(new)[0])
         source = "" if new is None else f", which are those of its collisions at {mass:g} kg"
         text = f"{owner}: {total.why}; {format_moments(used)} are used{source}"
@@ -260,12 +260,12 @@ def _substitute_inertias(
     return written
 
 
-def _likely_cause(inertial: Inertial, found: InertiaRepair) -> str:
+def _likely_cause(inertial: Inertial, repair: InertiaRepair) -> str:
     """Return the most frequent cause of such numbers as a hint in the message."""
     i = inertial.inertia
-    if min(i[:3]) > 0 and found.old[0] < 0:
+    if min(i[:3]) > 0 and repair.old[0] < 0:
         return "; the products of inertia (ixy, ixz, iyz) are too large: check their signs and units"
-    if found.old[2] <= 0:
+    if repair.old[2] <= 0:
         return "; all moments are negative: check their signs"
     return "; check the signs on the diagonal"
 

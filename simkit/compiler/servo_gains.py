@@ -198,12 +198,12 @@ def tuned_gains(
 ) -> list[tuple[int, float, tuple[float, float, float]]]:
     """Return id, gain and bias (constant, position, velocity) of each servo among the actuators."""
     refs = [r for r in refs if r.kind in ("position", "velocity")]
-    found = []
+    gains = []
     for ref, inertia in zip(refs, _servo_inertias(model, refs, data) if refs else (), strict=True):
         kp, kv = servo_gains(ref, inertia, float(model.opt.timestep))
         i = int(mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, ref.name))
-        found.append((i, kv, (0.0, 0.0, -kv)) if ref.kind == "velocity" else (i, kp, (0.0, -kp, -kv)))
-    return found
+        gains.append((i, kv, (0.0, 0.0, -kv)) if ref.kind == "velocity" else (i, kp, (0.0, -kp, -kv)))
+    return gains
 
 
 def servo_gains(ref: ActuatorRef, inertia: float, timestep: float) -> tuple[float, float]:
@@ -245,7 +245,7 @@ def servo_traits(
     ids = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, ref.name) for ref in refs]
     joints = [int(model.actuator_trnid[i, 0]) for i in ids]
     trees = [int(model.dof_treeid[model.jnt_dofadr[joint]]) for joint in joints]
-    found = []
+    traits = []
     for i, joint, tree in zip(ids, joints, trees, strict=True):
         dof, first = int(model.jnt_dofadr[joint]), int(model.tree_dofadr[tree])
         mass = float(model.body_subtreemass[model.dof_bodyid[first]])
@@ -257,8 +257,8 @@ def servo_traits(
         most = float(ranges[i, 1]) if limited[i] else math.inf
         response = inertia / gain if gain > 0.0 else math.inf
         load = weights * mass * _GRAVITY * reach + float(friction[dof])
-        found.append(ServoTraits(gain, most, min(most, load), float(damping[dof]), float(friction[dof]), response))
-    return found
+        traits.append(ServoTraits(gain, most, min(most, load), float(damping[dof]), float(friction[dof]), response))
+    return traits
 
 
 def _joint_reach(model: mujoco.MjModel, data: mujoco.MjData, joint: int) -> float:

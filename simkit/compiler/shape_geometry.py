@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Final
 import mujoco
 import numpy as np
 
-from simkit.compiler.meshes.mesh_part import Floats, Ints, MeshFileError, MeshPart
 from simkit.float_sum import float_sum
 from simkit.input_file import read_input
 from simkit.linear_algebra import dot
+from simkit.loaders.meshes.mesh_part import Floats, Ints, MeshFileError, MeshPart
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import Box, Capsule, Cone, Cylinder, Ellipsoid, Geometry, Heightmap, Plane, Polyline, Sphere
 
@@ -109,8 +109,8 @@ def polyline_triangles(shape: Polyline) -> tuple[Floats, Ints]:
     import trimesh
 
     meshes = [trimesh.creation.extrude_triangulation(*flat, shape.height) for flat in _outline_areas(shape)]
-    whole = trimesh.util.concatenate(meshes)
-    return np.asarray(whole.vertices, float), np.asarray(whole.faces, np.int32)
+    mesh = trimesh.util.concatenate(meshes)
+    return np.asarray(mesh.vertices, float), np.asarray(mesh.faces, np.int32)
 
 
 def polyline_pieces(shape: Polyline) -> list[Floats]:
@@ -154,9 +154,9 @@ def _convex_polygons(points: Floats, faces: Ints) -> list[list[int]]:
         first, second = of_edge[(a, b)], of_edge.get((b, a), -1)
         if second < 0 or first == second:
             continue
-        one, other = polygons[first], polygons[second]
-        at, there = one.index(b), other.index(a)
-        merged = one[at:] + one[:at] + (other[there:] + other[:there])[1:-1]
+        polygon, other = polygons[first], polygons[second]
+        at, there = polygon.index(b), other.index(a)
+        merged = polygon[at:] + polygon[:at] + (other[there:] + other[:there])[1:-1]
         if len(set(merged)) == len(merged) and _is_convex(points[merged]):
             polygons[first] = merged
             del polygons[second]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,15 +15,16 @@ from simkit.compiler import mjcf_attachment
 from simkit.compiler.assets import Assets
 from simkit.compiler.bodies import remove_split_body
 from simkit.compiler.engine_options import apply_options
+from simkit.compiler.geoms import WorldGeoms
 from simkit.compiler.kinematic_tree import WORLD, JointIndex
 from simkit.compiler.lights import add_light, report_light, report_lights
 from simkit.compiler.meshes.parallel_conversion import convert_meshes
-from simkit.compiler.model_compilation import compile_spec, finish_model, place_followers, report_overlaps
+from simkit.compiler.model_compilation import compile_spec, finish_model, report_overlaps
 from simkit.compiler.model_writer import FIRST_OWN_BIT, PAIRS_MOST, ModelWriter
 from simkit.compiler.name_map import ActuatorRef, JointBinding, LightBinding, ModelRecord, NameMap, lookup
 from simkit.compiler.servo_gains import add_actuator, add_armature, add_drive_armature
+from simkit.compiler.start_positions import place_joints, report_starts
 from simkit.compiler.state_transfer import transfer_state
-from simkit.compiler.world_geoms import WorldGeoms
 from simkit.diagnostics import Diagnostics
 from simkit.pose import Pose
 from simkit.scene import SceneJoint, SceneModel, SceneWorld
@@ -53,6 +54,9 @@ class SpecBuilder:
     Args:
         world: world to build: options, lights and all models.
         diagnostics: collection for approximations and errors.
+        find_file: function that returns the file of a URI, relative to a folder; None for a missing one.
+        parameter_files: parameter files of the run; only the control plugins read them.
+        files_read: files that were read for plugins.
 
     Attributes:
         records: elements of each top-level model, by scoped name; those of the world under the empty name.
@@ -61,11 +65,17 @@ class SpecBuilder:
         parameter_files: parameter files of the run; only the control plugins read them.
     """
 
-    def __init__(self, world: SceneWorld, diagnostics: Diagnostics) -> None:
+    def __init__(
+        self,
+        world: SceneWorld,
+        diagnostics: Diagnostics,
+        *,
+        find_file: FileFinder = _existing_file,
+        parameter_files: tuple[Any, ...] = (),
+        files_read: Iterable[Path] = (),
+    ) -> None:
         self.world, self.diagnostics = world, diagnostics
-        self.find_file: FileFinder = _existing_file
-        self.files_read: list[Path] = []
-        self.parameter_files: tuple[Any, ...] = ()
+        self.find_file, self.parameter_files, self.files_read = find_file, parameter_files, list(files_read)
         spec = mujoco.MjSpec()
         spec.modelname = world.name
         self._world_geoms, self.assets = WorldGeoms(spec), Assets(spec)
@@ -74,20 +84,20 @@ class SpecBuilder:
         self._cut: list[tuple[SceneJoint, bool]] = []
         self._world_joints = JointIndex(world.joints)
         apply_options(spec, world, diagnostics)
-        own = mjcf_attachment.models_of_own_file(world)
+        models = mjcf_attachment.models_of_own_file(world)
         mjcf_attachment.adopt_settings(spec, world)
         for light in world.lights:
-            if not own:
+            if not models:
                 add_light(spec.worldbody, light, light.pose_world, world.surroundings.shadows)
                 report_light(light, world, diagnostics)
             self.records[""].lights[light.scoped] = LightBinding(light.scoped, light, "")
-        if own:
-            self.records.update({model.scoped: ModelRecord(model) for model in own})
-            mjcf_attachment.attach_world(spec, [self.records[model.scoped] for model in own], world, diagnostics)
+        if models:
+            self.records.update({model.scoped: ModelRecord(model) for model in models})
+            mjcf_attachment.attach_world(spec, [self.records[model.scoped] for model in models], world, diagnostics)
         convert_meshes(world.models)
         with progress.task("building models", len(world.models)) as task:
             for model in world.models:
-                if model not in own:
+                if model not in models:
                     self.add_model(model)
                 task.advance()
         self._join_models()
@@ -133,10 +143,10 @@ class SpecBuilder:
         joints = self._joints_of(model)
         attached = [nested for nested in model.all_models() if nested.mjcf is not None]
         inside = {link.scoped for nested in attached for link in nested.links}
-        own = {joint.scoped for nested in attached for joint in nested.joints}
-        rest = [j for j in joints if j.scoped not in own and {j.parent_link, j.child_link} & inside]
+        attached_joints = {joint.scoped for nested in attached for joint in nested.joints}
+        rest = [j for j in joints if j.scoped not in attached_joints and {j.parent_link, j.child_link} & inside]
         record.scene = mjcf_attachment.without_attached(model)
-        self._writer(record).write([j for j in joints if j.scoped not in own and j not in rest])
+        self._writer(record).write([j for j in joints if j.scoped not in attached_joints and j not in rest])
         record.scene = model
         for nested in attached:
             done = mjcf_attachment.attach_model(self.spec, record, nested, self.diagnostics, rest)
@@ -169,10 +179,21 @@ class SpecBuilder:
         self.assets.drop(record.assets - still)
         self._names = None
 
+    def replace_scenes(self, world: SceneWorld, models: Iterable[SceneModel]) -> None:
+        """Refer to the descriptions of a world with other numbers.
+
+        Args:
+            world: changed world.
+            models: its changed top-level models.
+        """
+        self.world = world
+        for model in models:
+            self.records[model.scoped].replace_scene(model)
+
     def _joints_of(self, model: SceneModel) -> list[SceneJoint]:
         """Return the joints of a model, and the joints of the world file that connect the model to the world."""
-        own = {link.scoped for link in model.all_links()}
-        return [*model.all_joints(), *self._world_joints.between(own)]
+        links = {link.scoped for link in model.all_links()}
+        return [*model.all_joints(), *self._world_joints.between(links)]
 
     def _join_models(self, only: set[str] | None = None) -> None:
         """Add the joints of the world file that connect two models as constraints; `only` limits them to some names."""
@@ -185,12 +206,12 @@ class SpecBuilder:
 
     def _rejoin_model(self, model: SceneModel) -> None:
         """Connect a model that was removed and added again to the other models as before."""
-        own = {link.scoped for link in model.all_links()}
+        links = {link.scoped for link in model.all_links()}
         cut, self._cut = self._cut, []
         self._join_models({joint.scoped for joint, _ in cut})
         known = {j.scoped for j in self.world.joints}
         for joint, active in cut:
-            if joint.scoped not in known and {joint.parent_link, joint.child_link} & own:
+            if joint.scoped not in known and {joint.parent_link, joint.child_link} & links:
                 self.add_weld(joint.scoped, joint.parent_link, joint.child_link, active=active)
 
     def _cut_joints_to(self, record: ModelRecord) -> None:
@@ -358,7 +379,8 @@ class SpecBuilder:
             first = self._finish(model)
             names = NameMap.of(self.records.values(), model)
             data = mujoco.MjData(model)
-            place_followers(data, names.joints.values())
+            starts = place_joints(model, data, names.joints.values())
+            report_starts(names.joints.values(), starts, self.diagnostics)
             report_lights(model, self.diagnostics, self.world.where)
             report_overlaps(model, first, names, self.diagnostics, self.world.where)
         for text in dict.fromkeys(str(w.message) for w in engine_warnings):
@@ -379,11 +401,14 @@ class SpecBuilder:
             LoadError: MuJoCo refuses the changed model.
         """
         model = compile_spec(self.spec, self.world, list(self.records.values()), self.diagnostics)
-        fresh = mujoco.MjData(model)
+        fresh, names = mujoco.MjData(model), NameMap.of(self.records.values(), model)
+        starts = place_joints(model, fresh, names.joints.values())
+        new = [joint for joint in names.joints.values() if joint.scoped not in compiled.names.joints]
+        report_starts(new, starts, self.diagnostics)
         transfer_state(compiled.model, data, model, fresh)
         model.opt.gravity[:] = compiled.model.opt.gravity
         self._finish(model)
-        return Compiled(model, fresh, NameMap.of(self.records.values(), model), self)
+        return Compiled(model, fresh, names, self)
 
     def _finish(self, model: mujoco.MjModel) -> mujoco.MjData:
         return finish_model(self.spec, model, self.world, list(self.records.values()), self.diagnostics)

@@ -63,20 +63,20 @@ class StandingHeight:
         self._bounded_top, self._planes = 0.0, list[tuple[Floats, Floats]]()
         self._flexes = [f for f in range(model.nflex) if model.flex_contype[f] | model.flex_conaffinity[f]]
 
-    def find(self, own: Bools, ignored: Bools) -> Stand | None:
+    def find(self, model_geoms: Bools, ignored: Bools) -> Stand | None:
         """Return the height of a model; None if the model has no collisions or nothing is below it.
 
         Args:
-            own: geoms of the model.
+            model_geoms: geoms of the model.
             ignored: geoms of other models that carry nothing.
         """
         model, data = self._model, self._data
-        colliding = own & self._collides
+        colliding = model_geoms & self._collides
         mujoco.mj_fwdPosition(model, data)
         if not colliding.any():
             return None
         model.geom_group[:] = _OTHER
-        model.geom_group[self._is_surface & ~own & ~ignored] = _GROUND
+        model.geom_group[self._is_surface & ~model_geoms & ~ignored] = _GROUND
         model.geom_group[colliding] = _OWN
         points = np.concatenate([self._low_points(int(g)) for g in np.flatnonzero(colliding)])
         top = float(points[:, 2].max())
@@ -85,18 +85,18 @@ class StandingHeight:
         self._bounded_top, self._planes = self._tops()
         best: Stand | None = None
         for x, y, z in points:
-            found = self._floor(float(x), float(y), headroom)
-            if found is not None and (best is None or found[0] - z > best.lift):
-                best = Stand(found[0] - float(z), found[1])
+            floor = self._floor(float(x), float(y), headroom)
+            if floor is not None and (best is None or floor[0] - z > best.lift):
+                best = Stand(floor[0] - float(z), floor[1])
         return best
 
-    def raise_from_contacts(self, own: Bools, ignored: Bools, addresses: list[int]) -> tuple[float, int]:
+    def raise_from_contacts(self, model_geoms: Bools, ignored: Bools, addresses: list[int]) -> tuple[float, int]:
         """Raise a model until no contact below it penetrates; return the height [m] and the last geom that lifted it.
 
         Rays see only the columns of a grid. An edge between two columns shows as a contact.
 
         Args:
-            own: geoms of the model.
+            model_geoms: geoms of the model.
             ignored: geoms of other models that carry nothing.
             addresses: indices of the heights of its free links in the positions.
         """
@@ -107,7 +107,7 @@ class StandingHeight:
             step = 0.0
             for i in range(data.ncon):
                 first, second = (int(g) for g in data.contact.geom[i])
-                sides = [g >= 0 and bool(own[g]) for g in (first, second)]
+                sides = [g >= 0 and bool(model_geoms[g]) for g in (first, second)]
                 other = second if sides[0] else first
                 up = abs(float(data.contact.frame[i][2]))
                 if sides[0] == sides[1] or up < 0.3 or (other >= 0 and ignored[other]):
@@ -161,8 +161,8 @@ class StandingHeight:
         keys = cells[:, 0] * _CELLS + cells[:, 1]
         order = np.lexsort((points[:, 2], keys))
         first = np.append(True, np.diff(keys[order]) > 0)
-        found: Floats = points[order][first]
-        return found
+        lowest: Floats = points[order][first]
+        return lowest
 
     def _grid(self, points: Floats) -> Iterator[Floats]:
         """Return the underside of the model on a grid; points of the underside can be far from all corners."""
@@ -210,8 +210,8 @@ class StandingHeight:
         top = float((data.geom_xpos[bounded, 2] + model.geom_rbound[bounded]).max(initial=-1e9))
         if self._flexes:
             top = max(top, float(data.flexvert_xpos[:, 2].max()))
-        found = [(data.geom_xpos[g], data.geom_xmat[g].reshape(3, 3)[:, 2]) for g in np.flatnonzero(planes)]
-        return top, [(centre, normal) for centre, normal in found if abs(normal[2]) > 1e-6]
+        frames = [(data.geom_xpos[g], data.geom_xmat[g].reshape(3, 3)[:, 2]) for g in np.flatnonzero(planes)]
+        return top, [(centre, normal) for centre, normal in frames if abs(normal[2]) > 1e-6]
 
     def _top(self, x: float, y: float) -> float:
         """Return a height [m] above all surfaces of a column."""
@@ -230,9 +230,9 @@ class StandingHeight:
         groups, geom = np.zeros(6, np.uint8), np.array((-1,), np.int32)
         groups[group] = 1
         nearest = float(mujoco.mj_ray(model, data, start, ray, groups, 1, -1, geom))
-        found = int(geom[0])
+        hit = int(geom[0])
         for flex in self._flexes if group == _GROUND else ():
             distance = float(mujoco.mj_rayFlex(model, data, 0, False, False, True, False, flex, start, ray))
             if distance >= 0.0 and (nearest < 0.0 or distance < nearest):
-                nearest, found = distance, -2 - flex
-        return nearest, found
+                nearest, hit = distance, -2 - flex
+        return nearest, hit

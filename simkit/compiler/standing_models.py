@@ -46,47 +46,47 @@ def stand_models(world: SceneWorld, names: Sequence[str], diagnostics: Diagnosti
         return world
     search = StandingHeight(compiled.model, compiled.data)
     for number, name in enumerate(wanted):
-        own = _geoms_of(compiled, name)
-        ignored = np.logical_or.reduce([np.zeros_like(own), *(_geoms_of(compiled, n) for n in wanted[number + 1 :])])
-        heights = _free_heights(compiled.model, own)
-        found = search.find(own, ignored)
-        if found is None:
+        geoms = _geoms_of(compiled, name)
+        ignored = np.logical_or.reduce([np.zeros_like(geoms), *(_geoms_of(compiled, n) for n in wanted[number + 1 :])])
+        heights = _free_heights(compiled.model, geoms)
+        stand = search.find(geoms, ignored)
+        if stand is None:
             continue
         if heights is None:
-            _report_fixed(world, name, found, diagnostics)
+            _report_fixed(world, name, stand, diagnostics)
             continue
-        compiled.data.qpos[heights] += found.lift
-        more, surface = search.raise_from_contacts(own, ignored, heights)
-        lift = found.lift + more
+        compiled.data.qpos[heights] += stand.lift
+        more, surface = search.raise_from_contacts(geoms, ignored, heights)
+        lift = stand.lift + more
         if abs(lift) <= TOLERANCE:
             compiled.data.qpos[heights] -= lift
             continue
-        carrier = _surface_name(compiled, surface if surface != -1 else found.surface)
+        carrier = _surface_name(compiled, surface if surface != -1 else stand.surface)
         world = _with_model_moved(world, name, lift, carrier, diagnostics)
     return world
 
 
-def standing_lift(model: mujoco.MjModel, data: mujoco.MjData, own: Bools) -> float | None:
+def standing_lift(model: mujoco.MjModel, data: mujoco.MjData, model_geoms: Bools) -> float | None:
     """Return the vertical distance [m] from the present pose of a model to the pose on what is below it.
 
     Args:
         model: compiled world with the model; it is copied.
         data: present state; it is copied.
-        own: geoms of the model.
+        model_geoms: geoms of the model.
 
     Returns:
         None if nothing is below the model, or if it has no collisions.
     """
     model, data = copy(model), copy(data)
-    search, ignored = StandingHeight(model, data), np.zeros_like(own)
-    found = search.find(own, ignored)
-    if found is None:
+    search, ignored = StandingHeight(model, data), np.zeros_like(model_geoms)
+    stand = search.find(model_geoms, ignored)
+    if stand is None:
         return None
-    heights = _free_heights(model, own)
+    heights = _free_heights(model, model_geoms)
     if heights is None:
-        return found.lift
-    data.qpos[heights] += found.lift
-    return found.lift + search.raise_from_contacts(own, ignored, heights)[0]
+        return stand.lift
+    data.qpos[heights] += stand.lift
+    return stand.lift + search.raise_from_contacts(model_geoms, ignored, heights)[0]
 
 
 def _without_visuals(model: SceneModel) -> SceneModel:
@@ -99,22 +99,22 @@ def _without_visuals(model: SceneModel) -> SceneModel:
 
 def _geoms_of(compiled: Compiled, name: str) -> Bools:
     """Return the geoms of a top-level model as flags."""
-    found = np.zeros(compiled.model.ngeom, dtype=bool)
+    is_of_model = np.zeros(compiled.model.ngeom, dtype=bool)
     for link in compiled.names.links.values():
         if link.model == name:
-            found[[*link.geoms, *link.ray_geoms]] = True
-    return found
+            is_of_model[[*link.geoms, *link.ray_geoms]] = True
+    return is_of_model
 
 
-def _free_heights(model: mujoco.MjModel, own: Bools) -> list[int] | None:
+def _free_heights(model: mujoco.MjModel, model_geoms: Bools) -> list[int] | None:
     """Return the indices of the heights of a model's free links in the positions; None if a link is fixed."""
-    found = []
-    for root in sorted({int(r) for r in model.body_rootid[model.geom_bodyid[own]]}):
+    heights = []
+    for root in sorted({int(r) for r in model.body_rootid[model.geom_bodyid[model_geoms]]}):
         joint = int(model.body_jntadr[root])
         if root == 0 or joint < 0 or int(model.jnt_type[joint]) != mujoco.mjtJoint.mjJNT_FREE:
             return None
-        found.append(int(model.jnt_qposadr[joint]) + 2)
-    return found
+        heights.append(int(model.jnt_qposadr[joint]) + 2)
+    return heights
 
 
 def _surface_name(compiled: Compiled, surface: int) -> str:
@@ -137,13 +137,13 @@ def _with_model_moved(world: SceneWorld, name: str, lift: float, carrier: str, d
     return replace(world, models=tuple(moved if m.name == name else m for m in world.models))
 
 
-def _report_fixed(world: SceneWorld, name: str, found: Stand, diagnostics: Diagnostics) -> None:
+def _report_fixed(world: SceneWorld, name: str, stand: Stand, diagnostics: Diagnostics) -> None:
     """Report a model that is fixed to the world below the ground."""
     model = world.model(name)
-    if model is not None and found.lift > TOLERANCE:
+    if model is not None and stand.lift > TOLERANCE:
         diagnostics.note(
             "SK-SPAWN-004",
-            f"{name} is fixed to the world and reaches {found.lift:.4g} m below the surface under it; it is not moved",
+            f"{name} is fixed to the world and reaches {stand.lift:.4g} m below the surface under it; it is not moved",
             model.where,
             "move its base up in the file, or choose another world with --world",
         )

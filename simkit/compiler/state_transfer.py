@@ -118,10 +118,10 @@ def fields_on_changed_model(
 
 def _pair_by_name(prefix: str, count: int, old: mujoco.MjModel, new: mujoco.MjModel) -> list[tuple[int, int]]:
     """Return (id in the old model, id in the new model) of each named element of a kind that is in both models."""
-    kind, found = _KINDS[prefix], []
+    kind, pairs = _KINDS[prefix], []
     for i in range(count):
         name = mujoco.mj_id2name(old, kind, i)
         j = mujoco.mj_name2id(new, kind, name) if name else -1
         if j >= 0:
-            found.append((i, j))
-    return found
+            pairs.append((i, j))
+    return pairs

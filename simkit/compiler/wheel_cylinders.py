@@ -16,9 +16,9 @@ from typing import Final
 import numpy as np
 
 from simkit.compiler.kinematic_tree import KinematicTree
-from simkit.compiler.meshes.mesh_part import Floats, Ints
 from simkit.compiler.shape_geometry import turn_z_to
 from simkit.linear_algebra import matmul, norm
+from simkit.loaders.meshes.mesh_part import Floats, Ints
 from simkit.pose import Pose
 from simkit.scene import SceneLink
 
@@ -86,12 +86,12 @@ def round_mesh(shapes: Sequence[tuple[Floats, Ints]], pose: Pose, axis: TurningA
         return None
     vertices, faces = max(shapes, key=lambda shape: float(np.prod(np.ptp(shape[0], axis=0))))
     to_mesh = pose.inverse()
-    found = _cylinder(vertices, faces, to_mesh.transform(axis.point), to_mesh.rotate(axis.direction))
-    if found is None or len(shapes) == 1:
-        return found
-    points = matmul(np.vstack([corners for corners, _ in shapes]) - found.pose.position, found.pose.matrix)
-    is_inside = (np.hypot(points[:, 0], points[:, 1]) <= _INSIDE * found.radius).all()
-    return found if is_inside and (np.abs(points[:, 2]) <= _INSIDE * found.length / 2).all() else None
+    cylinder = _cylinder(vertices, faces, to_mesh.transform(axis.point), to_mesh.rotate(axis.direction))
+    if cylinder is None or len(shapes) == 1:
+        return cylinder
+    points = matmul(np.vstack([corners for corners, _ in shapes]) - cylinder.pose.position, cylinder.pose.matrix)
+    is_inside = (np.hypot(points[:, 0], points[:, 1]) <= _INSIDE * cylinder.radius).all()
+    return cylinder if is_inside and (np.abs(points[:, 2]) <= _INSIDE * cylinder.length / 2).all() else None
 
 
 def _cylinder(vertices: Floats, faces: Ints, point: Floats, direction: Floats) -> RoundMesh | None:
@@ -107,10 +107,10 @@ def _cylinder(vertices: Floats, faces: Ints, point: Floats, direction: Floats) -
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])  # length: twice the area
     along = matmul(normals, direction)
     ends = np.abs(along) > _ALIGNED * np.linalg.norm(normals, axis=1)
-    own = (normals[ends] * np.sign(along[ends])[:, None]).sum(axis=0)
-    if not own.any():
+    axis_sum = (normals[ends] * np.sign(along[ends])[:, None]).sum(axis=0)
+    if not axis_sum.any():
         return None
-    turn = Pose((0.0, 0.0, 0.0), turn_z_to((*(own / norm(own)).tolist(),)))
+    turn = Pose((0.0, 0.0, 0.0), turn_z_to((*(axis_sum / norm(axis_sum)).tolist(),)))
     points = matmul(vertices - point, turn.matrix)
     try:
         outline = ConvexHull(points[:, :2])

@@ -73,6 +73,7 @@ def load_scene(
     Returns:
         Everything that could be read; an empty scene if nothing could be read.
     """
+    resolver.begin_load()
     document, _ = find_document(source, resolver, diagnostics, xacro_args)
     if document is None:
         return Scene()
@@ -146,11 +147,11 @@ def _document(source: str | os.PathLike[str], resolver: Resolver, diagnostics: D
         diagnostics.error("SK-LOAD-002", f"cannot read the file: {problem}", Where(shown))
         return None
     if path.is_dir():
-        found = Diagnostics()
-        model = model_file(path, Where(str(path)), found, lambda file: resolver.allows(file, path))
+        problems = Diagnostics()
+        model = model_file(path, Where(str(path)), problems, lambda file: resolver.allows(file, path))
         if model is None and (bundled := find_bundled_world(str(source)) or find_bundled_model(str(source))):
             return parse_file(bundled, diagnostics)  # the folder only has the name of a bundled file
-        diagnostics.extend(found)
+        diagnostics.extend(problems)
         return None if model is None else parse_file(model, diagnostics)
     if not path.exists():
         name = turtlebot3_name(str(source), diagnostics)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
-from typing import Any, Final
+from collections.abc import Mapping, Sequence
+from typing import Final
 
 from simkit.argument_checks import (
     check_folders,
@@ -35,10 +35,7 @@ def check_source_arguments(
     """
     check_source(source)
     check_paths(resource_paths, "resource_paths")
-    if xacro_args is None or isinstance(xacro_args, Mapping):
-        check_table(xacro_args, (str, int, float), "xacro_args", "texts")
-    elif not isinstance(xacro_args, str):
-        check_list(xacro_args, str, "xacro_args", "texts NAME:=VALUE")
+    _check_named_texts(xacro_args, (str, int, float), "xacro_args", "texts NAME:=VALUE")
     if isinstance(package_paths, Mapping) or package_paths is None:
         check_table(package_paths, _PATH, "package_paths", "paths")
     else:
@@ -56,18 +53,20 @@ def check_source(source: object) -> None:
 def check_load_arguments(
     *,
     seed: object,
-    plugin_paths: Any,
+    plugin_paths: Sequence[str | os.PathLike[str]],
     plugins: object,
     strict: object,
     overrides: object,
     sleep: object,
     on_error: object,
     spawn: object,
-    params_files: Any,
+    params_files: object,
     change_world: object,
     model_world: object,
     interfaces: object,
     renderer: object,
+    remap: object,
+    start_controllers: object,
 ) -> int:
     """Check the other arguments of `simkit.load`, and return the seed.
 
@@ -81,13 +80,15 @@ def check_load_arguments(
     check_kind(strict, _FLAG, "strict", "True or False")
     check_list(overrides, str, "overrides", "texts PATH=VALUE")
     check_kind(sleep, _FLAG, "sleep", "True or False")
+    check_kind(start_controllers, _FLAG, "start_controllers", "True or False")
     check_kind(on_error, (str, type(None)), "on_error", "'stop' or 'disable'")
     if on_error not in (None, "stop", "disable"):
         raise wrong_value("on_error", "'stop' or 'disable'", on_error)
     check_kind(renderer, (str, type(None)), "renderer", "'auto', 'gl' or 'software'")
     if renderer not in (None, *RENDERERS):
         raise wrong_value("renderer", "'auto', 'gl' or 'software'", renderer)
-    check_list(spawn, (str, SpawnedModel), "spawn", "texts MODEL:x,y,yaw[:name]")
+    _check_named_texts(remap, str, "remap", "texts OLD:=NEW")
+    check_list(spawn, (str, SpawnedModel, Mapping), "spawn", "texts MODEL:x,y,yaw[:name]")
     if not isinstance(params_files, _PATH) and not _is_model_and_file(params_files):
         check_list(params_files, (*_PATH, tuple), "params_files", "paths")
     check_kind(model_world, str, "model_world", "'ground', 'none', a path or a bare name")
@@ -96,6 +97,14 @@ def check_load_arguments(
     return checked_seed(seed)
 
 
-def _is_model_and_file(value: Any) -> bool:
+def _check_named_texts(value: object, kinds: type | tuple[type, ...], name: str, texts: str) -> None:
+    """Check values by name: a mapping, or texts `NAME:=VALUE`."""
+    if value is None or isinstance(value, Mapping):
+        check_table(value, kinds, name, "texts")
+    elif not isinstance(value, str):
+        check_list(value, str, name, texts)
+
+
+def _is_model_and_file(value: object) -> bool:
     """Check for a pair of a model's name and a file."""
     return isinstance(value, tuple) and len(value) == 2 and isinstance(value[1], _PATH)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
@@ -13,11 +13,11 @@ from simkit.diagnostics import Diagnostics
 from simkit.loaders import Resolver, find_document
 from simkit.loaders.resources.model_list import client_models
 from simkit.pose import Pose
-from simkit.run_files import SPAWN_TEXT
+from simkit.run_files import SPAWN_KEYS, SPAWN_TEXT
 from simkit.run_values import NamedValues
 from simkit.scene import Scene, SceneModel
 
-__all__ = ["SpawnedModel", "add_spawned_models", "client_models", "parse_spawn"]
+__all__ = ["SpawnEntry", "SpawnedModel", "add_spawned_models", "client_models", "parse_spawn", "spawned_model"]
 
 _POSED: Final = re.compile(r":\s*[^:/]*,[^:/]*(:[^:/]*)?$")
 _FORM: Final = "MODEL:x,y,yaw[:name], as in tiago:1,0,1.57 or robot.urdf:0,2,0:second; or MODEL alone"
@@ -40,14 +40,14 @@ class SpawnedModel:
     place: tuple[float, ...] | None = None
     name: str | None = None
 
-    def pose(self, own: Pose) -> Pose | None:
+    def pose(self, file_pose: Pose) -> Pose | None:
         """Return the pose in the world, or None to keep the pose of the file.
 
         `x, y, yaw` and `x, y, z, yaw` keep roll and pitch of the file's pose. `x, y, yaw` also keeps its height here;
         the height at which the model stands needs the other models (`Scene.standing`).
 
         Args:
-            own: pose that the model's own file gives.
+            file_pose: pose that the model's own file gives.
         """
         if self.place is None:
             return None
@@ -56,31 +56,65 @@ class SpawnedModel:
         if len(self.place) == 4:
             x, y, z, yaw = self.place
         else:
-            (x, y, yaw), z = self.place, float(own.position[2])
-        roll, pitch, _ = (float(v) for v in own.rpy)
+            (x, y, yaw), z = self.place, float(file_pose.position[2])
+        roll, pitch, _ = (float(v) for v in file_pose.rpy)
         return Pose.from_rpy(x, y, z, roll, pitch, yaw)
+
+
+SpawnEntry = str | SpawnedModel | Mapping[str, Any]
+"""Entry of the field `spawn` of a run."""
 
 
 def parse_spawn(text: str, diagnostics: Diagnostics) -> SpawnedModel | None:
     """Parse a text such as `tiago:1,0,1.57:robot`; return None, with an error recorded, if the text is invalid."""
-    found = SPAWN_TEXT.fullmatch(text.strip())
-    if found is None:
+    match = SPAWN_TEXT.fullmatch(text.strip())
+    if match is None:
         if not text.strip() or _POSED.search(text):
             diagnostics.error("SK-SPAWN-001", f"--spawn: invalid value {text!r}", hint=f"write {_FORM}")
             return None
         return SpawnedModel(text.strip())
-    numbers = tuple(float(v) for v in found["numbers"].split(","))
+    numbers = tuple(float(v) for v in match["numbers"].split(","))
     if len(numbers) not in _COUNTS:
         message = f"--spawn: {text!r} has {len(numbers)} number{'s' if len(numbers) > 1 else ''}"
         forms = "; ".join(f"{count} ({form})" for count, form in _COUNTS.items())
         diagnostics.error("SK-SPAWN-001", message, hint=f"give {forms} numbers")
         return None
-    return SpawnedModel(found["model"], numbers, found["name"])
+    return SpawnedModel(match["model"], numbers, match["name"])
+
+
+def spawned_model(item: SpawnEntry, diagnostics: Diagnostics) -> SpawnedModel | None:
+    """Return the model of an entry of the field `spawn` of a run; None, with an error recorded, for an invalid one.
+
+    Args:
+        item: text as for `--spawn`, object, or mapping with the keys `model`, `place` and `name`.
+        diagnostics: receives every problem.
+    """
+    if isinstance(item, SpawnedModel):
+        return item
+    if isinstance(item, str):
+        return parse_spawn(item, diagnostics)
+    unknown = [key for key in item if key not in SPAWN_KEYS]
+    place, model = item.get("place"), item.get("model")
+    if unknown or not isinstance(model, (str, os.PathLike)) or not model:
+        problem = f"has no key {unknown[0]!r}" if unknown else f"needs a 'model', found {model!r:.80}"
+        hint = f"allowed keys: {', '.join(SPAWN_KEYS)}"
+        diagnostics.error("SK-SPAWN-001", f"spawn: a model {problem}", hint=hint)
+        return None
+    if place is None:
+        return SpawnedModel(model, None, item.get("name"))
+    numbers = place if isinstance(place, Sequence) and not isinstance(place, str) else ()
+    is_valid = all(isinstance(number, (int, float)) and not isinstance(number, bool) for number in numbers)
+    if not is_valid or len(numbers) not in _COUNTS:
+        forms = "; ".join(f"{count} ({form})" for count, form in _COUNTS.items())
+        message = f"spawn: found the place {place!r:.80} of {model!s:.80}"
+        diagnostics.error("SK-SPAWN-001", message, hint=f"give {forms} numbers")
+        return None
+    return SpawnedModel(model, tuple(map(float, numbers)), item.get("name"))
 
 
 def add_spawned_models(
     scene: Scene,
-    spawned_models: Sequence[str | SpawnedModel],
+    spawned_models: Sequence[SpawnEntry],
     resolver: Resolver,
     diagnostics: Diagnostics,
     load_model: Callable[..., SceneModel | None],
@@ -99,18 +133,18 @@ def add_spawned_models(
     world = scene.world
     models, standing = list(world.models), list(scene.standing)
     for item in spawned_models:
-        spawn = parse_spawn(item, diagnostics) if isinstance(item, str) else item
+        spawn = spawned_model(item, diagnostics)
         if spawn is None:
             continue
         if not all(abs(number) <= _FARTHEST for number in spawn.place or ()):  # false for NaN, too
             text = f"--spawn: {spawn.source!s:.80} at {spawn.place}"
             diagnostics.error("SK-SPAWN-001", text, hint=f"give numbers between -{_FARTHEST:g} and {_FARTHEST:g}")
             continue
-        found = Diagnostics()
-        own = _file_pose(spawn.source, resolver, xacro_args)
-        pose = spawn.pose(own or Pose())
-        model = load_model(spawn.source, found, name=spawn.name, pose=pose, xacro_args=xacro_args)
-        found.pass_on(diagnostics)  # plugins report problems of their parameters later; these are passed on too
+        problems = Diagnostics()
+        file_pose = _file_pose(spawn.source, resolver, xacro_args)
+        pose = spawn.pose(file_pose or Pose())
+        model = load_model(spawn.source, problems, name=spawn.name, pose=pose, xacro_args=xacro_args)
+        problems.pass_on(diagnostics)  # plugins report problems of their parameters later; these are passed on too
         if model is None:
             continue
         if model.name in {*(m.name for m in models), *(a.name for a in world.actors)}:
@@ -118,13 +152,13 @@ def add_spawned_models(
             diagnostics.error("SK-SPAWN-002", text, model.where, "give it another name: MODEL:x,y,yaw:NAME")
             continue
         models.append(model)
-        if len(spawn.place or ()) == 3 or (spawn.place is None and own is None):
+        if len(spawn.place or ()) == 3 or (spawn.place is None and file_pose is None):
             standing.append(model.name)
     world = replace(world, models=tuple(models))
     return replace(scene, worlds=(world, *scene.worlds[1:]), model=None, light=None, standing=tuple(standing))
 
 
-def _file_pose(source: Any, resolver: Resolver, xacro_args: NamedValues | None) -> Pose | None:
+def _file_pose(source: str | os.PathLike[str], resolver: Resolver, xacro_args: NamedValues | None) -> Pose | None:
     """Return the pose that a model's own file gives, or None if the file gives none."""
     if not (isinstance(source, str) and "<" in source) and Path(source).suffix in (".urdf", ".xacro", ".xml"):
         return None

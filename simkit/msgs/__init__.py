@@ -23,6 +23,7 @@ from simkit.errors import ArgumentTypeError, MessageError, NoMessageError
 from simkit.msgs.cdr_serializer import SizeMismatch, make_serializer
 from simkit.msgs.message_types import Message, definition, full_name, message_class, type_of, type_store, types_of
 from simkit.msgs.own_interfaces import add
+from simkit.msgs.topic_names import absolute_name, valid_topic
 from simkit.msgs.type_hashes import rihs
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Message",
+    "absolute_name",
     "add",
     "definition",
     "deserialize",
@@ -59,6 +61,7 @@ __all__ = [
     "type_of",
     "type_store",
     "types_of",
+    "valid_topic",
     "yaw",
 ]
 
@@ -89,9 +92,9 @@ if not TYPE_CHECKING:  # hidden from type checkers, so that they report unknown 
     def __getattr__(name: str) -> type[Message] | Callable[..., object]:
         # stored as a global, because each lookup through this function would take 2 µs
         module = _CONVERSIONS.get(name)
-        found = message_class(name) if module is None else getattr(importlib.import_module(module), name)
-        globals()[name] = found
-        return found
+        value = message_class(name) if module is None else getattr(importlib.import_module(module), name)
+        globals()[name] = value
+        return value
 
 
 @cache
@@ -104,10 +107,10 @@ def _builder_of() -> Callable[[str], MessageBuilder]:
 
 def _serializer_of(message: Message) -> Callable[[Message], bytes]:
     """Return the serialiser of a message, and keep it for messages of the same class."""
-    found = make_serializer(full_name(type_name(message)))
+    serializer = make_serializer(full_name(type_name(message)))
     if hasattr(type(message), "__msgtype__"):
-        _SERIALIZERS[type(message)] = found
-    return found
+        _SERIALIZERS[type(message)] = serializer
+    return serializer
 
 
 def make(type_name: str, /, **fields: FieldValue) -> Message:

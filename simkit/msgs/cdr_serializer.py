@@ -80,28 +80,28 @@ class Layouts(dict[tuple[int, ...], tuple[Pack, int]]):
             formats += [f"{gap}x" if gap else "", item]
         if len(self) >= _MOST_LAYOUTS:
             self.clear()
-        found = self[key] = struct.Struct("".join(formats)).pack, position - key[0]
-        return found
+        layout = self[key] = struct.Struct("".join(formats)).pack, position - key[0]
+        return layout
 
 
-class TextBlocks(dict[tuple[Any, ...], bytes]):
+class TextBlocks(dict[tuple[int, *tuple[str, ...]], bytes]):
     """Serialised texts, by the position of the first text modulo 4 and the texts.
 
     Names of joints and fields are the same in every message.
     """
 
-    def __missing__(self, key: tuple[Any, ...]) -> bytes:
+    def __missing__(self, key: tuple[int, *tuple[str, ...]]) -> bytes:
         first, *texts = key
         block = bytearray(first)
         for text in texts:
             encoded = text.encode()
             block += PADDING[-len(block) % 4] + struct.pack("<I", len(encoded) + 1) + encoded + b"\0"
-        found = bytes(block[first:])
-        if len(found) <= _MOST_TEXT_BYTES:
+        content = bytes(block[first:])
+        if len(content) <= _MOST_TEXT_BYTES:
             if len(self) >= _MOST_LAYOUTS:
                 self.clear()
-            self[key] = found
-        return found
+            self[key] = content
+        return content
 
 
 _TEXT_BLOCKS: Final = TextBlocks()
@@ -143,8 +143,8 @@ class _Generator:
         begin = [" pieces = []", " add = pieces.append", " pos = 0"] if self._has_pieces else []
         source = "\n".join(["def serialize(m):", *begin, *self._lines])
         exec(source, self._globals)  # the names in it are those of fields, which the parser has checked
-        found: Serializer = self._globals["serialize"]  # type: ignore[assignment]
-        return found
+        serializer: Serializer = self._globals["serialize"]  # type: ignore[assignment]
+        return serializer
 
     # ------------------------------------------------------------------ fields
 

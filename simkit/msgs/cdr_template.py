@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable, Mapping
 from functools import cached_property
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +13,7 @@ import numpy.typing as npt
 from simkit import msgs
 from simkit.msgs.cdr_serializer import CODES
 from simkit.msgs.definition_parser import ARRAY, BASE, NAME, FieldNode
-from simkit.msgs.message_types import Message, type_store
+from simkit.msgs.message_types import FieldValue, Message, type_store
 
 _HEAD = 4  # [bytes] before the first field
 
@@ -54,7 +54,7 @@ class CdrTemplate:
         self._fields = {field: self._places[field] for field in fields}
 
     @cached_property
-    def _dtype(self) -> np.dtype[Any]:
+    def _dtype(self) -> np.dtype[np.void]:
         offsets, formats = zip(*self._fields.values(), strict=True)
         layout = {"names": list(self._fields), "formats": formats, "offsets": offsets, "itemsize": len(self._data)}
         return np.dtype(layout)  # type: ignore[call-overload,no-any-return]
@@ -75,10 +75,10 @@ class CdrTemplate:
                 at = offset + struct.calcsize(code)
         names = ", ".join(f"v{number}" for number in range(len(self._fields)))
         known = {"pack": struct.Struct(layout).pack, **{f"c{number}": part for number, part in enumerate(constants)}}
-        found: Callable[..., bytes] = eval(f"lambda {names}: pack({', '.join(arguments)})", known)
-        return found
+        packer: Callable[..., bytes] = eval(f"lambda {names}: pack({', '.join(arguments)})", known)
+        return packer
 
-    def fill(self, count: int, values: Mapping[str, npt.NDArray[Any]]) -> list[bytes]:
+    def fill(self, count: int, values: Mapping[str, npt.NDArray[np.generic]]) -> list[bytes]:
         """Return `count` serialised messages with these values of the variable fields, each an array (count,)."""
         rows = np.frombuffer(bytearray(self._data * count), self._dtype)
         for field, column in values.items():
@@ -92,7 +92,7 @@ class CdrTemplate:
         for field, node in type_store().fielddefs[type_name][1]:
             self._step(node, getattr(message, normalize_fieldname(field)), prefix + field)
 
-    def _step(self, node: FieldNode, value: Any, path: str) -> None:
+    def _step(self, node: FieldNode, value: FieldValue, path: str) -> None:
         """Advance over a field, and note the place of a number."""
         kind, content = int(node[0]), node[1]
         if kind == NAME:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from importlib import import_module
+from types import ModuleType
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -16,6 +17,7 @@ from simkit.msgs.message_text import field_nodes, field_value, is_message
 from simkit.msgs.message_types import Message, type_store
 
 if TYPE_CHECKING:
+    import numpy.typing as npt
     from rosbags.typesys.store import Typestore
 
 DataFrame = Any
@@ -49,34 +51,34 @@ def to_dataframe(
         InputError: SK-INPUT-004 pandas is not installed.
     """
     pandas = _pandas()
-    found = list(messages)
-    for number, message in enumerate(found):
+    all_messages = list(messages)
+    for number, message in enumerate(all_messages):
         if not is_message(message):
             raise wrong_type(f"messages[{number}]", "a message", message)
-    types = list(dict.fromkeys(message.__msgtype__ for message in found))
+    types = list(dict.fromkeys(message.__msgtype__ for message in all_messages))
     if len(types) > 1:
         raise MessageError(f"the messages have several types: {', '.join(types)}; a table needs messages of one type")
-    if not found:
+    if not all_messages:
         return pandas.DataFrame(index=pandas.Index([], name="time", dtype=float))
     store = store or type_store()
     stamp = _stamp_path(types[0], store)
     columns = columns_of(types[0], store, frozenset({".".join(stamp)}))
     for column in columns:
         try:
-            for message in found:
+            for message in all_messages:
                 column.take(message)
         except (TypeError, ValueError, AttributeError, OverflowError) as error:
             raise MessageError(f"{types[0]}.{column.path} of a message has a value of a wrong kind: {error}") from None
     if stamp:
-        seconds = [_seconds(message, stamp) for message in found]
+        seconds = [_seconds(message, stamp) for message in all_messages]
     else:
         seconds = [time_ns / _NS for time_ns in times_ns or ()]
-    index = pandas.Index(seconds, name="time") if seconds else pandas.RangeIndex(len(found), name="message")
+    index = pandas.Index(seconds, name="time") if seconds else pandas.RangeIndex(len(all_messages), name="message")
     data = {name: pandas.Series(values, index, dtype) for c in columns for name, values, dtype in _series_of(c)}
     return pandas.DataFrame(data, index=index)
 
 
-def _pandas() -> Any:
+def _pandas() -> ModuleType:
     """Return the package pandas.
 
     Raises:
@@ -85,8 +87,8 @@ def _pandas() -> Any:
     try:
         return import_module("pandas")
     except ImportError:
-        text = "SK-INPUT-004 a DataFrame needs the package pandas, which is not installed"
-        raise InputError(f"{text}\n    help: {install_command('pandas')}", "SK-INPUT-004") from None
+        text = "a DataFrame needs the package pandas, which is not installed"
+        raise InputError("SK-INPUT-004", text, help=install_command("pandas")) from None
 
 
 def _stamp_path(type_name: str, store: Typestore) -> tuple[str, ...]:
@@ -103,7 +105,7 @@ def _seconds(message: Message, path: tuple[str, ...]) -> float:
     return (int(message.sec) * _NS + int(message.nanosec)) / _NS
 
 
-def _series_of(column: Column) -> Iterator[tuple[str, Any, Any]]:
+def _series_of(column: Column) -> Iterator[tuple[str, Sequence[object] | npt.NDArray[np.generic], type | None]]:
     """Yield name, values and NumPy type of each series of a column."""
     if not column.is_list:
         yield column.path, column.numbers().copy() if column.kind != TEXT else list(column.values), None

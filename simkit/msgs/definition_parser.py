@@ -41,11 +41,12 @@ _TYPE: Final = re.compile(r"([A-Za-z]\w*(?:/\w+){0,2})(<=\d+)?(\[(<=)?(\d*)\])?"
 _CODE: Final = re.compile(r"""(?:[^#'"]|'(?:\\.|[^'\\])*'|"(?:\\.|[^"\\])*"|['"])*""")
 _ITEM: Final = re.compile(r"""\s*+('(?:\\.|[^'\\])*+'|"(?:\\.|[^"\\])*+"|[^,]*+)\s*+(?:,|$)""")
 LARGEST_SIZE: Final = (1 << 31) - 1
-_ALIASES: Final = {
+TYPE_ALIASES: Final = {
     "Header": "std_msgs/msg/Header",
     "time": "builtin_interfaces/msg/Time",
     "duration": "builtin_interfaces/msg/Duration",
 }
+"""Types by the names that definitions of ROS 1 have for them."""
 _OTHER_WORDS: Final = {
     "int": "int32", "float": "float64", "double": "float64", "str": "string", "boolean": "bool", "long": "int64",
     "short": "int16", "unsigned": "uint32", "uint": "uint32", "list": "float64[]", "text": "string",
@@ -81,7 +82,7 @@ class MessageDefinition:
     text: str = ""
     constants: list[Constant] = field(default_factory=list)
     fields: list[tuple[str, FieldNode]] = field(default_factory=list)
-    defaults: dict[str, Any] = field(default_factory=dict)
+    defaults: dict[str, object] = field(default_factory=dict)
     lines: dict[str, int] = field(default_factory=dict)
 
     @property
@@ -140,10 +141,10 @@ def parse_interface(name: str, text: str, *, is_foreign: bool = False) -> tuple[
     lines = text.replace("\r\n", "\n").split("\n")
     for number, line in enumerate(lines, 1):
         reader.read(number, line)
-    expected, found = len(PARTS[kind]), len(reader.parts)
-    if found != expected:
+    expected, count = len(PARTS[kind]), len(reader.parts)
+    if count != expected:
         what = {"msg": "a message has none", "srv": "a service has one", "action": "an action has two"}[kind]
-        reader.problem(SYNTAX, 0, f"found {found - 1} separators '---'; {what}")
+        reader.problem(SYNTAX, 0, f"found {count - 1} separators '---'; {what}")
     for part in reader.parts:
         part.text = part.text.rstrip("\n") + "\n"
     return reader.parts, reader.problems
@@ -170,8 +171,8 @@ class _Reader:
             return
         part = self.parts[-1]
         part.text += line.rstrip() + "\n"
-        found = _CODE.match(line)
-        code = (found[0] if found else line).strip()
+        match = _CODE.match(line)
+        code = (match[0] if match else line).strip()
         if not code or code.startswith("@"):  # an annotation such as @verbatim has no effect on messages
             return
         type_text, _, rest = code.replace("\t", " ").partition(" ")
@@ -188,11 +189,11 @@ class _Reader:
 
     def _node(self, number: int, text: str) -> FieldNode | None:
         """Return the type of a field; report a problem and return None if it is invalid."""
-        found = _TYPE.fullmatch(text)
-        if found is None:
+        match = _TYPE.fullmatch(text)
+        if match is None:
             self.problem(SYNTAX, number, f"{text!r:.80} is not a type such as float64, int32[3] or string<=10[]")
             return None
-        name, bound, array, is_bound, size = found.groups()
+        name, bound, array, is_bound, size = match.groups()
         sizes = [int(number) for number in (bound and bound[2:], size) if number]
         if any(not 0 < number <= LARGEST_SIZE for number in sizes) or (is_bound and not size):
             self.problem(SYNTAX, number, f"{text!r:.80}: a size or bound is a number from 1 to {LARGEST_SIZE}")
@@ -214,8 +215,8 @@ class _Reader:
 
     def _type_name(self, number: int, name: str) -> str | None:
         """Return the full name of the message type of a field; report a problem and return None if it is invalid."""
-        if name in _ALIASES:
-            return _ALIASES[name]
+        if name in TYPE_ALIASES:
+            return TYPE_ALIASES[name]
         *packages, short = name.split("/")
         if not self.is_foreign and not _TYPE_NAME.fullmatch(short):
             better = _OTHER_WORDS.get(name, "")
@@ -262,7 +263,7 @@ class _Reader:
             if value is not None:
                 part.defaults[name] = value
 
-    def _value(self, number: int, node: FieldNode, text: str, name: str) -> Any:
+    def _value(self, number: int, node: FieldNode, text: str, name: str) -> object:
         """Return the value of a constant or default; report a problem and return None if it is invalid."""
         try:
             return _parse_value(node, text)
@@ -271,7 +272,7 @@ class _Reader:
             return None
 
 
-def _parse_value(node: FieldNode, text: str) -> Any:
+def _parse_value(node: FieldNode, text: str) -> object:
     """Return the value of a text for a field's type.
 
     Raises:
@@ -294,11 +295,11 @@ def _parse_value(node: FieldNode, text: str) -> Any:
 def _items(text: str) -> Iterator[str]:
     position = 0 if text.strip() else len(text)
     while position < len(text):
-        found = _ITEM.match(text, position)
-        if found is None:
+        match = _ITEM.match(text, position)
+        if match is None:
             raise ValueError(f"found {text!r:.80}; expected values with commas between them")
-        yield found[1].strip()
-        position = found.end()
+        yield match[1].strip()
+        position = match.end()
 
 
 def _scalar(kind: str, bound: int, text: str) -> bool | int | float | str:

@@ -45,7 +45,7 @@ def derived_fields(name: str) -> Fields:
         MessageError: the type is unknown.
     """
     base, _, suffix = name.rpartition("/")[2].partition("_")
-    return _fields_of(f"{name.rpartition('/')[0]}/{base}", name.split("/")[1], suffix)
+    return _fields_of(f"{name.rpartition('/')[0]}/{base}", name.partition("/")[2].partition("/")[0], suffix)
 
 
 def _service(name: str) -> Fields:
@@ -60,9 +60,9 @@ def _event(name: str) -> Fields:
 def _fields_of(name: str, kind: str, suffix: str) -> Fields:
     """Return the fields of a service or action itself, or of one of the types that ROS 2 derives from it."""
     if kind == "srv":
-        found = {"": _service, "Event": _event}.get(suffix)
-        if found is not None:
-            return found(name)
+        make_fields = {"": _service, "Event": _event}.get(suffix)
+        if make_fields is not None:
+            return make_fields(name)
     goal_id: tuple[str, FieldNode] = ("goal_id", (NAME, "unique_identifier_msgs/msg/UUID"))
     stamp: tuple[str, FieldNode] = ("stamp", (NAME, "builtin_interfaces/msg/Time"))
     table: dict[str, Fields] = {

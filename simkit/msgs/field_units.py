@@ -7,11 +7,13 @@ import tomllib
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 _INDEX = re.compile(r"\[[^\]]*\]|\.\d+(?=\.|$)")
 
-TABLES: Final[dict[str, Any]] = tomllib.loads(Path(__file__).with_name("field_units.toml").read_text(encoding="utf-8"))
+TABLES: Final[dict[str, list[list[str]]]] = tomllib.loads(
+    Path(__file__).with_name("field_units.toml").read_text(encoding="utf-8")
+)
 """Rows of regular expressions for types and fields."""
 
 
@@ -38,7 +40,7 @@ def unit_of(type_name: str, field: str) -> str:
 def first_match(rows: Sequence[Sequence[str]], type_name: str, field: str, otherwise: str) -> str:
     """Return the last column of the first row whose expressions match the type and the field."""
     path = plain_path(field)
-    for of_type, of_field, found in rows:
+    for of_type, of_field, value in rows:
         if re.fullmatch(of_type, type_name) and re.fullmatch(of_field, path):
-            return found
+            return value
     return otherwise

@@ -43,19 +43,19 @@ def image(message: ImageMessage | CompressedImage) -> Pixels:
         ArgumentTypeError: the message is not an image.
         ArgumentValueError: the encoding is unknown, or the data do not fit it.
     """
-    found: Message = message
-    name = getattr(found, "__msgtype__", "")
+    picture: Message = message
+    name = getattr(picture, "__msgtype__", "")
     if name == "sensor_msgs/msg/CompressedImage":
-        return _in_rgb_order(decode_compressed(found))
+        return _in_rgb_order(decode_compressed(picture))
     if name != "sensor_msgs/msg/Image":
         raise wrong_type("the image", "a sensor_msgs/msg/Image or CompressedImage", message)
     import cv2
 
-    encoding = str(found.encoding)
+    encoding = str(picture.encoding)
     if encoding in _PACKED:
-        packed = _rows(found, "u1", 2, encoding)
+        packed = _rows(picture, "u1", 2, encoding)
         return np.asarray(cv2.cvtColor(packed, getattr(cv2, f"COLOR_YUV2RGB_{_PACKED[encoding]}")))
-    values = read_pixels(found)[0]
+    values = read_pixels(picture)[0]
     if encoding.startswith("bayer_"):
         pattern = encoding.removeprefix("bayer_").rstrip("0123456789").upper()
         return np.asarray(cv2.cvtColor(values, getattr(cv2, f"COLOR_Bayer{pattern}2RGB")))
@@ -93,15 +93,15 @@ def _rows(message: ImageMessage, kind: str, channels: int, encoding: str) -> Pix
     if step < row or data.size < step * (height - 1) + row or not height or not width:
         raise ArgumentValueError(f"an image of {width} × {height} {encoding} has {data.size} bytes")
     rows = np.lib.stride_tricks.as_strided(data, (height, row), (step, 1))
-    found = np.ascontiguousarray(rows).view(dtype).astype(dtype.newbyteorder("="), copy=False)
-    return found.reshape(height, width, channels)
+    values = np.ascontiguousarray(rows).view(dtype).astype(dtype.newbyteorder("="), copy=False)
+    return values.reshape(height, width, channels)
 
 
 def _layout(encoding: str) -> tuple[str, int]:
     """Return the NumPy type of an encoding's values, and the number of its channels."""
-    found = _ENCODINGS.get(encoding)
-    if found is not None:
-        return found
+    layout = _ENCODINGS.get(encoding)
+    if layout is not None:
+        return layout
     if encoding.removeprefix("bayer_") in {f"{p}{bits}" for p in ("rggb", "bggr", "gbrg", "grbg") for bits in (8, 16)}:
         return ("u2" if encoding.endswith("16") else "u1"), 1
     size, _, channels = encoding.partition("C")
@@ -121,12 +121,12 @@ def decode_compressed(message: CompressedImage) -> Pixels:
     data, is_depth = bytes(message.data), "compressedDepth" in str(message.format)
     content = np.frombuffer(data[_DEPTH_HEAD if is_depth else 0 :], np.uint8)
     try:
-        found = cv2.imdecode(content, cv2.IMREAD_UNCHANGED)
+        decoded = cv2.imdecode(content, cv2.IMREAD_UNCHANGED)
     except cv2.error:  # no bytes, or a size beyond OpenCV's limits
-        found = None
-    if found is None:
+        decoded = None
+    if decoded is None:
         raise ArgumentValueError(f"a compressed image of the format {str(message.format)!r:.80} cannot be decoded")
-    values = np.asarray(found)
+    values = np.asarray(decoded)
     if not is_depth or "32FC1" not in str(message.format):
         return values
     scale, offset = np.frombuffer(data[4:_DEPTH_HEAD], "<f4")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
 from simkit.msgs import own_interfaces
-from simkit.msgs.definition_parser import BASIC_TYPES, PARTS
+from simkit.msgs.definition_parser import BASIC_TYPES, PARTS, TYPE_ALIASES
 from simkit.msgs.message_builder import builder_of
 from simkit.msgs.message_text import message_to_dict
 from simkit.msgs.message_types import FieldValue, full_name, interface_parts, own_package_hint, type_store
@@ -23,8 +23,8 @@ _TYPE = re.compile(r"^\s*([A-Za-z]\w*(?:/\w+)*)(<=\d+)?(\[[^\]]*\])?\s+[a-z]\w*\
 
 def interface_names(kind: str) -> list[str]:
     """Return the full name of every interface of a kind (`msg`, `srv` or `action`), sorted."""
-    found = {name for name in (*definition_files(), *own_interfaces.names()) if f"/{kind}/" in name}
-    return sorted(found.union(rosbags_types()) if kind == "msg" else found)
+    names = {name for name in (*definition_files(), *own_interfaces.names()) if f"/{kind}/" in name}
+    return sorted(names.union(rosbags_types()) if kind == "msg" else names)
 
 
 def full_interface_name(name: str) -> str:
@@ -65,21 +65,22 @@ def _lines(name: str, depth: int, comments: bool, below: bool, store: Typestore 
             text = text.partition("#")[0].rstrip()
         if text or comments:
             yield "\t" * depth + text
-        found = _TYPE.match(text)
-        if found and found[1] not in BASIC_TYPES:
-            inner = found[1] if "/" in found[1] else f"{package}/{found[1]}"
+        match = _TYPE.match(text)
+        if match and match[1] not in BASIC_TYPES:
+            inner = TYPE_ALIASES.get(match[1], match[1])
+            inner = inner if "/" in inner else f"{package}/{inner}"
             full = inner.replace("/", "/msg/") if inner.count("/") == 1 else inner
             yield from _lines(full, depth + 1, below, below, store)
 
 
 def _text(name: str, store: Typestore | None) -> str:
     """Return the text of a type's definition file, or a text made from the type store if there is no file."""
-    own = interface_parts(name) if store is None else None
-    if own is not None:
-        return "---\n".join(part.text for part in own)
+    parts = interface_parts(name) if store is None else None
+    if parts is not None:
+        return "---\n".join(part.text for part in parts)
     full = name if store else full_name(name)
-    found = (store or type_store()).generate_msgdef(full, ros_version=2)[0]
-    text = str(found).split("=" * 80)[0].rstrip()
+    definition = (store or type_store()).generate_msgdef(full, ros_version=2)[0]
+    text = str(definition).split("=" * 80)[0].rstrip()
     for field, value in ({} if store else rosbags_defaults(full)).items():
         text = re.sub(rf"^\S+ {field}$", rf"\g<0> {str(value).lower()}", text, flags=re.MULTILINE)
     return text

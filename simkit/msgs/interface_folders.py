@@ -48,10 +48,10 @@ def _package_of(folder: Path) -> str:
 
 def _package_xml_name(folder: Path) -> str:
     try:
-        found = _PACKAGE_NAME.search(read_input(folder / "package.xml", 65536, inside=folder))
+        match = _PACKAGE_NAME.search(read_input(folder / "package.xml", 65536, inside=folder))
     except OSError:
         return ""
-    return found[1].decode() if found else folder.name
+    return match[1].decode() if match else folder.name
 
 
 def _prefixes() -> list[Path]:
@@ -60,8 +60,8 @@ def _prefixes() -> list[Path]:
 
 def installed_file(package: str, file: str) -> Path | None:
     """Return a package's file in the first ROS workspace of `AMENT_PREFIX_PATH` that has it; None if none has it."""
-    found = (prefix / "share" / package / file for prefix in _prefixes())
-    return next((path for path in found if path.is_file()), None)
+    places = (prefix / "share" / package / file for prefix in _prefixes())
+    return next((path for path in places if path.is_file()), None)
 
 
 def installed_names() -> Iterator[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Mapping
 
 from simkit import msgs
 from simkit.argument_checks import shown
@@ -11,7 +11,7 @@ from simkit.msgs.message_types import FieldValue, Message
 
 
 def checked_message(
-    value: FieldValue, type_names: Iterable[str], place: str, *, none_is_default: bool = False
+    value: FieldValue, type_names: Collection[str], place: str, *, none_is_default: bool = False
 ) -> Message:
     """Return a message of one of the types.
 
@@ -24,6 +24,9 @@ def checked_message(
     Raises:
         MessageError: the value does not fit the types; the message begins with `place`.
     """
+    type_name = None if isinstance(value, type) else getattr(value, "__msgtype__", None)
+    if type_name in type_names:
+        return value
     names = list(dict.fromkeys(type_names))
     if value is None and none_is_default:
         value = {}
@@ -32,11 +35,10 @@ def checked_message(
             return msgs.from_dict(names, dict(value))
         except MessageError as error:
             raise MessageError(f"{place}: {error}") from None
-    found = None if isinstance(value, type) else getattr(value, "__msgtype__", None)
-    if found in names or (isinstance(found, str) and not names):
-        return value
-    if isinstance(found, str):
-        raise MessageError(f"{place} needs {' or '.join(names)}, got {found}")
+    if isinstance(type_name, str):
+        if not names:
+            return value
+        raise MessageError(f"{place} needs {' or '.join(names)}, got {type_name}")
     got = f"the class {value.__name__}" if isinstance(value, type) else f"{shown(value)} ({type(value).__name__})"
     wanted = f"{' or '.join(names) or 'a message'}, or a dict of its fields"
     raise NoMessageError(f"{place} needs {wanted}; {got} is not a message")

@@ -40,8 +40,8 @@ class MessageBuilder:
         self.name = name
         self.cls: type[Message] = store.types[name]
         self.fields: list[tuple[str, _Default, _Conversion]] = []
-        own = definition_of(name)
-        published = own.defaults if own else rosbags_defaults(name)
+        definition = definition_of(name)
+        published = definition.defaults if definition else rosbags_defaults(name)
         for field, node in store.fielddefs[name][1]:
             default, convert = _default_and_conversion(node)
             value = published.get(field)
@@ -60,10 +60,10 @@ class MessageBuilder:
             MessageError: a field is unknown, or a value does not match its field.
         """
         values = []
-        found = 0
+        taken = 0
         for name, default, convert in self.fields:
             if name in fields:
-                found += 1
+                taken += 1
                 try:
                     values.append(convert(fields[name]))
                 except MessageError as error:
@@ -73,7 +73,7 @@ class MessageBuilder:
                     raise MessageError(text) from None
             else:
                 values.append(default())
-        if found != len(fields):
+        if taken != len(fields):
             known = [name for name, _, _ in self.fields if name != NO_FIELD]
             unknown = next(name for name in fields if name not in known)
             hint = did_you_mean(str(unknown), known) or f"its fields: {', '.join(known) or 'none'}"

@@ -9,6 +9,25 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+# ackermann_msgs
+
+@dataclass
+class AckermannDrive:
+    """`ackermann_msgs/msg/AckermannDrive`"""
+    steering_angle: float
+    steering_angle_velocity: float
+    speed: float
+    acceleration: float
+    jerk: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AckermannDriveStamped:
+    """`ackermann_msgs/msg/AckermannDriveStamped`"""
+    header: Header
+    drive: AckermannDrive
+    __msgtype__: ClassVar[str]
+
 # action_msgs
 
 @dataclass
@@ -55,6 +74,97 @@ class CancelGoal_Response:
     ERROR_GOAL_TERMINATED: ClassVar[int] = 3
     __msgtype__: ClassVar[str]
 
+# action_tutorials_interfaces
+
+@dataclass
+class action_tutorials_interfaces__action__Fibonacci_Feedback:
+    """`action_tutorials_interfaces/action/Fibonacci_Feedback`"""
+    partial_sequence: NDArray[np.int32]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class action_tutorials_interfaces__action__Fibonacci_Goal:
+    """`action_tutorials_interfaces/action/Fibonacci_Goal`"""
+    order: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class action_tutorials_interfaces__action__Fibonacci_Result:
+    """`action_tutorials_interfaces/action/Fibonacci_Result`"""
+    sequence: NDArray[np.int32]
+    __msgtype__: ClassVar[str]
+
+# actionlib
+
+@dataclass
+class TestRequest_Feedback:
+    """`actionlib/action/TestRequest_Feedback`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TestRequest_Goal:
+    """`actionlib/action/TestRequest_Goal`"""
+    terminate_status: int
+    ignore_cancel: bool
+    result_text: str
+    the_result: int
+    is_simple_client: bool
+    delay_accept: Duration
+    delay_terminate: Duration
+    pause_status: Duration
+    TERMINATE_SUCCESS: ClassVar[int] = 0
+    TERMINATE_ABORTED: ClassVar[int] = 1
+    TERMINATE_REJECTED: ClassVar[int] = 2
+    TERMINATE_LOSE: ClassVar[int] = 3
+    TERMINATE_DROP: ClassVar[int] = 4
+    TERMINATE_EXCEPTION: ClassVar[int] = 5
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TestRequest_Result:
+    """`actionlib/action/TestRequest_Result`"""
+    the_result: int
+    is_simple_server: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Test_Feedback:
+    """`actionlib/action/Test_Feedback`"""
+    feedback: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Test_Goal:
+    """`actionlib/action/Test_Goal`"""
+    goal: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Test_Result:
+    """`actionlib/action/Test_Result`"""
+    result: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TwoInts_Feedback:
+    """`actionlib/action/TwoInts_Feedback`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TwoInts_Goal:
+    """`actionlib/action/TwoInts_Goal`"""
+    a: int
+    b: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TwoInts_Result:
+    """`actionlib/action/TwoInts_Result`"""
+    sum: int
+    __msgtype__: ClassVar[str]
+
 # actionlib_msgs
 
 @dataclass
@@ -89,6 +199,48 @@ class actionlib_msgs__msg__GoalStatusArray:
     status_list: list[actionlib_msgs__msg__GoalStatus]
     __msgtype__: ClassVar[str]
 
+# actionlib_tutorials
+
+@dataclass
+class Averaging_Feedback:
+    """`actionlib_tutorials/action/Averaging_Feedback`"""
+    sample: int
+    data: float
+    mean: float
+    std_dev: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Averaging_Goal:
+    """`actionlib_tutorials/action/Averaging_Goal`"""
+    samples: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Averaging_Result:
+    """`actionlib_tutorials/action/Averaging_Result`"""
+    mean: float
+    std_dev: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class actionlib_tutorials__action__Fibonacci_Feedback:
+    """`actionlib_tutorials/action/Fibonacci_Feedback`"""
+    sequence: NDArray[np.int32]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class actionlib_tutorials__action__Fibonacci_Goal:
+    """`actionlib_tutorials/action/Fibonacci_Goal`"""
+    order: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class actionlib_tutorials__action__Fibonacci_Result:
+    """`actionlib_tutorials/action/Fibonacci_Result`"""
+    sequence: NDArray[np.int32]
+    __msgtype__: ClassVar[str]
+
 # actuator_msgs
 
 @dataclass
@@ -98,6 +250,35 @@ class Actuators:
     position: NDArray[np.float64]
     velocity: NDArray[np.float64]
     normalized: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+# apriltag_msgs
+
+@dataclass
+class AprilTagDetection:
+    """`apriltag_msgs/msg/AprilTagDetection`"""
+    family: str
+    id: int
+    hamming: int
+    goodness: float
+    decision_margin: float
+    centre: apriltag_msgs__msg__Point
+    corners: list[apriltag_msgs__msg__Point]
+    homography: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AprilTagDetectionArray:
+    """`apriltag_msgs/msg/AprilTagDetectionArray`"""
+    header: Header
+    detections: list[AprilTagDetection]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class apriltag_msgs__msg__Point:
+    """`apriltag_msgs/msg/Point`"""
+    x: float
+    y: float
     __msgtype__: ClassVar[str]
 
 # aruco_msgs
@@ -381,6 +562,24 @@ class GripperCommand_Result:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class JointTrajectory_Feedback:
+    """`control_msgs/action/JointTrajectory_Feedback`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class JointTrajectory_Goal:
+    """`control_msgs/action/JointTrajectory_Goal`"""
+    trajectory: JointTrajectory
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class JointTrajectory_Result:
+    """`control_msgs/action/JointTrajectory_Result`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class ParallelGripperCommand_Feedback:
     """`control_msgs/action/ParallelGripperCommand_Feedback`"""
     state: JointState
@@ -420,6 +619,62 @@ class PointHead_Goal:
 class PointHead_Result:
     """`control_msgs/action/PointHead_Result`"""
     structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SingleJointPosition_Feedback:
+    """`control_msgs/action/SingleJointPosition_Feedback`"""
+    header: Header
+    position: float
+    velocity: float
+    error: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SingleJointPosition_Goal:
+    """`control_msgs/action/SingleJointPosition_Goal`"""
+    position: float
+    min_duration: Duration
+    max_velocity: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SingleJointPosition_Result:
+    """`control_msgs/action/SingleJointPosition_Result`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AdmittanceControllerState:
+    """`control_msgs/msg/AdmittanceControllerState`"""
+    mass: Float64MultiArray
+    damping: Float64MultiArray
+    stiffness: Float64MultiArray
+    rot_base_control: Quaternion
+    ref_trans_base_ft: TransformStamped
+    selected_axes: Int8MultiArray
+    ft_sensor_frame: String
+    admittance_position: TransformStamped
+    admittance_acceleration: TwistStamped
+    admittance_velocity: TwistStamped
+    wrench_base: WrenchStamped
+    joint_state: JointState
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DynamicInterfaceGroupValues:
+    """`control_msgs/msg/DynamicInterfaceGroupValues`"""
+    header: Header
+    interface_groups: list[str]
+    interface_values: list[InterfaceValue]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DynamicInterfaceValues:
+    """`control_msgs/msg/DynamicInterfaceValues`"""
+    header: Header
+    states: InterfaceValue
+    commands: InterfaceValue
     __msgtype__: ClassVar[str]
 
 @dataclass
@@ -477,6 +732,16 @@ class JointControllerState:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class JointJog:
+    """`control_msgs/msg/JointJog`"""
+    header: Header
+    joint_names: list[str]
+    displacements: NDArray[np.float64]
+    velocities: NDArray[np.float64]
+    duration: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class JointTolerance:
     """`control_msgs/msg/JointTolerance`"""
     name: str
@@ -503,9 +768,92 @@ class JointTrajectoryControllerState:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class MecanumDriveControllerState:
+    """`control_msgs/msg/MecanumDriveControllerState`"""
+    header: Header
+    front_left_wheel_velocity: float
+    back_left_wheel_velocity: float
+    back_right_wheel_velocity: float
+    front_right_wheel_velocity: float
+    reference_velocity: Twist
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MultiDOFCommand:
+    """`control_msgs/msg/MultiDOFCommand`"""
+    dof_names: list[str]
+    values: NDArray[np.float64]
+    values_dot: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MultiDOFStateStamped:
+    """`control_msgs/msg/MultiDOFStateStamped`"""
+    header: Header
+    dof_states: list[SingleDOFState]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PidState:
+    """`control_msgs/msg/PidState`"""
+    header: Header
+    timestep: Duration
+    error: float
+    error_dot: float
+    i_term: float
+    p_gain: float
+    i_gain: float
+    d_gain: float
+    output: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SingleDOFState:
+    """`control_msgs/msg/SingleDOFState`"""
+    name: str
+    reference: float
+    feedback: float
+    feedback_dot: float
+    error: float
+    error_dot: float
+    time_step: float
+    output: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SingleDOFStateStamped:
+    """`control_msgs/msg/SingleDOFStateStamped`"""
+    header: Header
+    dof_state: SingleDOFState
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class SpeedScalingFactor:
     """`control_msgs/msg/SpeedScalingFactor`"""
     factor: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SteeringControllerStatus:
+    """`control_msgs/msg/SteeringControllerStatus`"""
+    header: Header
+    traction_wheels_position: NDArray[np.float64]
+    traction_wheels_velocity: NDArray[np.float64]
+    steer_positions: NDArray[np.float64]
+    traction_command: NDArray[np.float64]
+    steering_angle_command: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class QueryCalibrationState_Request:
+    """`control_msgs/srv/QueryCalibrationState_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class QueryCalibrationState_Response:
+    """`control_msgs/srv/QueryCalibrationState_Response`"""
+    is_calibrated: bool
     __msgtype__: ClassVar[str]
 
 @dataclass
@@ -1122,11 +1470,38 @@ class ODEPhysics:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class PerformanceMetrics:
+    """`gazebo_msgs/msg/PerformanceMetrics`"""
+    header: Header
+    real_time_factor: float
+    sensors: list[SensorPerformanceMetric]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SensorPerformanceMetric:
+    """`gazebo_msgs/msg/SensorPerformanceMetric`"""
+    name: str
+    sim_update_rate: float
+    real_update_rate: float
+    fps: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class WheelSlip:
     """`gazebo_msgs/msg/WheelSlip`"""
     name: list[str]
     lateral_slip: NDArray[np.float64]
     longitudinal_slip: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WorldState:
+    """`gazebo_msgs/msg/WorldState`"""
+    header: Header
+    name: list[str]
+    pose: list[Pose]
+    twist: list[Twist]
+    wrench: list[Wrench]
     __msgtype__: ClassVar[str]
 
 @dataclass
@@ -1202,6 +1577,19 @@ class gazebo_msgs__srv__DeleteEntity_Request:
 @dataclass
 class gazebo_msgs__srv__DeleteEntity_Response:
     """`gazebo_msgs/srv/DeleteEntity_Response`"""
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DeleteLight_Request:
+    """`gazebo_msgs/srv/DeleteLight_Request`"""
+    light_name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DeleteLight_Response:
+    """`gazebo_msgs/srv/DeleteLight_Response`"""
     success: bool
     status_message: str
     __msgtype__: ClassVar[str]
@@ -1447,6 +1835,23 @@ class SetJointProperties_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class SetJointTrajectory_Request:
+    """`gazebo_msgs/srv/SetJointTrajectory_Request`"""
+    model_name: str
+    joint_trajectory: JointTrajectory
+    model_pose: Pose
+    set_model_pose: bool
+    disable_physics_updates: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetJointTrajectory_Response:
+    """`gazebo_msgs/srv/SetJointTrajectory_Response`"""
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class SetLightProperties_Request:
     """`gazebo_msgs/srv/SetLightProperties_Request`"""
     light_name: str
@@ -1597,6 +2002,20 @@ class Attach_Response:
 # geographic_msgs
 
 @dataclass
+class BoundingBox:
+    """`geographic_msgs/msg/BoundingBox`"""
+    min_pt: GeoPoint
+    max_pt: GeoPoint
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GeoPath:
+    """`geographic_msgs/msg/GeoPath`"""
+    header: Header
+    poses: list[GeoPoseStamped]
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class GeoPoint:
     """`geographic_msgs/msg/GeoPoint`"""
     latitude: float
@@ -1623,6 +2042,27 @@ class GeoPoseStamped:
     """`geographic_msgs/msg/GeoPoseStamped`"""
     header: Header
     pose: GeoPose
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GeoPoseWithCovariance:
+    """`geographic_msgs/msg/GeoPoseWithCovariance`"""
+    pose: GeoPose
+    covariance: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GeoPoseWithCovarianceStamped:
+    """`geographic_msgs/msg/GeoPoseWithCovarianceStamped`"""
+    header: Header
+    pose: GeoPoseWithCovariance
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class geographic_msgs__msg__KeyValue:
+    """`geographic_msgs/msg/KeyValue`"""
+    key: str
+    value: str
     __msgtype__: ClassVar[str]
 
 # geometry_msgs
@@ -1941,6 +2381,219 @@ class GPSStatus:
 # irobot_create_msgs
 
 @dataclass
+class AudioNoteSequence_Feedback:
+    """`irobot_create_msgs/action/AudioNoteSequence_Feedback`"""
+    iterations_played: int
+    current_runtime: Duration
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AudioNoteSequence_Goal:
+    """`irobot_create_msgs/action/AudioNoteSequence_Goal`"""
+    iterations: int
+    note_sequence: AudioNoteVector
+    INFINITE: ClassVar[int] = -1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AudioNoteSequence_Result:
+    """`irobot_create_msgs/action/AudioNoteSequence_Result`"""
+    complete: bool
+    iterations_played: int
+    runtime: Duration
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Dock_Feedback:
+    """`irobot_create_msgs/action/Dock_Feedback`"""
+    sees_dock: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Dock_Goal:
+    """`irobot_create_msgs/action/Dock_Goal`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Dock_Result:
+    """`irobot_create_msgs/action/Dock_Result`"""
+    is_docked: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DriveArc_Feedback:
+    """`irobot_create_msgs/action/DriveArc_Feedback`"""
+    remaining_angle_travel: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DriveArc_Goal:
+    """`irobot_create_msgs/action/DriveArc_Goal`"""
+    translate_direction: int
+    angle: float
+    radius: float
+    max_translation_speed: float
+    TRANSLATE_FORWARD: ClassVar[int] = 1
+    TRANSLATE_BACKWARD: ClassVar[int] = -1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DriveArc_Result:
+    """`irobot_create_msgs/action/DriveArc_Result`"""
+    pose: PoseStamped
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DriveDistance_Feedback:
+    """`irobot_create_msgs/action/DriveDistance_Feedback`"""
+    remaining_travel_distance: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DriveDistance_Goal:
+    """`irobot_create_msgs/action/DriveDistance_Goal`"""
+    distance: float
+    max_translation_speed: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DriveDistance_Result:
+    """`irobot_create_msgs/action/DriveDistance_Result`"""
+    pose: PoseStamped
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LedAnimation_Feedback:
+    """`irobot_create_msgs/action/LedAnimation_Feedback`"""
+    remaining_runtime: Duration
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LedAnimation_Goal:
+    """`irobot_create_msgs/action/LedAnimation_Goal`"""
+    animation_type: int
+    lightring: LightringLeds
+    max_runtime: Duration
+    BLINK_LIGHTS: ClassVar[int] = 1
+    SPIN_LIGHTS: ClassVar[int] = 2
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LedAnimation_Result:
+    """`irobot_create_msgs/action/LedAnimation_Result`"""
+    runtime: Duration
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class NavigateToPosition_Feedback:
+    """`irobot_create_msgs/action/NavigateToPosition_Feedback`"""
+    navigate_state: int
+    remaining_angle_travel: float
+    remaining_travel_distance: float
+    ROTATING_TO_GOAL_POSITION: ClassVar[int] = 1
+    DRIVING_TO_GOAL_POSITION: ClassVar[int] = 2
+    ROTATING_TO_GOAL_ORIENTATION: ClassVar[int] = 3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class NavigateToPosition_Goal:
+    """`irobot_create_msgs/action/NavigateToPosition_Goal`"""
+    goal_pose: PoseStamped
+    achieve_goal_heading: bool
+    max_translation_speed: float
+    max_rotation_speed: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class NavigateToPosition_Result:
+    """`irobot_create_msgs/action/NavigateToPosition_Result`"""
+    pose: PoseStamped
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RotateAngle_Feedback:
+    """`irobot_create_msgs/action/RotateAngle_Feedback`"""
+    remaining_angle_travel: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RotateAngle_Goal:
+    """`irobot_create_msgs/action/RotateAngle_Goal`"""
+    angle: float
+    max_rotation_speed: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RotateAngle_Result:
+    """`irobot_create_msgs/action/RotateAngle_Result`"""
+    pose: PoseStamped
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Undock_Feedback:
+    """`irobot_create_msgs/action/Undock_Feedback`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Undock_Goal:
+    """`irobot_create_msgs/action/Undock_Goal`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Undock_Result:
+    """`irobot_create_msgs/action/Undock_Result`"""
+    is_docked: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WallFollow_Feedback:
+    """`irobot_create_msgs/action/WallFollow_Feedback`"""
+    engaged: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WallFollow_Goal:
+    """`irobot_create_msgs/action/WallFollow_Goal`"""
+    follow_side: int
+    max_runtime: Duration
+    FOLLOW_RIGHT: ClassVar[int] = -1
+    FOLLOW_LEFT: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WallFollow_Result:
+    """`irobot_create_msgs/action/WallFollow_Result`"""
+    runtime: Duration
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AudioNote:
+    """`irobot_create_msgs/msg/AudioNote`"""
+    frequency: int
+    max_runtime: Duration
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AudioNoteVector:
+    """`irobot_create_msgs/msg/AudioNoteVector`"""
+    header: Header
+    notes: list[AudioNote]
+    append: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Button:
+    """`irobot_create_msgs/msg/Button`"""
+    header: Header
+    is_pressed: bool
+    last_start_pressed_time: Time
+    last_pressed_duration: Duration
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class DockStatus:
     """`irobot_create_msgs/msg/DockStatus`"""
     header: Header
@@ -1962,10 +2615,33 @@ class HazardDetection:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class HazardDetectionVector:
+    """`irobot_create_msgs/msg/HazardDetectionVector`"""
+    header: Header
+    detections: list[HazardDetection]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class InterfaceButtons:
+    """`irobot_create_msgs/msg/InterfaceButtons`"""
+    header: Header
+    button_1: Button
+    button_power: Button
+    button_2: Button
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class IrIntensity:
     """`irobot_create_msgs/msg/IrIntensity`"""
     header: Header
     value: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class IrIntensityVector:
+    """`irobot_create_msgs/msg/IrIntensityVector`"""
+    header: Header
+    readings: list[IrIntensity]
     __msgtype__: ClassVar[str]
 
 @dataclass
@@ -1987,6 +2663,29 @@ class IrOpcode:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class KidnapStatus:
+    """`irobot_create_msgs/msg/KidnapStatus`"""
+    header: Header
+    is_kidnapped: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LedColor:
+    """`irobot_create_msgs/msg/LedColor`"""
+    red: int
+    green: int
+    blue: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LightringLeds:
+    """`irobot_create_msgs/msg/LightringLeds`"""
+    header: Header
+    leds: list[LedColor]
+    override_system: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class Mouse:
     """`irobot_create_msgs/msg/Mouse`"""
     header: Header
@@ -1996,7 +2695,105 @@ class Mouse:
     last_squal: int
     __msgtype__: ClassVar[str]
 
+@dataclass
+class SlipStatus:
+    """`irobot_create_msgs/msg/SlipStatus`"""
+    header: Header
+    is_slipping: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class StopStatus:
+    """`irobot_create_msgs/msg/StopStatus`"""
+    header: Header
+    is_stopped: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WheelStatus:
+    """`irobot_create_msgs/msg/WheelStatus`"""
+    header: Header
+    current_ma_left: int
+    current_ma_right: int
+    pwm_left: int
+    pwm_right: int
+    wheels_enabled: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WheelTicks:
+    """`irobot_create_msgs/msg/WheelTicks`"""
+    header: Header
+    ticks_left: int
+    ticks_right: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WheelVels:
+    """`irobot_create_msgs/msg/WheelVels`"""
+    header: Header
+    velocity_left: float
+    velocity_right: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class EStop_Request:
+    """`irobot_create_msgs/srv/EStop_Request`"""
+    e_stop_on: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class EStop_Response:
+    """`irobot_create_msgs/srv/EStop_Response`"""
+    success: bool
+    message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ResetPose_Request:
+    """`irobot_create_msgs/srv/ResetPose_Request`"""
+    pose: Pose
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ResetPose_Response:
+    """`irobot_create_msgs/srv/ResetPose_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RobotPower_Request:
+    """`irobot_create_msgs/srv/RobotPower_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RobotPower_Response:
+    """`irobot_create_msgs/srv/RobotPower_Response`"""
+    success: bool
+    message: str
+    __msgtype__: ClassVar[str]
+
 # kobuki_msgs
+
+@dataclass
+class AutoDocking_Feedback:
+    """`kobuki_msgs/action/AutoDocking_Feedback`"""
+    state: str
+    text: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AutoDocking_Goal:
+    """`kobuki_msgs/action/AutoDocking_Goal`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AutoDocking_Result:
+    """`kobuki_msgs/action/AutoDocking_Result`"""
+    text: str
+    __msgtype__: ClassVar[str]
 
 @dataclass
 class kobuki_msgs__msg__BumperEvent:
@@ -2024,6 +2821,30 @@ class kobuki_msgs__msg__CliffEvent:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class ControllerInfo:
+    """`kobuki_msgs/msg/ControllerInfo`"""
+    type: int
+    p_gain: float
+    i_gain: float
+    d_gain: float
+    DEFAULT: ClassVar[int] = 0
+    USER_CONFIGURED: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DigitalInputEvent:
+    """`kobuki_msgs/msg/DigitalInputEvent`"""
+    values: NDArray[np.bool_]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DigitalOutput:
+    """`kobuki_msgs/msg/DigitalOutput`"""
+    values: NDArray[np.bool_]
+    mask: NDArray[np.bool_]
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class kobuki_msgs__msg__DockInfraRed:
     """`kobuki_msgs/msg/DockInfraRed`"""
     header: Header
@@ -2037,11 +2858,61 @@ class kobuki_msgs__msg__DockInfraRed:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class ExternalPower:
+    """`kobuki_msgs/msg/ExternalPower`"""
+    source: int
+    state: int
+    PWR_3_3V1A: ClassVar[int] = 0
+    PWR_5V1A: ClassVar[int] = 1
+    PWR_12V5A: ClassVar[int] = 2
+    PWR_12V1_5A: ClassVar[int] = 3
+    OFF: ClassVar[int] = 0
+    ON: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Led:
+    """`kobuki_msgs/msg/Led`"""
+    value: int
+    BLACK: ClassVar[int] = 0
+    GREEN: ClassVar[int] = 1
+    ORANGE: ClassVar[int] = 2
+    RED: ClassVar[int] = 3
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class kobuki_msgs__msg__MotorPower:
     """`kobuki_msgs/msg/MotorPower`"""
     state: int
     OFF: ClassVar[int] = 0
     ON: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PowerSystemEvent:
+    """`kobuki_msgs/msg/PowerSystemEvent`"""
+    event: int
+    UNPLUGGED: ClassVar[int] = 0
+    PLUGGED_TO_ADAPTER: ClassVar[int] = 1
+    PLUGGED_TO_DOCKBASE: ClassVar[int] = 2
+    CHARGE_COMPLETED: ClassVar[int] = 3
+    BATTERY_LOW: ClassVar[int] = 4
+    BATTERY_CRITICAL: ClassVar[int] = 5
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RobotStateEvent:
+    """`kobuki_msgs/msg/RobotStateEvent`"""
+    state: int
+    ONLINE: ClassVar[int] = 1
+    OFFLINE: ClassVar[int] = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ScanAngle:
+    """`kobuki_msgs/msg/ScanAngle`"""
+    header: Header
+    scan_angle: float
     __msgtype__: ClassVar[str]
 
 @dataclass
@@ -2088,6 +2959,31 @@ class kobuki_msgs__msg__SensorState:
     DIGITAL_INPUT2: ClassVar[int] = 4
     DIGITAL_INPUT3: ClassVar[int] = 8
     DB25_TEST_BOARD_CONNECTED: ClassVar[int] = 64
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class kobuki_msgs__msg__Sound:
+    """`kobuki_msgs/msg/Sound`"""
+    value: int
+    ON: ClassVar[int] = 0
+    OFF: ClassVar[int] = 1
+    RECHARGE: ClassVar[int] = 2
+    BUTTON: ClassVar[int] = 3
+    ERROR: ClassVar[int] = 4
+    CLEANINGSTART: ClassVar[int] = 5
+    CLEANINGEND: ClassVar[int] = 6
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class kobuki_msgs__msg__VersionInfo:
+    """`kobuki_msgs/msg/VersionInfo`"""
+    hardware: str
+    firmware: str
+    software: str
+    udid: NDArray[np.uint32]
+    features: int
+    SMOOTH_MOVE_START: ClassVar[int] = 1
+    GYROSCOPE_3D_DATA: ClassVar[int] = 2
     __msgtype__: ClassVar[str]
 
 @dataclass
@@ -2486,6 +3382,1013 @@ class SetMapProjections_Response:
     projected_maps_info: list[ProjectedMapInfo]
     __msgtype__: ClassVar[str]
 
+# mav_msgs
+
+@dataclass
+class mav_msgs__msg__Actuators:
+    """`mav_msgs/msg/Actuators`"""
+    header: Header
+    angles: NDArray[np.float64]
+    angular_velocities: NDArray[np.float64]
+    normalized: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AttitudeThrust:
+    """`mav_msgs/msg/AttitudeThrust`"""
+    header: Header
+    attitude: Quaternion
+    thrust: Vector3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class FilteredSensorData:
+    """`mav_msgs/msg/FilteredSensorData`"""
+    header: Header
+    accelerometer: Vector3
+    gyroscope: Vector3
+    magnetometer: Vector3
+    barometer: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RateThrust:
+    """`mav_msgs/msg/RateThrust`"""
+    header: Header
+    angular_rates: Vector3
+    thrust: Vector3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RollPitchYawrateThrust:
+    """`mav_msgs/msg/RollPitchYawrateThrust`"""
+    header: Header
+    roll: float
+    pitch: float
+    yaw_rate: float
+    thrust: Vector3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Status:
+    """`mav_msgs/msg/Status`"""
+    header: Header
+    vehicle_name: str
+    vehicle_type: str
+    battery_voltage: float
+    rc_command_mode: str
+    command_interface_enabled: bool
+    flight_time: float
+    system_uptime: float
+    cpu_load: float
+    motor_status: str
+    in_air: bool
+    gps_status: str
+    gps_num_satellites: int
+    RC_COMMAND_ATTITUDE: ClassVar[str] = 'attitude_thrust'
+    RC_COMMAND_ATTITUDE_HEIGHT: ClassVar[str] = 'attitude_height'
+    RC_COMMAND_POSITION: ClassVar[str] = 'position'
+    MOTOR_STATUS_RUNNING: ClassVar[str] = 'running'
+    MOTOR_STATUS_STOPPED: ClassVar[str] = 'stopped'
+    MOTOR_STATUS_STARTING: ClassVar[str] = 'starting'
+    MOTOR_STATUS_STOPPING: ClassVar[str] = 'stopping'
+    GPS_STATUS_LOCK: ClassVar[str] = 'lock'
+    GPS_STATUS_NO_LOCK: ClassVar[str] = 'no_lock'
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TorqueThrust:
+    """`mav_msgs/msg/TorqueThrust`"""
+    header: Header
+    torque: Vector3
+    thrust: Vector3
+    __msgtype__: ClassVar[str]
+
+# mavros_msgs
+
+@dataclass
+class ActuatorControl:
+    """`mavros_msgs/msg/ActuatorControl`"""
+    header: Header
+    group_mix: int
+    controls: NDArray[np.float32]
+    PX4_MIX_FLIGHT_CONTROL: ClassVar[int] = 0
+    PX4_MIX_FLIGHT_CONTROL_VTOL_ALT: ClassVar[int] = 1
+    PX4_MIX_PAYLOAD: ClassVar[int] = 2
+    PX4_MIX_MANUAL_PASSTHROUGH: ClassVar[int] = 3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Altitude:
+    """`mavros_msgs/msg/Altitude`"""
+    header: Header
+    monotonic: float
+    amsl: float
+    local: float
+    relative: float
+    terrain: float
+    bottom_clearance: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AttitudeTarget:
+    """`mavros_msgs/msg/AttitudeTarget`"""
+    header: Header
+    type_mask: int
+    orientation: Quaternion
+    body_rate: Vector3
+    thrust: float
+    IGNORE_ROLL_RATE: ClassVar[int] = 1
+    IGNORE_PITCH_RATE: ClassVar[int] = 2
+    IGNORE_YAW_RATE: ClassVar[int] = 4
+    IGNORE_THRUST: ClassVar[int] = 64
+    IGNORE_ATTITUDE: ClassVar[int] = 128
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CommandCode:
+    """`mavros_msgs/msg/CommandCode`"""
+    structure_needs_at_least_one_member: int = 0
+    AIRFRAME_CONFIGURATION: ClassVar[int] = 2520
+    ARM_AUTHORIZATION_REQUEST: ClassVar[int] = 3001
+    CAMERA_TRACK_POINT: ClassVar[int] = 2004
+    CAMERA_TRACK_RECTANGLE: ClassVar[int] = 2005
+    CAMERA_STOP_TRACKING: ClassVar[int] = 2010
+    CAN_FORWARD: ClassVar[int] = 32000
+    COMPONENT_ARM_DISARM: ClassVar[int] = 400
+    CONDITION_DELAY: ClassVar[int] = 112
+    CONDITION_CHANGE_ALT: ClassVar[int] = 113
+    CONDITION_DISTANCE: ClassVar[int] = 114
+    CONDITION_YAW: ClassVar[int] = 115
+    CONDITION_LAST: ClassVar[int] = 159
+    CONTROL_HIGH_LATENCY: ClassVar[int] = 2600
+    DO_FOLLOW: ClassVar[int] = 32
+    DO_FOLLOW_REPOSITION: ClassVar[int] = 33
+    DO_SET_MODE: ClassVar[int] = 176
+    DO_JUMP: ClassVar[int] = 177
+    DO_CHANGE_SPEED: ClassVar[int] = 178
+    DO_SET_HOME: ClassVar[int] = 179
+    DO_SET_PARAMETER: ClassVar[int] = 180
+    DO_SET_RELAY: ClassVar[int] = 181
+    DO_REPEAT_RELAY: ClassVar[int] = 182
+    DO_SET_SERVO: ClassVar[int] = 183
+    DO_REPEAT_SERVO: ClassVar[int] = 184
+    DO_FLIGHTTERMINATION: ClassVar[int] = 185
+    DO_CHANGE_ALTITUDE: ClassVar[int] = 186
+    DO_RETURN_PATH_START: ClassVar[int] = 188
+    DO_LAND_START: ClassVar[int] = 189
+    DO_RALLY_LAND: ClassVar[int] = 190
+    DO_GO_AROUND: ClassVar[int] = 191
+    DO_REPOSITION: ClassVar[int] = 192
+    DO_PAUSE_CONTINUE: ClassVar[int] = 193
+    DO_SET_REVERSE: ClassVar[int] = 194
+    DO_SET_ROI_LOCATION: ClassVar[int] = 195
+    DO_SET_ROI_WPNEXT_OFFSET: ClassVar[int] = 196
+    DO_SET_ROI_NONE: ClassVar[int] = 197
+    DO_SET_ROI_SYSID: ClassVar[int] = 198
+    DO_CONTROL_VIDEO: ClassVar[int] = 200
+    DO_SET_ROI: ClassVar[int] = 201
+    DO_DIGICAM_CONFIGURE: ClassVar[int] = 202
+    DO_DIGICAM_CONTROL: ClassVar[int] = 203
+    DO_MOUNT_CONFIGURE: ClassVar[int] = 204
+    DO_MOUNT_CONTROL: ClassVar[int] = 205
+    DO_SET_CAM_TRIGG_DIST: ClassVar[int] = 206
+    DO_FENCE_ENABLE: ClassVar[int] = 207
+    DO_PARACHUTE: ClassVar[int] = 208
+    DO_MOTOR_TEST: ClassVar[int] = 209
+    DO_INVERTED_FLIGHT: ClassVar[int] = 210
+    DO_GRIPPER: ClassVar[int] = 211
+    DO_AUTOTUNE_ENABLE: ClassVar[int] = 212
+    DO_SET_CAM_TRIGG_INTERVAL: ClassVar[int] = 214
+    DO_MOUNT_CONTROL_QUAT: ClassVar[int] = 220
+    DO_GUIDED_MASTER: ClassVar[int] = 221
+    DO_GUIDED_LIMITS: ClassVar[int] = 222
+    DO_ENGINE_CONTROL: ClassVar[int] = 223
+    DO_SET_MISSION_CURRENT: ClassVar[int] = 224
+    DO_LAST: ClassVar[int] = 240
+    DO_JUMP_TAG: ClassVar[int] = 601
+    DO_GIMBAL_MANAGER_PITCHYAW: ClassVar[int] = 1000
+    DO_GIMBAL_MANAGER_CONFIGURE: ClassVar[int] = 1001
+    DO_TRIGGER_CONTROL: ClassVar[int] = 2003
+    DO_VTOL_TRANSITION: ClassVar[int] = 3000
+    DO_SET_SAFETY_SWITCH_STATE: ClassVar[int] = 5300
+    DO_ADSB_OUT_IDENT: ClassVar[int] = 10001
+    DO_WINCH: ClassVar[int] = 42600
+    EXTERNAL_POSITION_ESTIMATE: ClassVar[int] = 43003
+    FIXED_MAG_CAL_YAW: ClassVar[int] = 42006
+    GET_HOME_POSITION: ClassVar[int] = 410
+    GET_MESSAGE_INTERVAL: ClassVar[int] = 510
+    IMAGE_START_CAPTURE: ClassVar[int] = 2000
+    IMAGE_STOP_CAPTURE: ClassVar[int] = 2001
+    JUMP_TAG: ClassVar[int] = 600
+    LOGGING_START: ClassVar[int] = 2510
+    LOGGING_STOP: ClassVar[int] = 2511
+    MISSION_START: ClassVar[int] = 300
+    NAV_WAYPOINT: ClassVar[int] = 16
+    NAV_LOITER_UNLIM: ClassVar[int] = 17
+    NAV_LOITER_TURNS: ClassVar[int] = 18
+    NAV_LOITER_TIME: ClassVar[int] = 19
+    NAV_RETURN_TO_LAUNCH: ClassVar[int] = 20
+    NAV_LAND: ClassVar[int] = 21
+    NAV_TAKEOFF: ClassVar[int] = 22
+    NAV_LAND_LOCAL: ClassVar[int] = 23
+    NAV_TAKEOFF_LOCAL: ClassVar[int] = 24
+    NAV_FOLLOW: ClassVar[int] = 25
+    NAV_CONTINUE_AND_CHANGE_ALT: ClassVar[int] = 30
+    NAV_LOITER_TO_ALT: ClassVar[int] = 31
+    NAV_ROI: ClassVar[int] = 80
+    NAV_PATHPLANNING: ClassVar[int] = 81
+    NAV_SPLINE_WAYPOINT: ClassVar[int] = 82
+    NAV_VTOL_TAKEOFF: ClassVar[int] = 84
+    NAV_VTOL_LAND: ClassVar[int] = 85
+    NAV_GUIDED_ENABLE: ClassVar[int] = 92
+    NAV_DELAY: ClassVar[int] = 93
+    NAV_PAYLOAD_PLACE: ClassVar[int] = 94
+    NAV_LAST: ClassVar[int] = 95
+    NAV_SET_YAW_SPEED: ClassVar[int] = 213
+    NAV_FENCE_RETURN_POINT: ClassVar[int] = 5000
+    NAV_FENCE_POLYGON_VERTEX_INCLUSION: ClassVar[int] = 5001
+    NAV_FENCE_POLYGON_VERTEX_EXCLUSION: ClassVar[int] = 5002
+    NAV_FENCE_CIRCLE_INCLUSION: ClassVar[int] = 5003
+    NAV_FENCE_CIRCLE_EXCLUSION: ClassVar[int] = 5004
+    NAV_RALLY_POINT: ClassVar[int] = 5100
+    OBLIQUE_SURVEY: ClassVar[int] = 260
+    OVERRIDE_GOTO: ClassVar[int] = 252
+    PANORAMA_CREATE: ClassVar[int] = 2800
+    PAYLOAD_PREPARE_DEPLOY: ClassVar[int] = 30001
+    PAYLOAD_CONTROL_DEPLOY: ClassVar[int] = 30002
+    PREFLIGHT_CALIBRATION: ClassVar[int] = 241
+    PREFLIGHT_SET_SENSOR_OFFSETS: ClassVar[int] = 242
+    PREFLIGHT_UAVCAN: ClassVar[int] = 243
+    PREFLIGHT_STORAGE: ClassVar[int] = 245
+    PREFLIGHT_REBOOT_SHUTDOWN: ClassVar[int] = 246
+    REQUEST_MESSAGE: ClassVar[int] = 512
+    REQUEST_PROTOCOL_VERSION: ClassVar[int] = 519
+    REQUEST_AUTOPILOT_CAPABILITIES: ClassVar[int] = 520
+    REQUEST_CAMERA_INFORMATION: ClassVar[int] = 521
+    REQUEST_CAMERA_SETTINGS: ClassVar[int] = 522
+    REQUEST_STORAGE_INFORMATION: ClassVar[int] = 525
+    REQUEST_CAMERA_CAPTURE_STATUS: ClassVar[int] = 527
+    REQUEST_FLIGHT_INFORMATION: ClassVar[int] = 528
+    REQUEST_VIDEO_STREAM_INFORMATION: ClassVar[int] = 2504
+    REQUEST_VIDEO_STREAM_STATUS: ClassVar[int] = 2505
+    RESET_CAMERA_SETTINGS: ClassVar[int] = 529
+    RUN_PREARM_CHECKS: ClassVar[int] = 401
+    SET_MESSAGE_INTERVAL: ClassVar[int] = 511
+    SET_CAMERA_MODE: ClassVar[int] = 530
+    SET_CAMERA_ZOOM: ClassVar[int] = 531
+    SET_CAMERA_FOCUS: ClassVar[int] = 532
+    SET_STORAGE_USAGE: ClassVar[int] = 533
+    SET_CAMERA_SOURCE: ClassVar[int] = 534
+    SET_GUIDED_SUBMODE_STANDARD: ClassVar[int] = 4000
+    SET_GUIDED_SUBMODE_CIRCLE: ClassVar[int] = 4001
+    START_RX_PAIR: ClassVar[int] = 500
+    STORAGE_FORMAT: ClassVar[int] = 526
+    UAVCAN_GET_NODE_INFO: ClassVar[int] = 5200
+    VIDEO_START_CAPTURE: ClassVar[int] = 2500
+    VIDEO_STOP_CAPTURE: ClassVar[int] = 2501
+    VIDEO_START_STREAMING: ClassVar[int] = 2502
+    VIDEO_STOP_STREAMING: ClassVar[int] = 2503
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ExtendedState:
+    """`mavros_msgs/msg/ExtendedState`"""
+    header: Header
+    vtol_state: int
+    landed_state: int
+    VTOL_STATE_UNDEFINED: ClassVar[int] = 0
+    VTOL_STATE_TRANSITION_TO_FW: ClassVar[int] = 1
+    VTOL_STATE_TRANSITION_TO_MC: ClassVar[int] = 2
+    VTOL_STATE_MC: ClassVar[int] = 3
+    VTOL_STATE_FW: ClassVar[int] = 4
+    LANDED_STATE_UNDEFINED: ClassVar[int] = 0
+    LANDED_STATE_ON_GROUND: ClassVar[int] = 1
+    LANDED_STATE_IN_AIR: ClassVar[int] = 2
+    LANDED_STATE_TAKEOFF: ClassVar[int] = 3
+    LANDED_STATE_LANDING: ClassVar[int] = 4
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GlobalPositionTarget:
+    """`mavros_msgs/msg/GlobalPositionTarget`"""
+    header: Header
+    coordinate_frame: int
+    type_mask: int
+    latitude: float
+    longitude: float
+    altitude: float
+    velocity: Vector3
+    acceleration_or_force: Vector3
+    yaw: float
+    yaw_rate: float
+    FRAME_GLOBAL_INT: ClassVar[int] = 5
+    FRAME_GLOBAL_REL_ALT: ClassVar[int] = 6
+    FRAME_GLOBAL_TERRAIN_ALT: ClassVar[int] = 11
+    IGNORE_LATITUDE: ClassVar[int] = 1
+    IGNORE_LONGITUDE: ClassVar[int] = 2
+    IGNORE_ALTITUDE: ClassVar[int] = 4
+    IGNORE_VX: ClassVar[int] = 8
+    IGNORE_VY: ClassVar[int] = 16
+    IGNORE_VZ: ClassVar[int] = 32
+    IGNORE_AFX: ClassVar[int] = 64
+    IGNORE_AFY: ClassVar[int] = 128
+    IGNORE_AFZ: ClassVar[int] = 256
+    FORCE: ClassVar[int] = 512
+    IGNORE_YAW: ClassVar[int] = 1024
+    IGNORE_YAW_RATE: ClassVar[int] = 2048
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class HomePosition:
+    """`mavros_msgs/msg/HomePosition`"""
+    header: Header
+    geo: GeoPoint
+    position: Point
+    orientation: Quaternion
+    approach: Vector3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LandingTarget:
+    """`mavros_msgs/msg/LandingTarget`"""
+    header: Header
+    target_num: int
+    frame: int
+    angle: NDArray[np.float32]
+    distance: float
+    size: NDArray[np.float32]
+    pose: Pose
+    type: int
+    GLOBAL: ClassVar[int] = 0
+    LOCAL_NED: ClassVar[int] = 2
+    MISSION: ClassVar[int] = 3
+    GLOBAL_RELATIVE_ALT: ClassVar[int] = 4
+    LOCAL_ENU: ClassVar[int] = 5
+    GLOBAL_INT: ClassVar[int] = 6
+    GLOBAL_RELATIVE_ALT_INT: ClassVar[int] = 7
+    LOCAL_OFFSET_NED: ClassVar[int] = 8
+    BODY_NED: ClassVar[int] = 9
+    BODY_OFFSET_NED: ClassVar[int] = 10
+    GLOBAL_TERRAIN_ALT: ClassVar[int] = 11
+    GLOBAL_TERRAIN_ALT_INT: ClassVar[int] = 12
+    LIGHT_BEACON: ClassVar[int] = 0
+    RADIO_BEACON: ClassVar[int] = 1
+    VISION_FIDUCIAL: ClassVar[int] = 2
+    VISION_OTHER: ClassVar[int] = 3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ManualControl:
+    """`mavros_msgs/msg/ManualControl`"""
+    header: Header
+    x: float
+    y: float
+    z: float
+    r: float
+    buttons: int
+    buttons2: int
+    enabled_extensions: int
+    s: float
+    t: float
+    aux1: float
+    aux2: float
+    aux3: float
+    aux4: float
+    aux5: float
+    aux6: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MountControl:
+    """`mavros_msgs/msg/MountControl`"""
+    header: Header
+    mode: int
+    pitch: float
+    roll: float
+    yaw: float
+    altitude: float
+    latitude: float
+    longitude: float
+    MAV_MOUNT_MODE_RETRACT: ClassVar[int] = 0
+    MAV_MOUNT_MODE_NEUTRAL: ClassVar[int] = 1
+    MAV_MOUNT_MODE_MAVLINK_TARGETING: ClassVar[int] = 2
+    MAV_MOUNT_MODE_RC_TARGETING: ClassVar[int] = 3
+    MAV_MOUNT_MODE_GPS_POINT: ClassVar[int] = 4
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class OverrideRCIn:
+    """`mavros_msgs/msg/OverrideRCIn`"""
+    channels: NDArray[np.uint16]
+    CHAN_RELEASE: ClassVar[int] = 0
+    CHAN_NOCHANGE: ClassVar[int] = 65535
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Param:
+    """`mavros_msgs/msg/Param`"""
+    header: Header
+    param_id: str
+    value: ParamValue
+    param_index: int
+    param_count: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ParamValue:
+    """`mavros_msgs/msg/ParamValue`"""
+    integer: int
+    real: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PositionTarget:
+    """`mavros_msgs/msg/PositionTarget`"""
+    header: Header
+    coordinate_frame: int
+    type_mask: int
+    position: Point
+    velocity: Vector3
+    acceleration_or_force: Vector3
+    yaw: float
+    yaw_rate: float
+    FRAME_LOCAL_NED: ClassVar[int] = 1
+    FRAME_LOCAL_OFFSET_NED: ClassVar[int] = 7
+    FRAME_BODY_NED: ClassVar[int] = 8
+    FRAME_BODY_OFFSET_NED: ClassVar[int] = 9
+    IGNORE_PX: ClassVar[int] = 1
+    IGNORE_PY: ClassVar[int] = 2
+    IGNORE_PZ: ClassVar[int] = 4
+    IGNORE_VX: ClassVar[int] = 8
+    IGNORE_VY: ClassVar[int] = 16
+    IGNORE_VZ: ClassVar[int] = 32
+    IGNORE_AFX: ClassVar[int] = 64
+    IGNORE_AFY: ClassVar[int] = 128
+    IGNORE_AFZ: ClassVar[int] = 256
+    FORCE: ClassVar[int] = 512
+    IGNORE_YAW: ClassVar[int] = 1024
+    IGNORE_YAW_RATE: ClassVar[int] = 2048
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RCIn:
+    """`mavros_msgs/msg/RCIn`"""
+    header: Header
+    rssi: int
+    channels: NDArray[np.uint16]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RCOut:
+    """`mavros_msgs/msg/RCOut`"""
+    header: Header
+    channels: NDArray[np.uint16]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class mavros_msgs__msg__State:
+    """`mavros_msgs/msg/State`"""
+    header: Header
+    connected: bool
+    armed: bool
+    guided: bool
+    manual_input: bool
+    mode: str
+    system_status: int
+    MODE_APM_PLANE_MANUAL: ClassVar[str] = 'MANUAL'
+    MODE_APM_PLANE_CIRCLE: ClassVar[str] = 'CIRCLE'
+    MODE_APM_PLANE_STABILIZE: ClassVar[str] = 'STABILIZE'
+    MODE_APM_PLANE_TRAINING: ClassVar[str] = 'TRAINING'
+    MODE_APM_PLANE_ACRO: ClassVar[str] = 'ACRO'
+    MODE_APM_PLANE_FBWA: ClassVar[str] = 'FBWA'
+    MODE_APM_PLANE_FBWB: ClassVar[str] = 'FBWB'
+    MODE_APM_PLANE_CRUISE: ClassVar[str] = 'CRUISE'
+    MODE_APM_PLANE_AUTOTUNE: ClassVar[str] = 'AUTOTUNE'
+    MODE_APM_PLANE_AUTO: ClassVar[str] = 'AUTO'
+    MODE_APM_PLANE_RTL: ClassVar[str] = 'RTL'
+    MODE_APM_PLANE_LOITER: ClassVar[str] = 'LOITER'
+    MODE_APM_PLANE_LAND: ClassVar[str] = 'LAND'
+    MODE_APM_PLANE_GUIDED: ClassVar[str] = 'GUIDED'
+    MODE_APM_PLANE_INITIALISING: ClassVar[str] = 'INITIALISING'
+    MODE_APM_PLANE_QSTABILIZE: ClassVar[str] = 'QSTABILIZE'
+    MODE_APM_PLANE_QHOVER: ClassVar[str] = 'QHOVER'
+    MODE_APM_PLANE_QLOITER: ClassVar[str] = 'QLOITER'
+    MODE_APM_PLANE_QLAND: ClassVar[str] = 'QLAND'
+    MODE_APM_PLANE_QRTL: ClassVar[str] = 'QRTL'
+    MODE_APM_COPTER_STABILIZE: ClassVar[str] = 'STABILIZE'
+    MODE_APM_COPTER_ACRO: ClassVar[str] = 'ACRO'
+    MODE_APM_COPTER_ALT_HOLD: ClassVar[str] = 'ALT_HOLD'
+    MODE_APM_COPTER_AUTO: ClassVar[str] = 'AUTO'
+    MODE_APM_COPTER_GUIDED: ClassVar[str] = 'GUIDED'
+    MODE_APM_COPTER_LOITER: ClassVar[str] = 'LOITER'
+    MODE_APM_COPTER_RTL: ClassVar[str] = 'RTL'
+    MODE_APM_COPTER_CIRCLE: ClassVar[str] = 'CIRCLE'
+    MODE_APM_COPTER_POSITION: ClassVar[str] = 'POSITION'
+    MODE_APM_COPTER_LAND: ClassVar[str] = 'LAND'
+    MODE_APM_COPTER_OF_LOITER: ClassVar[str] = 'OF_LOITER'
+    MODE_APM_COPTER_DRIFT: ClassVar[str] = 'DRIFT'
+    MODE_APM_COPTER_SPORT: ClassVar[str] = 'SPORT'
+    MODE_APM_COPTER_FLIP: ClassVar[str] = 'FLIP'
+    MODE_APM_COPTER_AUTOTUNE: ClassVar[str] = 'AUTOTUNE'
+    MODE_APM_COPTER_POSHOLD: ClassVar[str] = 'POSHOLD'
+    MODE_APM_COPTER_BRAKE: ClassVar[str] = 'BRAKE'
+    MODE_APM_COPTER_THROW: ClassVar[str] = 'THROW'
+    MODE_APM_COPTER_AVOID_ADSB: ClassVar[str] = 'AVOID_ADSB'
+    MODE_APM_COPTER_GUIDED_NOGPS: ClassVar[str] = 'GUIDED_NOGPS'
+    MODE_APM_ROVER_MANUAL: ClassVar[str] = 'MANUAL'
+    MODE_APM_ROVER_LEARNING: ClassVar[str] = 'LEARNING'
+    MODE_APM_ROVER_STEERING: ClassVar[str] = 'STEERING'
+    MODE_APM_ROVER_HOLD: ClassVar[str] = 'HOLD'
+    MODE_APM_ROVER_AUTO: ClassVar[str] = 'AUTO'
+    MODE_APM_ROVER_RTL: ClassVar[str] = 'RTL'
+    MODE_APM_ROVER_GUIDED: ClassVar[str] = 'GUIDED'
+    MODE_APM_ROVER_INITIALISING: ClassVar[str] = 'INITIALISING'
+    MODE_PX4_MANUAL: ClassVar[str] = 'MANUAL'
+    MODE_PX4_ACRO: ClassVar[str] = 'ACRO'
+    MODE_PX4_ALTITUDE: ClassVar[str] = 'ALTCTL'
+    MODE_PX4_POSITION: ClassVar[str] = 'POSCTL'
+    MODE_PX4_OFFBOARD: ClassVar[str] = 'OFFBOARD'
+    MODE_PX4_STABILIZED: ClassVar[str] = 'STABILIZED'
+    MODE_PX4_RATTITUDE: ClassVar[str] = 'RATTITUDE'
+    MODE_PX4_MISSION: ClassVar[str] = 'AUTO.MISSION'
+    MODE_PX4_LOITER: ClassVar[str] = 'AUTO.LOITER'
+    MODE_PX4_RTL: ClassVar[str] = 'AUTO.RTL'
+    MODE_PX4_LAND: ClassVar[str] = 'AUTO.LAND'
+    MODE_PX4_RTGS: ClassVar[str] = 'AUTO.RTGS'
+    MODE_PX4_READY: ClassVar[str] = 'AUTO.READY'
+    MODE_PX4_TAKEOFF: ClassVar[str] = 'AUTO.TAKEOFF'
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class StatusText:
+    """`mavros_msgs/msg/StatusText`"""
+    header: Header
+    severity: int
+    text: str
+    EMERGENCY: ClassVar[int] = 0
+    ALERT: ClassVar[int] = 1
+    CRITICAL: ClassVar[int] = 2
+    ERROR: ClassVar[int] = 3
+    WARNING: ClassVar[int] = 4
+    NOTICE: ClassVar[int] = 5
+    INFO: ClassVar[int] = 6
+    DEBUG: ClassVar[int] = 7
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SysStatus:
+    """`mavros_msgs/msg/SysStatus`"""
+    header: Header
+    sensors_present: int
+    sensors_enabled: int
+    sensors_health: int
+    load: int
+    voltage_battery: int
+    current_battery: int
+    battery_remaining: int
+    drop_rate_comm: int
+    errors_comm: int
+    errors_count1: int
+    errors_count2: int
+    errors_count3: int
+    errors_count4: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Thrust:
+    """`mavros_msgs/msg/Thrust`"""
+    header: Header
+    thrust: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TimesyncStatus:
+    """`mavros_msgs/msg/TimesyncStatus`"""
+    header: Header
+    remote_timestamp_ns: int
+    observed_offset_ns: int
+    estimated_offset_ns: int
+    round_trip_time_ms: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class VfrHud:
+    """`mavros_msgs/msg/VfrHud`"""
+    header: Header
+    airspeed: float
+    groundspeed: float
+    heading: int
+    throttle: float
+    altitude: float
+    climb: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Waypoint:
+    """`mavros_msgs/msg/Waypoint`"""
+    frame: int
+    command: int
+    is_current: bool
+    autocontinue: bool
+    param1: float
+    param2: float
+    param3: float
+    param4: float
+    x_lat: float
+    y_long: float
+    z_alt: float
+    FRAME_GLOBAL: ClassVar[int] = 0
+    FRAME_LOCAL_NED: ClassVar[int] = 1
+    FRAME_MISSION: ClassVar[int] = 2
+    FRAME_GLOBAL_REL_ALT: ClassVar[int] = 3
+    FRAME_LOCAL_ENU: ClassVar[int] = 4
+    FRAME_GLOBAL_INT: ClassVar[int] = 5
+    FRAME_GLOBAL_RELATIVE_ALT_INT: ClassVar[int] = 6
+    FRAME_LOCAL_OFFSET_NED: ClassVar[int] = 7
+    FRAME_BODY_NED: ClassVar[int] = 8
+    FRAME_BODY_OFFSET_NED: ClassVar[int] = 9
+    FRAME_GLOBAL_TERRAIN_ALT: ClassVar[int] = 10
+    FRAME_GLOBAL_TERRAIN_ALT_INT: ClassVar[int] = 11
+    FRAME_BODY_FRD: ClassVar[int] = 12
+    FRAME_RESERVED_13: ClassVar[int] = 13
+    FRAME_RESERVED_14: ClassVar[int] = 14
+    FRAME_RESERVED_15: ClassVar[int] = 15
+    FRAME_RESERVED_16: ClassVar[int] = 16
+    FRAME_RESERVED_17: ClassVar[int] = 17
+    FRAME_RESERVED_18: ClassVar[int] = 18
+    FRAME_RESERVED_19: ClassVar[int] = 19
+    FRAME_LOCAL_FRD: ClassVar[int] = 20
+    FRAME_LOCAL_FLU: ClassVar[int] = 21
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WaypointList:
+    """`mavros_msgs/msg/WaypointList`"""
+    current_seq: int
+    waypoints: list[Waypoint]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WaypointReached:
+    """`mavros_msgs/msg/WaypointReached`"""
+    header: Header
+    wp_seq: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CommandAck_Request:
+    """`mavros_msgs/srv/CommandAck_Request`"""
+    command: int
+    result: int
+    progress: int
+    result_param2: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CommandAck_Response:
+    """`mavros_msgs/srv/CommandAck_Response`"""
+    success: bool
+    result: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CommandBool_Request:
+    """`mavros_msgs/srv/CommandBool_Request`"""
+    value: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CommandBool_Response:
+    """`mavros_msgs/srv/CommandBool_Response`"""
+    success: bool
+    result: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CommandHome_Request:
+    """`mavros_msgs/srv/CommandHome_Request`"""
+    current_gps: bool
+    yaw: float
+    latitude: float
+    longitude: float
+    altitude: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CommandHome_Response:
+    """`mavros_msgs/srv/CommandHome_Response`"""
+    success: bool
+    result: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CommandInt_Request:
+    """`mavros_msgs/srv/CommandInt_Request`"""
+    broadcast: bool
+    frame: int
+    command: int
+    current: int
+    autocontinue: int
+    param1: float
+    param2: float
+    param3: float
+    param4: float
+    x: int
+    y: int
+    z: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CommandInt_Response:
+    """`mavros_msgs/srv/CommandInt_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CommandLong_Request:
+    """`mavros_msgs/srv/CommandLong_Request`"""
+    broadcast: bool
+    command: int
+    confirmation: int
+    param1: float
+    param2: float
+    param3: float
+    param4: float
+    param5: float
+    param6: float
+    param7: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CommandLong_Response:
+    """`mavros_msgs/srv/CommandLong_Response`"""
+    success: bool
+    result: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CommandTOL_Request:
+    """`mavros_msgs/srv/CommandTOL_Request`"""
+    min_pitch: float
+    yaw: float
+    latitude: float
+    longitude: float
+    altitude: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CommandTOL_Response:
+    """`mavros_msgs/srv/CommandTOL_Response`"""
+    success: bool
+    result: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CommandVtolTransition_Request:
+    """`mavros_msgs/srv/CommandVtolTransition_Request`"""
+    header: Header
+    state: int
+    STATE_MC: ClassVar[int] = 3
+    STATE_FW: ClassVar[int] = 4
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CommandVtolTransition_Response:
+    """`mavros_msgs/srv/CommandVtolTransition_Response`"""
+    success: bool
+    result: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MessageInterval_Request:
+    """`mavros_msgs/srv/MessageInterval_Request`"""
+    message_id: int
+    message_rate: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MessageInterval_Response:
+    """`mavros_msgs/srv/MessageInterval_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ParamGet_Request:
+    """`mavros_msgs/srv/ParamGet_Request`"""
+    param_id: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ParamGet_Response:
+    """`mavros_msgs/srv/ParamGet_Response`"""
+    success: bool
+    value: ParamValue
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ParamPull_Request:
+    """`mavros_msgs/srv/ParamPull_Request`"""
+    force_pull: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ParamPull_Response:
+    """`mavros_msgs/srv/ParamPull_Response`"""
+    success: bool
+    param_received: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ParamSetV2_Request:
+    """`mavros_msgs/srv/ParamSetV2_Request`"""
+    force_set: bool
+    param_id: str
+    value: ParameterValue
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ParamSetV2_Response:
+    """`mavros_msgs/srv/ParamSetV2_Response`"""
+    success: bool
+    value: ParameterValue
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ParamSet_Request:
+    """`mavros_msgs/srv/ParamSet_Request`"""
+    param_id: str
+    value: ParamValue
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ParamSet_Response:
+    """`mavros_msgs/srv/ParamSet_Response`"""
+    success: bool
+    value: ParamValue
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetMavFrame_Request:
+    """`mavros_msgs/srv/SetMavFrame_Request`"""
+    mav_frame: int
+    FRAME_GLOBAL: ClassVar[int] = 0
+    FRAME_LOCAL_NED: ClassVar[int] = 1
+    FRAME_MISSION: ClassVar[int] = 2
+    FRAME_GLOBAL_RELATIVE_ALT: ClassVar[int] = 3
+    FRAME_LOCAL_ENU: ClassVar[int] = 4
+    FRAME_GLOBAL_INT: ClassVar[int] = 5
+    FRAME_GLOBAL_RELATIVE_ALT_INT: ClassVar[int] = 6
+    FRAME_LOCAL_OFFSET_NED: ClassVar[int] = 7
+    FRAME_BODY_NED: ClassVar[int] = 8
+    FRAME_BODY_OFFSET_NED: ClassVar[int] = 9
+    FRAME_GLOBAL_TERRAIN_ALT: ClassVar[int] = 10
+    FRAME_GLOBAL_TERRAIN_ALT_INT: ClassVar[int] = 11
+    FRAME_BODY_FRD: ClassVar[int] = 12
+    FRAME_RESERVED_13: ClassVar[int] = 13
+    FRAME_RESERVED_14: ClassVar[int] = 14
+    FRAME_RESERVED_15: ClassVar[int] = 15
+    FRAME_RESERVED_16: ClassVar[int] = 16
+    FRAME_RESERVED_17: ClassVar[int] = 17
+    FRAME_RESERVED_18: ClassVar[int] = 18
+    FRAME_RESERVED_19: ClassVar[int] = 19
+    FRAME_LOCAL_FRD: ClassVar[int] = 20
+    FRAME_LOCAL_FLU: ClassVar[int] = 21
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetMavFrame_Response:
+    """`mavros_msgs/srv/SetMavFrame_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetMode_Request:
+    """`mavros_msgs/srv/SetMode_Request`"""
+    base_mode: int
+    custom_mode: str
+    MAV_MODE_PREFLIGHT: ClassVar[int] = 0
+    MAV_MODE_STABILIZE_DISARMED: ClassVar[int] = 80
+    MAV_MODE_STABILIZE_ARMED: ClassVar[int] = 208
+    MAV_MODE_MANUAL_DISARMED: ClassVar[int] = 64
+    MAV_MODE_MANUAL_ARMED: ClassVar[int] = 192
+    MAV_MODE_GUIDED_DISARMED: ClassVar[int] = 88
+    MAV_MODE_GUIDED_ARMED: ClassVar[int] = 216
+    MAV_MODE_AUTO_DISARMED: ClassVar[int] = 92
+    MAV_MODE_AUTO_ARMED: ClassVar[int] = 220
+    MAV_MODE_TEST_DISARMED: ClassVar[int] = 66
+    MAV_MODE_TEST_ARMED: ClassVar[int] = 194
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetMode_Response:
+    """`mavros_msgs/srv/SetMode_Response`"""
+    mode_sent: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class StreamRate_Request:
+    """`mavros_msgs/srv/StreamRate_Request`"""
+    stream_id: int
+    message_rate: int
+    on_off: bool
+    STREAM_ALL: ClassVar[int] = 0
+    STREAM_RAW_SENSORS: ClassVar[int] = 1
+    STREAM_EXTENDED_STATUS: ClassVar[int] = 2
+    STREAM_RC_CHANNELS: ClassVar[int] = 3
+    STREAM_RAW_CONTROLLER: ClassVar[int] = 4
+    STREAM_POSITION: ClassVar[int] = 6
+    STREAM_EXTRA1: ClassVar[int] = 10
+    STREAM_EXTRA2: ClassVar[int] = 11
+    STREAM_EXTRA3: ClassVar[int] = 12
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class StreamRate_Response:
+    """`mavros_msgs/srv/StreamRate_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WaypointClear_Request:
+    """`mavros_msgs/srv/WaypointClear_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WaypointClear_Response:
+    """`mavros_msgs/srv/WaypointClear_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WaypointPull_Request:
+    """`mavros_msgs/srv/WaypointPull_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WaypointPull_Response:
+    """`mavros_msgs/srv/WaypointPull_Response`"""
+    success: bool
+    wp_received: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WaypointPush_Request:
+    """`mavros_msgs/srv/WaypointPush_Request`"""
+    start_index: int
+    waypoints: list[Waypoint]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WaypointPush_Response:
+    """`mavros_msgs/srv/WaypointPush_Response`"""
+    success: bool
+    wp_transfered: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WaypointSetCurrent_Request:
+    """`mavros_msgs/srv/WaypointSetCurrent_Request`"""
+    wp_seq: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WaypointSetCurrent_Response:
+    """`mavros_msgs/srv/WaypointSetCurrent_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+# move_base_msgs
+
+@dataclass
+class MoveBase_Feedback:
+    """`move_base_msgs/action/MoveBase_Feedback`"""
+    base_position: PoseStamped
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MoveBase_Goal:
+    """`move_base_msgs/action/MoveBase_Goal`"""
+    target_pose: PoseStamped
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MoveBase_Result:
+    """`move_base_msgs/action/MoveBase_Result`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RecoveryStatus:
+    """`move_base_msgs/msg/RecoveryStatus`"""
+    pose_stamped: PoseStamped
+    current_recovery_number: int
+    total_number_of_recoveries: int
+    recovery_behavior_name: str
+    __msgtype__: ClassVar[str]
+
 # moveit_msgs
 
 @dataclass
@@ -2508,6 +4411,25 @@ class ExecuteTrajectory_Result:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class MoveGroupSequence_Feedback:
+    """`moveit_msgs/action/MoveGroupSequence_Feedback`"""
+    state: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MoveGroupSequence_Goal:
+    """`moveit_msgs/action/MoveGroupSequence_Goal`"""
+    request: MotionSequenceRequest
+    planning_options: PlanningOptions
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MoveGroupSequence_Result:
+    """`moveit_msgs/action/MoveGroupSequence_Result`"""
+    response: MotionSequenceResponse
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class MoveGroup_Feedback:
     """`moveit_msgs/action/MoveGroup_Feedback`"""
     state: str
@@ -2524,9 +4446,77 @@ class MoveGroup_Goal:
 class MoveGroup_Result:
     """`moveit_msgs/action/MoveGroup_Result`"""
     error_code: MoveItErrorCodes
-    trajectory_start: moveit_msgs__msg__RobotState
+    trajectory_start: RobotState
     planned_trajectory: RobotTrajectory
     executed_trajectory: RobotTrajectory
+    planning_time: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Pickup_Feedback:
+    """`moveit_msgs/action/Pickup_Feedback`"""
+    state: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Pickup_Goal:
+    """`moveit_msgs/action/Pickup_Goal`"""
+    target_name: str
+    group_name: str
+    end_effector: str
+    possible_grasps: list[Grasp]
+    support_surface_name: str
+    allow_gripper_support_collision: bool
+    attached_object_touch_links: list[str]
+    minimize_object_distance: bool
+    path_constraints: Constraints
+    planner_id: str
+    allowed_touch_objects: list[str]
+    allowed_planning_time: float
+    planning_options: PlanningOptions
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Pickup_Result:
+    """`moveit_msgs/action/Pickup_Result`"""
+    error_code: MoveItErrorCodes
+    trajectory_start: RobotState
+    trajectory_stages: list[RobotTrajectory]
+    trajectory_descriptions: list[str]
+    grasp: Grasp
+    planning_time: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Place_Feedback:
+    """`moveit_msgs/action/Place_Feedback`"""
+    state: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Place_Goal:
+    """`moveit_msgs/action/Place_Goal`"""
+    group_name: str
+    attached_object_name: str
+    place_locations: list[PlaceLocation]
+    place_eef: bool
+    support_surface_name: str
+    allow_gripper_support_collision: bool
+    path_constraints: Constraints
+    planner_id: str
+    allowed_touch_objects: list[str]
+    allowed_planning_time: float
+    planning_options: PlanningOptions
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Place_Result:
+    """`moveit_msgs/action/Place_Result`"""
+    error_code: MoveItErrorCodes
+    trajectory_start: RobotState
+    trajectory_stages: list[RobotTrajectory]
+    trajectory_descriptions: list[str]
+    place_location: PlaceLocation
     planning_time: float
     __msgtype__: ClassVar[str]
 
@@ -2610,6 +4600,13 @@ class CollisionObject:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class ConstraintEvalResult:
+    """`moveit_msgs/msg/ConstraintEvalResult`"""
+    result: bool
+    distance: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class Constraints:
     """`moveit_msgs/msg/Constraints`"""
     name: str
@@ -2617,6 +4614,46 @@ class Constraints:
     position_constraints: list[PositionConstraint]
     orientation_constraints: list[OrientationConstraint]
     visibility_constraints: list[VisibilityConstraint]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ContactInformation:
+    """`moveit_msgs/msg/ContactInformation`"""
+    header: Header
+    position: Point
+    normal: Vector3
+    depth: float
+    contact_body_1: str
+    body_type_1: int
+    contact_body_2: str
+    body_type_2: int
+    ROBOT_LINK: ClassVar[int] = 0
+    WORLD_OBJECT: ClassVar[int] = 1
+    ROBOT_ATTACHED: ClassVar[int] = 2
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CostSource:
+    """`moveit_msgs/msg/CostSource`"""
+    cost_density: float
+    aabb_min: Vector3
+    aabb_max: Vector3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DisplayRobotState:
+    """`moveit_msgs/msg/DisplayRobotState`"""
+    state: RobotState
+    highlight_links: list[ObjectColor]
+    hide: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DisplayTrajectory:
+    """`moveit_msgs/msg/DisplayTrajectory`"""
+    model_id: str
+    trajectory: list[RobotTrajectory]
+    trajectory_start: RobotState
     __msgtype__: ClassVar[str]
 
 @dataclass
@@ -2628,6 +4665,29 @@ class GenericTrajectory:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class Grasp:
+    """`moveit_msgs/msg/Grasp`"""
+    id: str
+    pre_grasp_posture: JointTrajectory
+    grasp_posture: JointTrajectory
+    grasp_pose: PoseStamped
+    grasp_quality: float
+    pre_grasp_approach: GripperTranslation
+    post_grasp_retreat: GripperTranslation
+    post_place_retreat: GripperTranslation
+    max_contact_force: float
+    allowed_touch_objects: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GripperTranslation:
+    """`moveit_msgs/msg/GripperTranslation`"""
+    direction: Vector3Stamped
+    desired_distance: float
+    min_distance: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class JointConstraint:
     """`moveit_msgs/msg/JointConstraint`"""
     joint_name: str
@@ -2635,6 +4695,27 @@ class JointConstraint:
     tolerance_above: float
     tolerance_below: float
     weight: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class JointLimits:
+    """`moveit_msgs/msg/JointLimits`"""
+    joint_name: str
+    has_position_limits: bool
+    min_position: float
+    max_position: float
+    has_velocity_limits: bool
+    max_velocity: float
+    has_acceleration_limits: bool
+    max_acceleration: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class KinematicSolverInfo:
+    """`moveit_msgs/msg/KinematicSolverInfo`"""
+    joint_names: list[str]
+    limits: list[JointLimits]
+    link_names: list[str]
     __msgtype__: ClassVar[str]
 
 @dataclass
@@ -2652,10 +4733,21 @@ class LinkScale:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class MotionPlanDetailedResponse:
+    """`moveit_msgs/msg/MotionPlanDetailedResponse`"""
+    trajectory_start: RobotState
+    group_name: str
+    trajectory: list[RobotTrajectory]
+    description: list[str]
+    processing_time: NDArray[np.float64]
+    error_code: MoveItErrorCodes
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class MotionPlanRequest:
     """`moveit_msgs/msg/MotionPlanRequest`"""
     workspace_parameters: WorkspaceParameters
-    start_state: moveit_msgs__msg__RobotState
+    start_state: RobotState
     goal_constraints: list[Constraints]
     path_constraints: Constraints
     trajectory_constraints: TrajectoryConstraints
@@ -2674,11 +4766,33 @@ class MotionPlanRequest:
 @dataclass
 class MotionPlanResponse:
     """`moveit_msgs/msg/MotionPlanResponse`"""
-    trajectory_start: moveit_msgs__msg__RobotState
+    trajectory_start: RobotState
     group_name: str
     trajectory: RobotTrajectory
     planning_time: float
     error_code: MoveItErrorCodes
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MotionSequenceItem:
+    """`moveit_msgs/msg/MotionSequenceItem`"""
+    req: MotionPlanRequest
+    blend_radius: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MotionSequenceRequest:
+    """`moveit_msgs/msg/MotionSequenceRequest`"""
+    items: list[MotionSequenceItem]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MotionSequenceResponse:
+    """`moveit_msgs/msg/MotionSequenceResponse`"""
+    error_code: MoveItErrorCodes
+    sequence_start: RobotState
+    planned_trajectories: list[RobotTrajectory]
+    planning_time: float
     __msgtype__: ClassVar[str]
 
 @dataclass
@@ -2743,6 +4857,41 @@ class OrientationConstraint:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class OrientedBoundingBox:
+    """`moveit_msgs/msg/OrientedBoundingBox`"""
+    pose: Pose
+    extents: Point32
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PlaceLocation:
+    """`moveit_msgs/msg/PlaceLocation`"""
+    id: str
+    post_place_posture: JointTrajectory
+    place_pose: PoseStamped
+    quality: float
+    pre_place_approach: GripperTranslation
+    post_place_retreat: GripperTranslation
+    allowed_touch_objects: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PlannerInterfaceDescription:
+    """`moveit_msgs/msg/PlannerInterfaceDescription`"""
+    name: str
+    pipeline_id: str
+    planner_ids: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PlannerParams:
+    """`moveit_msgs/msg/PlannerParams`"""
+    keys: list[str]
+    values: list[str]
+    descriptions: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class PlanningOptions:
     """`moveit_msgs/msg/PlanningOptions`"""
     planning_scene_diff: PlanningScene
@@ -2759,7 +4908,7 @@ class PlanningOptions:
 class PlanningScene:
     """`moveit_msgs/msg/PlanningScene`"""
     name: str
-    robot_state: moveit_msgs__msg__RobotState
+    robot_state: RobotState
     robot_model_name: str
     fixed_frame_transforms: list[TransformStamped]
     allowed_collision_matrix: AllowedCollisionMatrix
@@ -2807,7 +4956,7 @@ class PositionConstraint:
 class PositionIKRequest:
     """`moveit_msgs/msg/PositionIKRequest`"""
     group_name: str
-    robot_state: moveit_msgs__msg__RobotState
+    robot_state: RobotState
     constraints: Constraints
     avoid_collisions: bool
     ik_link_name: str
@@ -2818,7 +4967,7 @@ class PositionIKRequest:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class moveit_msgs__msg__RobotState:
+class RobotState:
     """`moveit_msgs/msg/RobotState`"""
     joint_state: JointState
     multi_dof_joint_state: MultiDOFJointState
@@ -2876,10 +5025,84 @@ class ApplyPlanningScene_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class ChangeControlDimensions_Request:
+    """`moveit_msgs/srv/ChangeControlDimensions_Request`"""
+    control_x_translation: bool
+    control_y_translation: bool
+    control_z_translation: bool
+    control_x_rotation: bool
+    control_y_rotation: bool
+    control_z_rotation: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ChangeControlDimensions_Response:
+    """`moveit_msgs/srv/ChangeControlDimensions_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ChangeDriftDimensions_Request:
+    """`moveit_msgs/srv/ChangeDriftDimensions_Request`"""
+    drift_x_translation: bool
+    drift_y_translation: bool
+    drift_z_translation: bool
+    drift_x_rotation: bool
+    drift_y_rotation: bool
+    drift_z_rotation: bool
+    transform_jog_frame_to_drift_frame: Transform
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ChangeDriftDimensions_Response:
+    """`moveit_msgs/srv/ChangeDriftDimensions_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CheckIfRobotStateExistsInWarehouse_Request:
+    """`moveit_msgs/srv/CheckIfRobotStateExistsInWarehouse_Request`"""
+    name: str
+    robot: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CheckIfRobotStateExistsInWarehouse_Response:
+    """`moveit_msgs/srv/CheckIfRobotStateExistsInWarehouse_Response`"""
+    exists: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DeleteRobotStateFromWarehouse_Request:
+    """`moveit_msgs/srv/DeleteRobotStateFromWarehouse_Request`"""
+    name: str
+    robot: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DeleteRobotStateFromWarehouse_Response:
+    """`moveit_msgs/srv/DeleteRobotStateFromWarehouse_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ExecuteKnownTrajectory_Request:
+    """`moveit_msgs/srv/ExecuteKnownTrajectory_Request`"""
+    trajectory: RobotTrajectory
+    wait_for_execution: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ExecuteKnownTrajectory_Response:
+    """`moveit_msgs/srv/ExecuteKnownTrajectory_Response`"""
+    error_code: MoveItErrorCodes
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class GetCartesianPath_Request:
     """`moveit_msgs/srv/GetCartesianPath_Request`"""
     header: Header
-    start_state: moveit_msgs__msg__RobotState
+    start_state: RobotState
     group_name: str
     link_name: str
     waypoints: list[Pose]
@@ -2898,7 +5121,7 @@ class GetCartesianPath_Request:
 @dataclass
 class GetCartesianPath_Response:
     """`moveit_msgs/srv/GetCartesianPath_Response`"""
-    start_state: moveit_msgs__msg__RobotState
+    start_state: RobotState
     solution: RobotTrajectory
     fraction: float
     error_code: MoveItErrorCodes
@@ -2914,6 +5137,32 @@ class GetMotionPlan_Request:
 class GetMotionPlan_Response:
     """`moveit_msgs/srv/GetMotionPlan_Response`"""
     motion_plan_response: MotionPlanResponse
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetMotionSequence_Request:
+    """`moveit_msgs/srv/GetMotionSequence_Request`"""
+    request: MotionSequenceRequest
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetMotionSequence_Response:
+    """`moveit_msgs/srv/GetMotionSequence_Response`"""
+    response: MotionSequenceResponse
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetPlannerParams_Request:
+    """`moveit_msgs/srv/GetPlannerParams_Request`"""
+    pipeline_id: str
+    planner_config: str
+    group: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetPlannerParams_Response:
+    """`moveit_msgs/srv/GetPlannerParams_Response`"""
+    params: PlannerParams
     __msgtype__: ClassVar[str]
 
 @dataclass
@@ -2933,7 +5182,7 @@ class GetPositionFK_Request:
     """`moveit_msgs/srv/GetPositionFK_Request`"""
     header: Header
     fk_link_names: list[str]
-    robot_state: moveit_msgs__msg__RobotState
+    robot_state: RobotState
     __msgtype__: ClassVar[str]
 
 @dataclass
@@ -2953,8 +5202,160 @@ class GetPositionIK_Request:
 @dataclass
 class GetPositionIK_Response:
     """`moveit_msgs/srv/GetPositionIK_Response`"""
-    solution: moveit_msgs__msg__RobotState
+    solution: RobotState
     error_code: MoveItErrorCodes
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetRobotStateFromWarehouse_Request:
+    """`moveit_msgs/srv/GetRobotStateFromWarehouse_Request`"""
+    name: str
+    robot: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetRobotStateFromWarehouse_Response:
+    """`moveit_msgs/srv/GetRobotStateFromWarehouse_Response`"""
+    state: RobotState
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetStateValidity_Request:
+    """`moveit_msgs/srv/GetStateValidity_Request`"""
+    robot_state: RobotState
+    group_name: str
+    constraints: Constraints
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetStateValidity_Response:
+    """`moveit_msgs/srv/GetStateValidity_Response`"""
+    valid: bool
+    contacts: list[ContactInformation]
+    cost_sources: list[CostSource]
+    constraint_result: list[ConstraintEvalResult]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GraspPlanning_Request:
+    """`moveit_msgs/srv/GraspPlanning_Request`"""
+    group_name: str
+    target: CollisionObject
+    support_surfaces: list[str]
+    candidate_grasps: list[Grasp]
+    movable_obstacles: list[CollisionObject]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GraspPlanning_Response:
+    """`moveit_msgs/srv/GraspPlanning_Response`"""
+    grasps: list[Grasp]
+    error_code: MoveItErrorCodes
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ListRobotStatesInWarehouse_Request:
+    """`moveit_msgs/srv/ListRobotStatesInWarehouse_Request`"""
+    regex: str
+    robot: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ListRobotStatesInWarehouse_Response:
+    """`moveit_msgs/srv/ListRobotStatesInWarehouse_Response`"""
+    states: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class moveit_msgs__srv__LoadMap_Request:
+    """`moveit_msgs/srv/LoadMap_Request`"""
+    filename: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class moveit_msgs__srv__LoadMap_Response:
+    """`moveit_msgs/srv/LoadMap_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class QueryPlannerInterfaces_Request:
+    """`moveit_msgs/srv/QueryPlannerInterfaces_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class QueryPlannerInterfaces_Response:
+    """`moveit_msgs/srv/QueryPlannerInterfaces_Response`"""
+    planner_interfaces: list[PlannerInterfaceDescription]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RenameRobotStateInWarehouse_Request:
+    """`moveit_msgs/srv/RenameRobotStateInWarehouse_Request`"""
+    old_name: str
+    new_name: str
+    robot: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RenameRobotStateInWarehouse_Response:
+    """`moveit_msgs/srv/RenameRobotStateInWarehouse_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class moveit_msgs__srv__SaveMap_Request:
+    """`moveit_msgs/srv/SaveMap_Request`"""
+    filename: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class moveit_msgs__srv__SaveMap_Response:
+    """`moveit_msgs/srv/SaveMap_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SaveRobotStateToWarehouse_Request:
+    """`moveit_msgs/srv/SaveRobotStateToWarehouse_Request`"""
+    name: str
+    robot: str
+    state: RobotState
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SaveRobotStateToWarehouse_Response:
+    """`moveit_msgs/srv/SaveRobotStateToWarehouse_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetPlannerParams_Request:
+    """`moveit_msgs/srv/SetPlannerParams_Request`"""
+    pipeline_id: str
+    planner_config: str
+    group: str
+    params: PlannerParams
+    replace: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetPlannerParams_Response:
+    """`moveit_msgs/srv/SetPlannerParams_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class UpdatePointcloudOctomap_Request:
+    """`moveit_msgs/srv/UpdatePointcloudOctomap_Request`"""
+    cloud: PointCloud2
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class UpdatePointcloudOctomap_Response:
+    """`moveit_msgs/srv/UpdatePointcloudOctomap_Response`"""
+    success: bool
     __msgtype__: ClassVar[str]
 
 # nav2_msgs
@@ -3527,6 +5928,19 @@ class VoxelGrid:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class ClearCostmapAroundPose_Request:
+    """`nav2_msgs/srv/ClearCostmapAroundPose_Request`"""
+    pose: PoseStamped
+    reset_distance: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ClearCostmapAroundPose_Response:
+    """`nav2_msgs/srv/ClearCostmapAroundPose_Response`"""
+    response: Empty
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class ClearCostmapAroundRobot_Request:
     """`nav2_msgs/srv/ClearCostmapAroundRobot_Request`"""
     reset_distance: float
@@ -3777,10 +6191,84 @@ class SetMap_Response:
 # object_recognition_msgs
 
 @dataclass
+class ObjectRecognition_Feedback:
+    """`object_recognition_msgs/action/ObjectRecognition_Feedback`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ObjectRecognition_Goal:
+    """`object_recognition_msgs/action/ObjectRecognition_Goal`"""
+    use_roi: bool
+    filter_limits: NDArray[np.float32]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ObjectRecognition_Result:
+    """`object_recognition_msgs/action/ObjectRecognition_Result`"""
+    recognized_objects: RecognizedObjectArray
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ObjectInformation:
+    """`object_recognition_msgs/msg/ObjectInformation`"""
+    name: str
+    ground_truth_mesh: Mesh
+    ground_truth_point_cloud: PointCloud2
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class ObjectType:
     """`object_recognition_msgs/msg/ObjectType`"""
     key: str
     db: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RecognizedObject:
+    """`object_recognition_msgs/msg/RecognizedObject`"""
+    header: Header
+    type: ObjectType
+    confidence: float
+    point_clouds: list[PointCloud2]
+    bounding_mesh: Mesh
+    bounding_contours: list[Point]
+    pose: PoseWithCovarianceStamped
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RecognizedObjectArray:
+    """`object_recognition_msgs/msg/RecognizedObjectArray`"""
+    header: Header
+    objects: list[RecognizedObject]
+    cooccurrence: NDArray[np.float32]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Table:
+    """`object_recognition_msgs/msg/Table`"""
+    header: Header
+    pose: Pose
+    convex_hull: list[Point]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TableArray:
+    """`object_recognition_msgs/msg/TableArray`"""
+    header: Header
+    tables: list[Table]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetObjectInformation_Request:
+    """`object_recognition_msgs/srv/GetObjectInformation_Request`"""
+    type: ObjectType
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetObjectInformation_Response:
+    """`object_recognition_msgs/srv/GetObjectInformation_Response`"""
+    information: ObjectInformation
     __msgtype__: ClassVar[str]
 
 # octomap_msgs
@@ -4296,6 +6784,51 @@ class SetParameters_Response:
     results: list[SetParametersResult]
     __msgtype__: ClassVar[str]
 
+# rmf_dispenser_msgs
+
+@dataclass
+class DispenserRequest:
+    """`rmf_dispenser_msgs/msg/DispenserRequest`"""
+    time: Time
+    request_guid: str
+    target_guid: str
+    transporter_type: str
+    items: list[DispenserRequestItem]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DispenserRequestItem:
+    """`rmf_dispenser_msgs/msg/DispenserRequestItem`"""
+    type_guid: str
+    quantity: int
+    compartment_name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DispenserResult:
+    """`rmf_dispenser_msgs/msg/DispenserResult`"""
+    time: Time
+    request_guid: str
+    source_guid: str
+    status: int
+    ACKNOWLEDGED: ClassVar[int] = 0
+    SUCCESS: ClassVar[int] = 1
+    FAILED: ClassVar[int] = 2
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DispenserState:
+    """`rmf_dispenser_msgs/msg/DispenserState`"""
+    time: Time
+    guid: str
+    mode: int
+    request_guid_queue: list[str]
+    seconds_remaining: float
+    IDLE: ClassVar[int] = 0
+    BUSY: ClassVar[int] = 1
+    OFFLINE: ClassVar[int] = 2
+    __msgtype__: ClassVar[str]
+
 # rmf_door_msgs
 
 @dataclass
@@ -4319,6 +6852,13 @@ class DoorRequest:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class DoorSessions:
+    """`rmf_door_msgs/msg/DoorSessions`"""
+    door_name: str
+    sessions: list[Session]
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class DoorState:
     """`rmf_door_msgs/msg/DoorState`"""
     door_time: Time
@@ -4326,7 +6866,165 @@ class DoorState:
     current_mode: DoorMode
     __msgtype__: ClassVar[str]
 
+@dataclass
+class Session:
+    """`rmf_door_msgs/msg/Session`"""
+    request_time: Time
+    requester_id: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SupervisorHeartbeat:
+    """`rmf_door_msgs/msg/SupervisorHeartbeat`"""
+    all_sessions: list[DoorSessions]
+    __msgtype__: ClassVar[str]
+
 # rmf_fleet_msgs
+
+@dataclass
+class BeaconState:
+    """`rmf_fleet_msgs/msg/BeaconState`"""
+    id: str
+    online: bool
+    category: str
+    activated: bool
+    level: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ChargingAssignment:
+    """`rmf_fleet_msgs/msg/ChargingAssignment`"""
+    robot_name: str
+    waypoint_name: str
+    mode: int
+    MODE_CHARGE: ClassVar[int] = 0
+    MODE_WAIT: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ChargingAssignments:
+    """`rmf_fleet_msgs/msg/ChargingAssignments`"""
+    fleet_name: str
+    assignments: list[ChargingAssignment]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ClosedLanes:
+    """`rmf_fleet_msgs/msg/ClosedLanes`"""
+    fleet_name: str
+    closed_lanes: NDArray[np.uint64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DeliveryAlert:
+    """`rmf_fleet_msgs/msg/DeliveryAlert`"""
+    id: str
+    category: DeliveryAlertCategory
+    tier: DeliveryAlertTier
+    task_id: str
+    action: DeliveryAlertAction
+    message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DeliveryAlertAction:
+    """`rmf_fleet_msgs/msg/DeliveryAlertAction`"""
+    value: int
+    WAITING: ClassVar[int] = 0
+    CANCEL: ClassVar[int] = 1
+    OVERRIDE: ClassVar[int] = 2
+    RESUME: ClassVar[int] = 3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DeliveryAlertCategory:
+    """`rmf_fleet_msgs/msg/DeliveryAlertCategory`"""
+    value: int
+    MISSING: ClassVar[int] = 0
+    WRONG: ClassVar[int] = 1
+    OBSTRUCTED: ClassVar[int] = 2
+    CANCELLED: ClassVar[int] = 3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DeliveryAlertTier:
+    """`rmf_fleet_msgs/msg/DeliveryAlertTier`"""
+    value: int
+    WARNING: ClassVar[int] = 0
+    ERROR: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DestinationRequest:
+    """`rmf_fleet_msgs/msg/DestinationRequest`"""
+    fleet_name: str
+    robot_name: str
+    destination: Location
+    task_id: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Dock:
+    """`rmf_fleet_msgs/msg/Dock`"""
+    fleet_name: str
+    params: list[DockParameter]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DockParameter:
+    """`rmf_fleet_msgs/msg/DockParameter`"""
+    start: str
+    finish: str
+    path: list[Location]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DockSummary:
+    """`rmf_fleet_msgs/msg/DockSummary`"""
+    docks: list[Dock]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class EmergencySignal:
+    """`rmf_fleet_msgs/msg/EmergencySignal`"""
+    fleet_names: list[str]
+    is_emergency: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class FleetState:
+    """`rmf_fleet_msgs/msg/FleetState`"""
+    name: str
+    robots: list[rmf_fleet_msgs__msg__RobotState]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class InterruptRequest:
+    """`rmf_fleet_msgs/msg/InterruptRequest`"""
+    fleet_name: str
+    robot_name: str
+    interrupt_id: str
+    labels: list[str]
+    type: int
+    TYPE_INTERRUPT: ClassVar[int] = 0
+    TYPE_RESUME: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LaneRequest:
+    """`rmf_fleet_msgs/msg/LaneRequest`"""
+    fleet_name: str
+    open_lanes: NDArray[np.uint64]
+    close_lanes: NDArray[np.uint64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LaneStates:
+    """`rmf_fleet_msgs/msg/LaneStates`"""
+    fleet_name: str
+    closed_lanes: NDArray[np.uint64]
+    speed_limits: list[SpeedLimitedLane]
+    __msgtype__: ClassVar[str]
 
 @dataclass
 class Location:
@@ -4359,6 +7057,39 @@ class ModeRequest:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class MutexGroupAssignment:
+    """`rmf_fleet_msgs/msg/MutexGroupAssignment`"""
+    group: str
+    claimant: int
+    claim_time: Time
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MutexGroupManualRelease:
+    """`rmf_fleet_msgs/msg/MutexGroupManualRelease`"""
+    release_mutex_groups: list[str]
+    fleet: str
+    robot: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MutexGroupRequest:
+    """`rmf_fleet_msgs/msg/MutexGroupRequest`"""
+    group: str
+    claimant: int
+    claim_time: Time
+    mode: int
+    MODE_RELEASE: ClassVar[int] = 0
+    MODE_LOCK: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MutexGroupStates:
+    """`rmf_fleet_msgs/msg/MutexGroupStates`"""
+    assignments: list[MutexGroupAssignment]
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class PathRequest:
     """`rmf_fleet_msgs/msg/PathRequest`"""
     fleet_name: str
@@ -4378,6 +7109,13 @@ class PauseRequest:
     TYPE_PAUSE_IMMEDIATELY: ClassVar[int] = 0
     TYPE_PAUSE_AT_CHECKPOINT: ClassVar[int] = 1
     TYPE_RESUME: ClassVar[int] = 2
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RobotCollision:
+    """`rmf_fleet_msgs/msg/RobotCollision`"""
+    robot_name: str
+    location: Location
     __msgtype__: ClassVar[str]
 
 @dataclass
@@ -4408,6 +7146,81 @@ class rmf_fleet_msgs__msg__RobotState:
     battery_percent: float
     location: Location
     path: list[Location]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SpeedLimitRequest:
+    """`rmf_fleet_msgs/msg/SpeedLimitRequest`"""
+    fleet_name: str
+    speed_limits: list[SpeedLimitedLane]
+    remove_limits: NDArray[np.uint64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SpeedLimitedLane:
+    """`rmf_fleet_msgs/msg/SpeedLimitedLane`"""
+    lane_index: int
+    speed_limit: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LiftClearance_Request:
+    """`rmf_fleet_msgs/srv/LiftClearance_Request`"""
+    robot_name: str
+    lift_name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LiftClearance_Response:
+    """`rmf_fleet_msgs/srv/LiftClearance_Response`"""
+    decision: int
+    DECISION_CLEAR: ClassVar[int] = 1
+    DECISION_CROWDED: ClassVar[int] = 2
+    __msgtype__: ClassVar[str]
+
+# rmf_ingestor_msgs
+
+@dataclass
+class IngestorRequest:
+    """`rmf_ingestor_msgs/msg/IngestorRequest`"""
+    time: Time
+    request_guid: str
+    target_guid: str
+    transporter_type: str
+    items: list[IngestorRequestItem]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class IngestorRequestItem:
+    """`rmf_ingestor_msgs/msg/IngestorRequestItem`"""
+    type_guid: str
+    quantity: int
+    compartment_name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class IngestorResult:
+    """`rmf_ingestor_msgs/msg/IngestorResult`"""
+    time: Time
+    request_guid: str
+    source_guid: str
+    status: int
+    ACKNOWLEDGED: ClassVar[int] = 0
+    SUCCESS: ClassVar[int] = 1
+    FAILED: ClassVar[int] = 2
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class IngestorState:
+    """`rmf_ingestor_msgs/msg/IngestorState`"""
+    time: Time
+    guid: str
+    mode: int
+    request_guid_queue: list[str]
+    seconds_remaining: float
+    IDLE: ClassVar[int] = 0
+    BUSY: ClassVar[int] = 1
+    OFFLINE: ClassVar[int] = 2
     __msgtype__: ClassVar[str]
 
 # rmf_lift_msgs
@@ -4456,6 +7269,396 @@ class LiftState:
     MODE_EMERGENCY: ClassVar[int] = 5
     __msgtype__: ClassVar[str]
 
+# rmf_task_msgs
+
+@dataclass
+class DynamicEvent_Feedback:
+    """`rmf_task_msgs/action/DynamicEvent_Feedback`"""
+    status: str
+    id: int
+    logs: list[LogEntry]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DynamicEvent_Goal:
+    """`rmf_task_msgs/action/DynamicEvent_Goal`"""
+    dynamic_event_seq: int
+    event_type: int
+    category: str
+    description: str
+    id: int
+    stubborn_period: float
+    EVENT_TYPE_UNINITIALIZED: ClassVar[int] = 0
+    EVENT_TYPE_NEXT: ClassVar[int] = 1
+    EVENT_TYPE_CANCEL: ClassVar[int] = 2
+    EVENT_TYPE_FINISHED: ClassVar[int] = 3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DynamicEvent_Result:
+    """`rmf_task_msgs/action/DynamicEvent_Result`"""
+    execution_failure: str
+    status: str
+    id: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Alert:
+    """`rmf_task_msgs/msg/Alert`"""
+    id: str
+    title: str
+    subtitle: str
+    message: str
+    display: bool
+    tier: int
+    responses_available: list[str]
+    alert_parameters: list[AlertParameter]
+    task_id: str
+    TIER_INFO: ClassVar[int] = 0
+    TIER_WARNING: ClassVar[int] = 1
+    TIER_ERROR: ClassVar[int] = 2
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AlertParameter:
+    """`rmf_task_msgs/msg/AlertParameter`"""
+    name: str
+    value: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AlertResponse:
+    """`rmf_task_msgs/msg/AlertResponse`"""
+    id: str
+    response: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ApiRequest:
+    """`rmf_task_msgs/msg/ApiRequest`"""
+    json_msg: str
+    request_id: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ApiResponse:
+    """`rmf_task_msgs/msg/ApiResponse`"""
+    type: int
+    json_msg: str
+    request_id: str
+    TYPE_UNINITIALIZED: ClassVar[int] = 0
+    TYPE_ACKNOWLEDGE: ClassVar[int] = 1
+    TYPE_RESPONDING: ClassVar[int] = 2
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Assignment:
+    """`rmf_task_msgs/msg/Assignment`"""
+    is_assigned: bool
+    fleet_name: str
+    expected_robot_name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Behavior:
+    """`rmf_task_msgs/msg/Behavior`"""
+    name: str
+    parameters: list[BehaviorParameter]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class BehaviorParameter:
+    """`rmf_task_msgs/msg/BehaviorParameter`"""
+    name: str
+    value: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class BidNotice:
+    """`rmf_task_msgs/msg/BidNotice`"""
+    request: str
+    task_id: str
+    time_window: Duration
+    dry_run: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class BidProposal:
+    """`rmf_task_msgs/msg/BidProposal`"""
+    fleet_name: str
+    expected_robot_name: str
+    prev_cost: float
+    new_cost: float
+    finish_time: Time
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class BidResponse:
+    """`rmf_task_msgs/msg/BidResponse`"""
+    task_id: str
+    has_proposal: bool
+    proposal: BidProposal
+    errors: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Clean:
+    """`rmf_task_msgs/msg/Clean`"""
+    start_waypoint: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Delivery:
+    """`rmf_task_msgs/msg/Delivery`"""
+    task_id: str
+    items: list[DispenserRequestItem]
+    pickup_place_name: str
+    pickup_dispenser: str
+    pickup_behavior: Behavior
+    dropoff_place_name: str
+    dropoff_ingestor: str
+    dropoff_behavior: Behavior
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DispatchAck:
+    """`rmf_task_msgs/msg/DispatchAck`"""
+    dispatch_id: int
+    success: bool
+    errors: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DispatchCommand:
+    """`rmf_task_msgs/msg/DispatchCommand`"""
+    fleet_name: str
+    task_id: str
+    dispatch_id: int
+    timestamp: Time
+    type: int
+    TYPE_AWARD: ClassVar[int] = 1
+    TYPE_REMOVE: ClassVar[int] = 2
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DispatchState:
+    """`rmf_task_msgs/msg/DispatchState`"""
+    task_id: str
+    status: int
+    assignment: Assignment
+    errors: list[str]
+    STATUS_UNINITIALIZED: ClassVar[int] = 0
+    STATUS_QUEUED: ClassVar[int] = 1
+    STATUS_SELECTED: ClassVar[int] = 2
+    STATUS_DISPATCHED: ClassVar[int] = 3
+    STATUS_FAILED_TO_ASSIGN: ClassVar[int] = 4
+    STATUS_CANCELED_IN_FLIGHT: ClassVar[int] = 5
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DispatchStates:
+    """`rmf_task_msgs/msg/DispatchStates`"""
+    active: list[DispatchState]
+    finished: list[DispatchState]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DynamicEventDescription:
+    """`rmf_task_msgs/msg/DynamicEventDescription`"""
+    fleet: str
+    robot: str
+    dynamic_event_seq: int
+    description: str
+    start_time: Time
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DynamicEventStatus:
+    """`rmf_task_msgs/msg/DynamicEventStatus`"""
+    dynamic_event_seq: int
+    dynamic_state: int
+    status: str
+    id: int
+    time: Time
+    DYNAMIC_STATE_INACTIVE: ClassVar[int] = 0
+    DYNAMIC_STATE_WAITING: ClassVar[int] = 1
+    DYNAMIC_STATE_RUNNING: ClassVar[int] = 2
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LogEntry:
+    """`rmf_task_msgs/msg/LogEntry`"""
+    seq: int
+    tier: str
+    unix_millis_time: int
+    text: str
+    TIER_UNINITIALIZED: ClassVar[str] = 'uninitialized'
+    TIER_INFO: ClassVar[str] = 'info'
+    TIER_WARNING: ClassVar[str] = 'warning'
+    TIER_ERROR: ClassVar[str] = 'error'
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Loop:
+    """`rmf_task_msgs/msg/Loop`"""
+    task_id: str
+    robot_type: str
+    num_loops: int
+    start_name: str
+    finish_name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Priority:
+    """`rmf_task_msgs/msg/Priority`"""
+    value: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Station:
+    """`rmf_task_msgs/msg/Station`"""
+    task_id: str
+    robot_type: str
+    place_name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TaskDescription:
+    """`rmf_task_msgs/msg/TaskDescription`"""
+    start_time: Time
+    priority: Priority
+    task_type: TaskType
+    station: Station
+    loop: Loop
+    delivery: Delivery
+    clean: Clean
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TaskProfile:
+    """`rmf_task_msgs/msg/TaskProfile`"""
+    task_id: str
+    submission_time: Time
+    description: TaskDescription
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TaskSummary:
+    """`rmf_task_msgs/msg/TaskSummary`"""
+    fleet_name: str
+    task_id: str
+    task_profile: TaskProfile
+    state: int
+    status: str
+    submission_time: Time
+    start_time: Time
+    end_time: Time
+    robot_name: str
+    STATE_QUEUED: ClassVar[int] = 0
+    STATE_ACTIVE: ClassVar[int] = 1
+    STATE_COMPLETED: ClassVar[int] = 2
+    STATE_FAILED: ClassVar[int] = 3
+    STATE_CANCELED: ClassVar[int] = 4
+    STATE_PENDING: ClassVar[int] = 5
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TaskType:
+    """`rmf_task_msgs/msg/TaskType`"""
+    type: int
+    TYPE_STATION: ClassVar[int] = 0
+    TYPE_LOOP: ClassVar[int] = 1
+    TYPE_DELIVERY: ClassVar[int] = 2
+    TYPE_CHARGE_BATTERY: ClassVar[int] = 3
+    TYPE_CLEAN: ClassVar[int] = 4
+    TYPE_PATROL: ClassVar[int] = 5
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Tasks:
+    """`rmf_task_msgs/msg/Tasks`"""
+    tasks: list[TaskSummary]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Tow:
+    """`rmf_task_msgs/msg/Tow`"""
+    task_id: str
+    object_type: str
+    is_object_id_known: bool
+    object_id: str
+    pickup_place_name: str
+    is_dropoff_place_known: bool
+    dropoff_place_name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ApiService_Request:
+    """`rmf_task_msgs/srv/ApiService_Request`"""
+    json_msg: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ApiService_Response:
+    """`rmf_task_msgs/srv/ApiService_Response`"""
+    json_msg: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CancelTask_Request:
+    """`rmf_task_msgs/srv/CancelTask_Request`"""
+    requester: str
+    task_id: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CancelTask_Response:
+    """`rmf_task_msgs/srv/CancelTask_Response`"""
+    success: bool
+    message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetDispatchStates_Request:
+    """`rmf_task_msgs/srv/GetDispatchStates_Request`"""
+    task_ids: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetDispatchStates_Response:
+    """`rmf_task_msgs/srv/GetDispatchStates_Response`"""
+    success: bool
+    states: DispatchStates
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ReviveTask_Request:
+    """`rmf_task_msgs/srv/ReviveTask_Request`"""
+    requester: str
+    task_id: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ReviveTask_Response:
+    """`rmf_task_msgs/srv/ReviveTask_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SubmitTask_Request:
+    """`rmf_task_msgs/srv/SubmitTask_Request`"""
+    requester: str
+    description: TaskDescription
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SubmitTask_Response:
+    """`rmf_task_msgs/srv/SubmitTask_Response`"""
+    success: bool
+    task_id: str
+    message: str
+    __msgtype__: ClassVar[str]
+
 # rmw_dds_common
 
 @dataclass
@@ -4483,6 +7686,44 @@ class ParticipantEntitiesInfo:
 # robot_localization
 
 @dataclass
+class FromLL_Request:
+    """`robot_localization/srv/FromLL_Request`"""
+    ll_point: GeoPoint
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class FromLL_Response:
+    """`robot_localization/srv/FromLL_Response`"""
+    map_point: Point
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class robot_localization__srv__GetState_Request:
+    """`robot_localization/srv/GetState_Request`"""
+    time_stamp: Time
+    frame_id: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class robot_localization__srv__GetState_Response:
+    """`robot_localization/srv/GetState_Response`"""
+    state: NDArray[np.float64]
+    covariance: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetDatum_Request:
+    """`robot_localization/srv/SetDatum_Request`"""
+    geo_pose: GeoPose
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetDatum_Response:
+    """`robot_localization/srv/SetDatum_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class SetPose_Request:
     """`robot_localization/srv/SetPose_Request`"""
     pose: PoseWithCovarianceStamped
@@ -4492,6 +7733,52 @@ class SetPose_Request:
 class SetPose_Response:
     """`robot_localization/srv/SetPose_Response`"""
     structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetUTMZone_Request:
+    """`robot_localization/srv/SetUTMZone_Request`"""
+    utm_zone: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetUTMZone_Response:
+    """`robot_localization/srv/SetUTMZone_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ToLL_Request:
+    """`robot_localization/srv/ToLL_Request`"""
+    map_point: Point
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ToLL_Response:
+    """`robot_localization/srv/ToLL_Response`"""
+    ll_point: GeoPoint
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ToggleFilterProcessing_Request:
+    """`robot_localization/srv/ToggleFilterProcessing_Request`"""
+    on: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ToggleFilterProcessing_Response:
+    """`robot_localization/srv/ToggleFilterProcessing_Response`"""
+    status: bool
+    __msgtype__: ClassVar[str]
+
+# ros2_aruco_interfaces
+
+@dataclass
+class ArucoMarkers:
+    """`ros2_aruco_interfaces/msg/ArucoMarkers`"""
+    header: Header
+    marker_ids: NDArray[np.int64]
+    poses: list[Pose]
     __msgtype__: ClassVar[str]
 
 # ros_gz_interfaces
@@ -4758,12 +8045,68 @@ class WriteSplitEvent:
     node_name: str
     __msgtype__: ClassVar[str]
 
+# roscpp_tutorials
+
+@dataclass
+class TwoInts_Request:
+    """`roscpp_tutorials/srv/TwoInts_Request`"""
+    a: int
+    b: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TwoInts_Response:
+    """`roscpp_tutorials/srv/TwoInts_Response`"""
+    sum: int
+    __msgtype__: ClassVar[str]
+
 # rosgraph_msgs
 
 @dataclass
 class Clock:
     """`rosgraph_msgs/msg/Clock`"""
     clock: Time
+    __msgtype__: ClassVar[str]
+
+# rospy_tutorials
+
+@dataclass
+class Floats:
+    """`rospy_tutorials/msg/Floats`"""
+    data: NDArray[np.float32]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class HeaderString:
+    """`rospy_tutorials/msg/HeaderString`"""
+    header: Header
+    data: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class rospy_tutorials__srv__AddTwoInts_Request:
+    """`rospy_tutorials/srv/AddTwoInts_Request`"""
+    a: int
+    b: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class rospy_tutorials__srv__AddTwoInts_Response:
+    """`rospy_tutorials/srv/AddTwoInts_Response`"""
+    sum: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class BadTwoInts_Request:
+    """`rospy_tutorials/srv/BadTwoInts_Request`"""
+    a: int
+    b: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class BadTwoInts_Response:
+    """`rospy_tutorials/srv/BadTwoInts_Response`"""
+    sum: int
     __msgtype__: ClassVar[str]
 
 # sensor_msgs
@@ -5873,6 +9216,152 @@ class UnloadWorld_Response:
     NO_WORLD_LOADED: ClassVar[int] = 101
     __msgtype__: ClassVar[str]
 
+# slam_toolbox
+
+@dataclass
+class AddSubmap_Request:
+    """`slam_toolbox/srv/AddSubmap_Request`"""
+    filename: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AddSubmap_Response:
+    """`slam_toolbox/srv/AddSubmap_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ClearQueue_Request:
+    """`slam_toolbox/srv/ClearQueue_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ClearQueue_Response:
+    """`slam_toolbox/srv/ClearQueue_Response`"""
+    status: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Clear_Request:
+    """`slam_toolbox/srv/Clear_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Clear_Response:
+    """`slam_toolbox/srv/Clear_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DeserializePoseGraph_Request:
+    """`slam_toolbox/srv/DeserializePoseGraph_Request`"""
+    filename: str
+    match_type: int
+    initial_pose: Pose2D
+    UNSET: ClassVar[int] = 0
+    START_AT_FIRST_NODE: ClassVar[int] = 1
+    START_AT_GIVEN_POSE: ClassVar[int] = 2
+    LOCALIZE_AT_POSE: ClassVar[int] = 3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DeserializePoseGraph_Response:
+    """`slam_toolbox/srv/DeserializePoseGraph_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LoopClosure_Request:
+    """`slam_toolbox/srv/LoopClosure_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LoopClosure_Response:
+    """`slam_toolbox/srv/LoopClosure_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MergeMaps_Request:
+    """`slam_toolbox/srv/MergeMaps_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MergeMaps_Response:
+    """`slam_toolbox/srv/MergeMaps_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Pause_Request:
+    """`slam_toolbox/srv/Pause_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Pause_Response:
+    """`slam_toolbox/srv/Pause_Response`"""
+    status: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Reset_Request:
+    """`slam_toolbox/srv/Reset_Request`"""
+    pause_new_measurements: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Reset_Response:
+    """`slam_toolbox/srv/Reset_Response`"""
+    result: int
+    RESULT_SUCCESS: ClassVar[int] = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class slam_toolbox__srv__SaveMap_Request:
+    """`slam_toolbox/srv/SaveMap_Request`"""
+    name: String
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class slam_toolbox__srv__SaveMap_Response:
+    """`slam_toolbox/srv/SaveMap_Response`"""
+    result: int
+    RESULT_SUCCESS: ClassVar[int] = 0
+    RESULT_NO_MAP_RECEIEVD: ClassVar[int] = 1
+    RESULT_UNDEFINED_FAILURE: ClassVar[int] = 255
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SerializePoseGraph_Request:
+    """`slam_toolbox/srv/SerializePoseGraph_Request`"""
+    filename: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SerializePoseGraph_Response:
+    """`slam_toolbox/srv/SerializePoseGraph_Response`"""
+    result: int
+    RESULT_SUCCESS: ClassVar[int] = 0
+    RESULT_FAILED_TO_WRITE_FILE: ClassVar[int] = 255
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ToggleInteractive_Request:
+    """`slam_toolbox/srv/ToggleInteractive_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ToggleInteractive_Response:
+    """`slam_toolbox/srv/ToggleInteractive_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
 # statistics_msgs
 
 @dataclass
@@ -6160,7 +9649,46 @@ class DisparityImage:
     delta_d: float
     __msgtype__: ClassVar[str]
 
+# tf
+
+@dataclass
+class tf__srv__FrameGraph_Request:
+    """`tf/srv/FrameGraph_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class tf__srv__FrameGraph_Response:
+    """`tf/srv/FrameGraph_Response`"""
+    dot_graph: str
+    __msgtype__: ClassVar[str]
+
 # tf2_msgs
+
+@dataclass
+class LookupTransform_Feedback:
+    """`tf2_msgs/action/LookupTransform_Feedback`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LookupTransform_Goal:
+    """`tf2_msgs/action/LookupTransform_Goal`"""
+    target_frame: str
+    source_frame: str
+    source_time: Time
+    timeout: Duration
+    target_time: Time
+    fixed_frame: str
+    advanced: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LookupTransform_Result:
+    """`tf2_msgs/action/LookupTransform_Result`"""
+    transform: TransformStamped
+    error: TF2Error
+    __msgtype__: ClassVar[str]
 
 @dataclass
 class TF2Error:
@@ -6180,6 +9708,229 @@ class TF2Error:
 class TFMessage:
     """`tf2_msgs/msg/TFMessage`"""
     transforms: list[TransformStamped]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class tf2_msgs__srv__FrameGraph_Request:
+    """`tf2_msgs/srv/FrameGraph_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class tf2_msgs__srv__FrameGraph_Response:
+    """`tf2_msgs/srv/FrameGraph_Response`"""
+    frame_yaml: str
+    __msgtype__: ClassVar[str]
+
+# theora_image_transport
+
+@dataclass
+class Packet:
+    """`theora_image_transport/msg/Packet`"""
+    header: Header
+    data: NDArray[np.uint8]
+    b_o_s: int
+    e_o_s: int
+    granulepos: int
+    packetno: int
+    __msgtype__: ClassVar[str]
+
+# topic_tools
+
+@dataclass
+class topic_tools__srv__DemuxAdd_Request:
+    """`topic_tools/srv/DemuxAdd_Request`"""
+    topic: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools__srv__DemuxAdd_Response:
+    """`topic_tools/srv/DemuxAdd_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools__srv__DemuxDelete_Request:
+    """`topic_tools/srv/DemuxDelete_Request`"""
+    topic: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools__srv__DemuxDelete_Response:
+    """`topic_tools/srv/DemuxDelete_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools__srv__DemuxList_Request:
+    """`topic_tools/srv/DemuxList_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools__srv__DemuxList_Response:
+    """`topic_tools/srv/DemuxList_Response`"""
+    topics: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools__srv__DemuxSelect_Request:
+    """`topic_tools/srv/DemuxSelect_Request`"""
+    topic: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools__srv__DemuxSelect_Response:
+    """`topic_tools/srv/DemuxSelect_Response`"""
+    prev_topic: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools__srv__MuxAdd_Request:
+    """`topic_tools/srv/MuxAdd_Request`"""
+    topic: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools__srv__MuxAdd_Response:
+    """`topic_tools/srv/MuxAdd_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools__srv__MuxDelete_Request:
+    """`topic_tools/srv/MuxDelete_Request`"""
+    topic: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools__srv__MuxDelete_Response:
+    """`topic_tools/srv/MuxDelete_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools__srv__MuxList_Request:
+    """`topic_tools/srv/MuxList_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools__srv__MuxList_Response:
+    """`topic_tools/srv/MuxList_Response`"""
+    topics: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools__srv__MuxSelect_Request:
+    """`topic_tools/srv/MuxSelect_Request`"""
+    topic: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools__srv__MuxSelect_Response:
+    """`topic_tools/srv/MuxSelect_Response`"""
+    prev_topic: str
+    __msgtype__: ClassVar[str]
+
+# topic_tools_interfaces
+
+@dataclass
+class topic_tools_interfaces__srv__DemuxAdd_Request:
+    """`topic_tools_interfaces/srv/DemuxAdd_Request`"""
+    topic: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools_interfaces__srv__DemuxAdd_Response:
+    """`topic_tools_interfaces/srv/DemuxAdd_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools_interfaces__srv__DemuxDelete_Request:
+    """`topic_tools_interfaces/srv/DemuxDelete_Request`"""
+    topic: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools_interfaces__srv__DemuxDelete_Response:
+    """`topic_tools_interfaces/srv/DemuxDelete_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools_interfaces__srv__DemuxList_Request:
+    """`topic_tools_interfaces/srv/DemuxList_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools_interfaces__srv__DemuxList_Response:
+    """`topic_tools_interfaces/srv/DemuxList_Response`"""
+    topics: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools_interfaces__srv__DemuxSelect_Request:
+    """`topic_tools_interfaces/srv/DemuxSelect_Request`"""
+    topic: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools_interfaces__srv__DemuxSelect_Response:
+    """`topic_tools_interfaces/srv/DemuxSelect_Response`"""
+    prev_topic: str
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools_interfaces__srv__MuxAdd_Request:
+    """`topic_tools_interfaces/srv/MuxAdd_Request`"""
+    topic: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools_interfaces__srv__MuxAdd_Response:
+    """`topic_tools_interfaces/srv/MuxAdd_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools_interfaces__srv__MuxDelete_Request:
+    """`topic_tools_interfaces/srv/MuxDelete_Request`"""
+    topic: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools_interfaces__srv__MuxDelete_Response:
+    """`topic_tools_interfaces/srv/MuxDelete_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools_interfaces__srv__MuxList_Request:
+    """`topic_tools_interfaces/srv/MuxList_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools_interfaces__srv__MuxList_Response:
+    """`topic_tools_interfaces/srv/MuxList_Response`"""
+    topics: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools_interfaces__srv__MuxSelect_Request:
+    """`topic_tools_interfaces/srv/MuxSelect_Request`"""
+    topic: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class topic_tools_interfaces__srv__MuxSelect_Response:
+    """`topic_tools_interfaces/srv/MuxSelect_Response`"""
+    prev_topic: str
+    success: bool
     __msgtype__: ClassVar[str]
 
 # trajectory_msgs
@@ -6217,6 +9968,147 @@ class MultiDOFJointTrajectoryPoint:
     velocities: list[Twist]
     accelerations: list[Twist]
     time_from_start: Duration
+    __msgtype__: ClassVar[str]
+
+# turtlebot3_msgs
+
+@dataclass
+class Patrol_Feedback:
+    """`turtlebot3_msgs/action/Patrol_Feedback`"""
+    state: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Patrol_Goal:
+    """`turtlebot3_msgs/action/Patrol_Goal`"""
+    goal: Vector3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Patrol_Result:
+    """`turtlebot3_msgs/action/Patrol_Result`"""
+    result: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlebot3_msgs__msg__SensorState:
+    """`turtlebot3_msgs/msg/SensorState`"""
+    header: Header
+    bumper: int
+    cliff: float
+    sonar: float
+    illumination: float
+    led: int
+    button: int
+    torque: bool
+    left_encoder: int
+    right_encoder: int
+    battery: float
+    BUMPER_FORWARD: ClassVar[int] = 1
+    BUMPER_BACKWARD: ClassVar[int] = 2
+    CLIFF: ClassVar[int] = 1
+    SONAR: ClassVar[int] = 1
+    ILLUMINATION: ClassVar[int] = 1
+    BUTTON0: ClassVar[int] = 1
+    BUTTON1: ClassVar[int] = 2
+    ERROR_LEFT_MOTOR: ClassVar[int] = 1
+    ERROR_RIGHT_MOTOR: ClassVar[int] = 2
+    TORQUE_ON: ClassVar[int] = 1
+    TORQUE_OFF: ClassVar[int] = 2
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlebot3_msgs__msg__Sound:
+    """`turtlebot3_msgs/msg/Sound`"""
+    value: int
+    OFF: ClassVar[int] = 0
+    ON: ClassVar[int] = 1
+    LOW_BATTERY: ClassVar[int] = 2
+    ERROR: ClassVar[int] = 3
+    BUTTON1: ClassVar[int] = 4
+    BUTTON2: ClassVar[int] = 5
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class turtlebot3_msgs__msg__VersionInfo:
+    """`turtlebot3_msgs/msg/VersionInfo`"""
+    hardware: str
+    firmware: str
+    software: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Dqn_Request:
+    """`turtlebot3_msgs/srv/Dqn_Request`"""
+    action: int
+    init: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Dqn_Response:
+    """`turtlebot3_msgs/srv/Dqn_Response`"""
+    state: NDArray[np.float32]
+    reward: float
+    done: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Goal_Request:
+    """`turtlebot3_msgs/srv/Goal_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Goal_Response:
+    """`turtlebot3_msgs/srv/Goal_Response`"""
+    pose_x: float
+    pose_y: float
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Sound_Request:
+    """`turtlebot3_msgs/srv/Sound_Request`"""
+    value: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Sound_Response:
+    """`turtlebot3_msgs/srv/Sound_Response`"""
+    success: bool
+    message: str
+    __msgtype__: ClassVar[str]
+
+# turtlebot4_msgs
+
+@dataclass
+class UserButton:
+    """`turtlebot4_msgs/msg/UserButton`"""
+    button: NDArray[np.bool_]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class UserDisplay:
+    """`turtlebot4_msgs/msg/UserDisplay`"""
+    ip: str
+    battery: str
+    entries: list[str]
+    selected_entry: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class UserLed:
+    """`turtlebot4_msgs/msg/UserLed`"""
+    led: int
+    color: int
+    blink_period: int
+    duty_cycle: float
+    USER_LED_1: ClassVar[int] = 0
+    USER_LED_2: ClassVar[int] = 1
+    COLOR_OFF: ClassVar[int] = 0
+    COLOR_GREEN: ClassVar[int] = 1
+    COLOR_RED: ClassVar[int] = 2
+    COLOR_YELLOW: ClassVar[int] = 3
     __msgtype__: ClassVar[str]
 
 # turtlesim
@@ -6598,6 +10490,340 @@ class UUID:
     uuid: NDArray[np.uint8]
     __msgtype__: ClassVar[str]
 
+# ur_msgs
+
+@dataclass
+class Analog:
+    """`ur_msgs/msg/Analog`"""
+    pin: int
+    domain: int
+    state: float
+    CURRENT: ClassVar[int] = 0
+    VOLTAGE: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Digital:
+    """`ur_msgs/msg/Digital`"""
+    pin: int
+    state: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class IOStates:
+    """`ur_msgs/msg/IOStates`"""
+    digital_in_states: list[Digital]
+    digital_out_states: list[Digital]
+    flag_states: list[Digital]
+    analog_in_states: list[Analog]
+    analog_out_states: list[Analog]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MasterboardDataMsg:
+    """`ur_msgs/msg/MasterboardDataMsg`"""
+    digital_input_bits: int
+    digital_output_bits: int
+    analog_input_range0: int
+    analog_input_range1: int
+    analog_input0: float
+    analog_input1: float
+    analog_output_domain0: int
+    analog_output_domain1: int
+    analog_output0: float
+    analog_output1: float
+    masterboard_temperature: float
+    robot_voltage_48v: float
+    robot_current: float
+    master_io_current: float
+    master_safety_state: int
+    master_onoff_state: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RobotModeDataMsg:
+    """`ur_msgs/msg/RobotModeDataMsg`"""
+    timestamp: int
+    is_robot_connected: bool
+    is_real_robot_enabled: bool
+    is_power_on_robot: bool
+    is_emergency_stopped: bool
+    is_protective_stopped: bool
+    is_program_running: bool
+    is_program_paused: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RobotStateRTMsg:
+    """`ur_msgs/msg/RobotStateRTMsg`"""
+    time: float
+    q_target: NDArray[np.float64]
+    qd_target: NDArray[np.float64]
+    qdd_target: NDArray[np.float64]
+    i_target: NDArray[np.float64]
+    m_target: NDArray[np.float64]
+    q_actual: NDArray[np.float64]
+    qd_actual: NDArray[np.float64]
+    i_actual: NDArray[np.float64]
+    tool_acc_values: NDArray[np.float64]
+    tcp_force: NDArray[np.float64]
+    tool_vector: NDArray[np.float64]
+    tcp_speed: NDArray[np.float64]
+    digital_input_bits: float
+    motor_temperatures: NDArray[np.float64]
+    controller_timer: float
+    test_value: float
+    robot_mode: float
+    joint_modes: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ToolDataMsg:
+    """`ur_msgs/msg/ToolDataMsg`"""
+    analog_input_range2: int
+    analog_input_range3: int
+    analog_input2: float
+    analog_input3: float
+    tool_voltage_48v: float
+    tool_output_voltage: int
+    tool_current: float
+    tool_temperature: float
+    tool_mode: int
+    ANALOG_INPUT_RANGE_CURRENT: ClassVar[int] = 0
+    ANALOG_INPUT_RANGE_VOLTAGE: ClassVar[int] = 1
+    TOOL_BOOTLOADER_MODE: ClassVar[int] = 249
+    TOOL_RUNNING_MODE: ClassVar[int] = 253
+    TOOL_IDLE_MODE: ClassVar[int] = 255
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetIO_Request:
+    """`ur_msgs/srv/SetIO_Request`"""
+    fun: int
+    pin: int
+    state: float
+    PIN_AOUT0: ClassVar[int] = 0
+    PIN_AOUT1: ClassVar[int] = 1
+    PIN_DOUT0: ClassVar[int] = 0
+    PIN_DOUT1: ClassVar[int] = 1
+    PIN_DOUT2: ClassVar[int] = 2
+    PIN_DOUT3: ClassVar[int] = 3
+    PIN_DOUT4: ClassVar[int] = 4
+    PIN_DOUT5: ClassVar[int] = 5
+    PIN_DOUT6: ClassVar[int] = 6
+    PIN_DOUT7: ClassVar[int] = 7
+    PIN_CONF_OUT0: ClassVar[int] = 8
+    PIN_CONF_OUT1: ClassVar[int] = 9
+    PIN_CONF_OUT2: ClassVar[int] = 10
+    PIN_CONF_OUT3: ClassVar[int] = 11
+    PIN_CONF_OUT4: ClassVar[int] = 12
+    PIN_CONF_OUT5: ClassVar[int] = 13
+    PIN_CONF_OUT6: ClassVar[int] = 14
+    PIN_CONF_OUT7: ClassVar[int] = 15
+    PIN_TOOL_DOUT0: ClassVar[int] = 16
+    PIN_TOOL_DOUT1: ClassVar[int] = 17
+    FUN_SET_DIGITAL_OUT: ClassVar[int] = 1
+    FUN_SET_FLAG: ClassVar[int] = 2
+    FUN_SET_ANALOG_OUT: ClassVar[int] = 3
+    FUN_SET_TOOL_VOLTAGE: ClassVar[int] = 4
+    STATE_OFF: ClassVar[int] = 0
+    STATE_ON: ClassVar[int] = 1
+    STATE_TOOL_VOLTAGE_0V: ClassVar[int] = 0
+    STATE_TOOL_VOLTAGE_12V: ClassVar[int] = 12
+    STATE_TOOL_VOLTAGE_24V: ClassVar[int] = 24
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetIO_Response:
+    """`ur_msgs/srv/SetIO_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetPayload_Request:
+    """`ur_msgs/srv/SetPayload_Request`"""
+    mass: float
+    center_of_gravity: Vector3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetPayload_Response:
+    """`ur_msgs/srv/SetPayload_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetSpeedSliderFraction_Request:
+    """`ur_msgs/srv/SetSpeedSliderFraction_Request`"""
+    speed_slider_fraction: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetSpeedSliderFraction_Response:
+    """`ur_msgs/srv/SetSpeedSliderFraction_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+# uuv_gazebo_ros_plugins_msgs
+
+@dataclass
+class FloatStamped:
+    """`uuv_gazebo_ros_plugins_msgs/msg/FloatStamped`"""
+    header: Header
+    data: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ThrusterConversionFcn:
+    """`uuv_gazebo_ros_plugins_msgs/msg/ThrusterConversionFcn`"""
+    function_name: str
+    tags: list[str]
+    data: NDArray[np.float64]
+    lookup_table_input: NDArray[np.float64]
+    lookup_table_output: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class UnderwaterObjectModel:
+    """`uuv_gazebo_ros_plugins_msgs/msg/UnderwaterObjectModel`"""
+    added_mass: NDArray[np.float64]
+    linear_damping: NDArray[np.float64]
+    linear_damping_forward_speed: NDArray[np.float64]
+    quadratic_damping: NDArray[np.float64]
+    volume: float
+    bbox_height: float
+    bbox_length: float
+    bbox_width: float
+    fluid_density: float
+    cob: Vector3
+    neutrally_buoyant: bool
+    inertia: Inertia
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetFloat_Request:
+    """`uuv_gazebo_ros_plugins_msgs/srv/GetFloat_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetFloat_Response:
+    """`uuv_gazebo_ros_plugins_msgs/srv/GetFloat_Response`"""
+    data: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetListParam_Request:
+    """`uuv_gazebo_ros_plugins_msgs/srv/GetListParam_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetListParam_Response:
+    """`uuv_gazebo_ros_plugins_msgs/srv/GetListParam_Response`"""
+    description: str
+    tags: list[str]
+    data: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class uuv_gazebo_ros_plugins_msgs__srv__GetModelProperties_Request:
+    """`uuv_gazebo_ros_plugins_msgs/srv/GetModelProperties_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class uuv_gazebo_ros_plugins_msgs__srv__GetModelProperties_Response:
+    """`uuv_gazebo_ros_plugins_msgs/srv/GetModelProperties_Response`"""
+    link_names: list[str]
+    models: list[UnderwaterObjectModel]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetThrusterConversionFcn_Request:
+    """`uuv_gazebo_ros_plugins_msgs/srv/GetThrusterConversionFcn_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetThrusterConversionFcn_Response:
+    """`uuv_gazebo_ros_plugins_msgs/srv/GetThrusterConversionFcn_Response`"""
+    fcn: ThrusterConversionFcn
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetThrusterEfficiency_Request:
+    """`uuv_gazebo_ros_plugins_msgs/srv/GetThrusterEfficiency_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetThrusterEfficiency_Response:
+    """`uuv_gazebo_ros_plugins_msgs/srv/GetThrusterEfficiency_Response`"""
+    efficiency: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetThrusterState_Request:
+    """`uuv_gazebo_ros_plugins_msgs/srv/GetThrusterState_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetThrusterState_Response:
+    """`uuv_gazebo_ros_plugins_msgs/srv/GetThrusterState_Response`"""
+    is_on: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetFloat_Request:
+    """`uuv_gazebo_ros_plugins_msgs/srv/SetFloat_Request`"""
+    data: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetFloat_Response:
+    """`uuv_gazebo_ros_plugins_msgs/srv/SetFloat_Response`"""
+    success: bool
+    message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetThrusterEfficiency_Request:
+    """`uuv_gazebo_ros_plugins_msgs/srv/SetThrusterEfficiency_Request`"""
+    efficiency: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetThrusterEfficiency_Response:
+    """`uuv_gazebo_ros_plugins_msgs/srv/SetThrusterEfficiency_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetThrusterState_Request:
+    """`uuv_gazebo_ros_plugins_msgs/srv/SetThrusterState_Request`"""
+    on: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetThrusterState_Response:
+    """`uuv_gazebo_ros_plugins_msgs/srv/SetThrusterState_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetUseGlobalCurrentVel_Request:
+    """`uuv_gazebo_ros_plugins_msgs/srv/SetUseGlobalCurrentVel_Request`"""
+    use_global: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetUseGlobalCurrentVel_Response:
+    """`uuv_gazebo_ros_plugins_msgs/srv/SetUseGlobalCurrentVel_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
 # vision_msgs
 
 @dataclass
@@ -6609,10 +10835,31 @@ class BoundingBox2D:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class BoundingBox2DArray:
+    """`vision_msgs/msg/BoundingBox2DArray`"""
+    header: Header
+    boxes: list[BoundingBox2D]
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class BoundingBox3D:
     """`vision_msgs/msg/BoundingBox3D`"""
     center: Pose
     size: Vector3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class BoundingBox3DArray:
+    """`vision_msgs/msg/BoundingBox3DArray`"""
+    header: Header
+    boxes: list[BoundingBox3D]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Classification:
+    """`vision_msgs/msg/Classification`"""
+    header: Header
+    results: list[ObjectHypothesis]
     __msgtype__: ClassVar[str]
 
 @dataclass
@@ -6648,6 +10895,14 @@ class Detection3DArray:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class LabelInfo:
+    """`vision_msgs/msg/LabelInfo`"""
+    header: Header
+    class_map: list[VisionClass]
+    threshold: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class ObjectHypothesis:
     """`vision_msgs/msg/ObjectHypothesis`"""
     class_id: str
@@ -6673,6 +10928,22 @@ class vision_msgs__msg__Pose2D:
     """`vision_msgs/msg/Pose2D`"""
     position: Point2D
     theta: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class VisionClass:
+    """`vision_msgs/msg/VisionClass`"""
+    class_id: int
+    class_name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class VisionInfo:
+    """`vision_msgs/msg/VisionInfo`"""
+    header: Header
+    method: str
+    database_location: str
+    database_version: int
     __msgtype__: ClassVar[str]
 
 # visualization_msgs

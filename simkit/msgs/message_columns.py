@@ -60,15 +60,15 @@ class Column:
 
     def take(self, message: object) -> None:
         """Append the values of a message."""
-        found = self.read(message)
+        value = self.read(message)
         if not self.is_list:
-            self.values.append(found)
+            self.values.append(value)
             return
-        self.counts.append(len(found))
-        if isinstance(found, np.ndarray) and self.kind != TEXT:
-            self.values.frombytes(np.ascontiguousarray(found, dtype=self.kind).tobytes())
+        self.counts.append(len(value))
+        if isinstance(value, np.ndarray) and self.kind != TEXT:
+            self.values.frombytes(np.ascontiguousarray(value, dtype=self.kind).tobytes())
         else:
-            self.values.extend(found)
+            self.values.extend(value)
 
     @property
     def width(self) -> int | None:

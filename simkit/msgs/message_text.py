@@ -54,8 +54,8 @@ FULL_TEXT = TextStyle()
 
 def field_nodes(type_name: str, store: Typestore | None = None) -> list[tuple[str, FieldNode]]:
     """Return name and type of each field of a message type; empty for a type without fields."""
-    found = (store or type_store()).fielddefs[type_name][1]
-    return [(name, node) for name, node in found if name != _EMPTY]
+    nodes = (store or type_store()).fielddefs[type_name][1]
+    return [(name, node) for name, node in nodes if name != _EMPTY]
 
 
 def field_value(message: Message, field: str) -> FieldValue:
@@ -199,15 +199,15 @@ def field_at_path(message: Message, path: str, store: Typestore | None = None) -
     while at < len(text):
         if text[at] == "." and walked:
             at += 1
-        found = _STEP.match(text, at)
-        if found is None:
+        step = _STEP.match(text, at)
+        if step is None:
             raise MessageError(f"{path!r} is not a field path such as pose.position.x or ranges[0]")
-        if found[1] is not None:
-            value, node = _step_into_field(value, found[1], walked, store)
+        if step[1] is not None:
+            value, node = _step_into_field(value, step[1], walked, store)
         else:
-            value, node = _step_into_item(value, found, node, walked or "message")
-        walked += ("." if found[1] is not None and walked else "") + found[0]
-        at = found.end()
+            value, node = _step_into_item(value, step, node, walked or "message")
+        walked += ("." if step[1] is not None and walked else "") + step[0]
+        at = step.end()
     return value, node
 
 

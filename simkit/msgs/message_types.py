@@ -23,6 +23,7 @@ from simkit.msgs.shipped_interfaces import (
     PACKAGES_WITH_LONG_NAMES,
     definition_files,
     foreign_message_types,
+    pack_message_types,
     rosbags_types,
     shipped_message_types,
     shipped_parts,
@@ -68,8 +69,8 @@ def interface_parts(interface_name: str) -> tuple[MessageDefinition, ...] | None
     """
     if interface_name in definition_files():
         return shipped_parts(interface_name)
-    own = own_interfaces.find(interface_name)
-    return None if own is None else own.parts
+    added = own_interfaces.find(interface_name)
+    return None if added is None else added.parts
 
 
 def definition_of(type_name: str) -> MessageDefinition | None:
@@ -89,20 +90,20 @@ def _register(type_name: str) -> None:
     Raises:
         KeyError: the type is unknown.
     """
-    found = definition_of(type_name)
-    if found is None:
+    definition = definition_of(type_name)
+    if definition is None:
         raise KeyError(type_name)
     constants: Any = [
         (name, kind, _SpecialNumber(value) if kind.startswith("float") else value)
-        for name, kind, value in found.constants
+        for name, kind, value in definition.constants
     ]
-    fields: Any = found.fields
+    fields: Any = definition.fields
     type_store().register({type_name: (constants, fields)})
     with_readable_text([type_store().types[type_name]])
     make_picklable(type_store().types[type_name])
 
 
-def make_picklable(cls: type[Any], find: Callable[[str], type[Any]] | None = None) -> None:
+def make_picklable(cls: type, find: Callable[[str], type] | None = None) -> None:
     """Let messages of a registered class be pickled; another process registers the class by its type name.
 
     Args:
@@ -110,14 +111,14 @@ def make_picklable(cls: type[Any], find: Callable[[str], type[Any]] | None = Non
         find: function of a module that returns the class of a type name; None for `type_of`.
     """
 
-    def reduce(message: Any) -> tuple[Any, ...]:
+    def reduce(message: Message) -> tuple[object, ...]:
         values = tuple(getattr(message, name) for name in attribute_names(message))
         return _new_message, (find or type_of, message.__msgtype__, values)
 
     cls.__reduce__ = reduce  # type: ignore[assignment]  # as above
 
 
-def _new_message(find: Callable[[str], type[Any]], type_name: str, values: tuple[Any, ...]) -> Any:
+def _new_message(find: Callable[[str], type], type_name: str, values: tuple[object, ...]) -> object:
     return find(type_name)(*values)
 
 
@@ -171,20 +172,20 @@ def class_names() -> dict[str, str]:
 
     The name of a class is the last part of its type name: `LaserScan`. If several types have the same last part, ROS's
     own type has the short name, and a type of `PACKAGES_WITH_LONG_NAMES` has it only if no other package has the name.
-    A type of another distribution's pack never takes the name from one of simkit. The other types have their full name:
-    `gazebo_msgs__srv__SpawnEntity_Request`.
+    A type of a pack never takes the name from one of the core, and one of another distribution's pack never from one of
+    simkit. The other types have their full name: `gazebo_msgs__srv__SpawnEntity_Request`.
     """
     names = message_type_names()
     candidates: dict[str, list[str]] = {}
     for name in sorted(names, key=_rank):
         candidates.setdefault(name.rpartition("/")[2], []).append(name)
-    found = {}
+    classes = {}
     for name in names:
         short = name.rpartition("/")[2]
         first, *others = candidates[short]
         is_ambiguous = bool(others) and _rank(first) == _rank(others[0])
-        found[short if name == first and not is_ambiguous else name.replace("/", "__")] = name
-    return found
+        classes[short if name == first and not is_ambiguous else name.replace("/", "__")] = name
+    return classes
 
 
 def _rank(type_name: str) -> int:
@@ -192,6 +193,8 @@ def _rank(type_name: str) -> int:
     if type_name not in shipped_message_types():
         return 0
     if type_name in foreign_message_types():
+        return 4
+    if type_name in pack_message_types():
         return 3
     return 2 if type_name.split("/")[0] in PACKAGES_WITH_LONG_NAMES else 1
 
@@ -207,9 +210,9 @@ def message_class(class_name: str) -> type[Message]:
         names = class_names()
         if class_name in names:
             return type_of(names[class_name])
-        own = own_interfaces.message_type(class_name)
-        if own:
-            return type_of(own)
+        added = own_interfaces.message_type(class_name)
+        if added:
+            return type_of(added)
         raise AttributeError(f"simkit.msgs has no {class_name!r}; {did_you_mean(class_name, names)}".rstrip("; "))
     raise AttributeError(f"simkit.msgs has no {class_name!r}")
 
@@ -237,5 +240,5 @@ def definition(type_name: str) -> str:
 def _own_text(type_name: str) -> str:
     """Return the text of a type of the user; empty for all other types."""
     interface, _ = interface_of(type_name) or ("", 0)
-    found = None if interface in definition_files() else definition_of(type_name)
-    return "" if found is None else found.text
+    definition = None if interface in definition_files() else definition_of(type_name)
+    return "" if definition is None else definition.text

@@ -132,7 +132,7 @@ def add_received(texts: Mapping[str, str]) -> None:
     Raises:
         InterfaceError: see `add`.
     """
-    _add_all(list(texts.items()))
+    add_definitions(texts)
 
 
 def remember_received(texts: Mapping[str, str], sender: str) -> None:
@@ -163,7 +163,7 @@ def add_folders(folders: Iterable[str | os.PathLike[str]]) -> None:
     Raises:
         InterfaceError: a folder or a definition has errors; the exception lists all of them.
     """
-    given: list[tuple[str, str | Path]] = []
+    definitions: list[tuple[str, str | Path]] = []
     problems: list[Diagnostic] = []
     for folder in folders:
         path = expand_home(folder)
@@ -171,13 +171,22 @@ def add_folders(folders: Iterable[str | os.PathLike[str]]) -> None:
             hidden_text.hide(str(path), os.path.realpath(path))
         else:
             choose_folders([path.absolute()])
-        found = list(definitions_in(path)) if path.is_dir() else []
-        if not found:
+        in_folder = list(definitions_in(path)) if path.is_dir() else []
+        if not in_folder:
             what = "has no file .msg, .srv or .action" if path.is_dir() else "is not a folder"
             hint = "give a ROS package, a workspace, or a folder such as my_msgs with my_msgs/msg/Num.msg"
             problems.append(Diagnostic(_UNREADABLE, "error", f"interfaces: {str(path)!r} {what}", hint=hint))
-        given += found
-    _add_all(given, problems)
+        definitions += in_folder
+    _add_all(definitions, problems)
+
+
+def add_definitions(definitions: Mapping[str, str | Path]) -> None:
+    """Define interfaces that may use each other, each by its full name with its text or its file.
+
+    Raises:
+        InterfaceError: see `add`.
+    """
+    _add_all(list(definitions.items()))
 
 
 def read_environment() -> None:
@@ -205,23 +214,23 @@ def set_finder(finder: InterfaceFinder) -> None:
 
 def message_type(class_name: str) -> str:
     """Return the message type of a class name, such as `Num` or `my_msgs__msg__Num`; empty if there are not one."""
-    found = [f"{name}{part}" for name in _added for part in PARTS[name.split("/")[1]]]
-    matching = [n for n in found if class_name in (n.rpartition("/")[2], n.replace("/", "__"))]
+    names = [f"{name}{part}" for name in _added for part in PARTS[name.split("/")[1]]]
+    matching = [n for n in names if class_name in (n.rpartition("/")[2], n.replace("/", "__"))]
     return matching[0] if len(matching) == 1 else ""
 
 
 def texts_used_by(type_names: Iterable[str]) -> dict[str, str]:
     """Return the text of each own interface that some message types or interfaces consist of, by name."""
-    found: dict[str, str] = {}
+    texts: dict[str, str] = {}
     waiting = list(type_names)
     while waiting:
         name = waiting.pop()
         interface = name if name in _added or name in _received else (interface_of(name) or ("", 0))[0]
-        own = _added.get(interface) or _received_interface(interface)
-        if own is not None and own.name not in found:
-            found[own.name] = own.text
-            waiting += [used for part in own.parts for _, used in part.used_types()]
-    return dict(sorted(found.items()))
+        added = _added.get(interface) or _received_interface(interface)
+        if added is not None and added.name not in texts:
+            texts[added.name] = added.text
+            waiting += [used for part in added.parts for _, used in part.used_types()]
+    return dict(sorted(texts.items()))
 
 
 def used_texts() -> dict[str, str]:
@@ -243,18 +252,18 @@ def _located(name: str) -> Path | str | None:
     return installed_file(package, file) or next((f for find in _finders if (f := find(package, file))), None)
 
 
-def _add_all(given: Sequence[tuple[str, str | Path]], problems: Sequence[Diagnostic] = ()) -> None:
+def _add_all(definitions: Sequence[tuple[str, str | Path]], problems: Sequence[Diagnostic] = ()) -> None:
     """Parse, check and store definitions, and those definitions in workspaces that they use.
 
     Args:
-        given: name, and text or file, of each definition.
+        definitions: name, and text or file, of each definition.
         problems: problems that were found before.
 
     Raises:
         InterfaceError: there are problems; nothing is stored.
     """
     batch = _Batch(list(problems))
-    for name, source in given:
+    for name, source in definitions:
         batch.read(name, source)
     batch.check()
     if batch.problems:
@@ -293,35 +302,35 @@ class _Batch:
         except (OSError, UnicodeDecodeError) as error:
             self._report(file, _UNREADABLE, 0, f"the definition cannot be read: {read_failure(error)}")
             return
-        parts, found = parse_interface(name, text)
-        for problem in found:
+        parts, mistakes = parse_interface(name, text)
+        for problem in mistakes:
             self._report(file, problem.code, problem.line, problem.message, problem.hint)
-        self._put(OwnInterface(name, tuple(parts), file), is_valid=not found)
+        self._put(OwnInterface(name, tuple(parts), file), is_valid=not mistakes)
 
-    def _put(self, own: OwnInterface, *, is_valid: bool) -> None:
-        known = self.interfaces.get(own.name) or _added.get(own.name) or _shipped(own.name)
-        received = _received_interface(own.name)
-        other = next((o for o in (known, received) if o is not None and o.content != own.content), None)
+    def _put(self, interface: OwnInterface, *, is_valid: bool) -> None:
+        known = self.interfaces.get(interface.name) or _added.get(interface.name) or _shipped(interface.name)
+        received = _received_interface(interface.name)
+        other = next((o for o in (known, received) if o is not None and o.content != interface.content), None)
         if is_valid and other is not None:
-            text = f"{own.name} is defined differently already: {_difference(other, own)}"
+            text = f"{interface.name} is defined differently already: {_difference(other, interface)}"
             hint = f"use one definition, or another name; compare with {other.source}"
-            self._report(own.source, _DIFFERS, 0, text, hint)
+            self._report(interface.source, _DIFFERS, 0, text, hint)
         elif known is None:  # the types of a definition with errors are checked too
-            self.interfaces[own.name] = own
-            self._waiting.append(own)
+            self.interfaces[interface.name] = interface
+            self._waiting.append(interface)
 
     def check(self) -> None:
         """Check that every type that is used exists, has an end and a moderate size."""
         while self._waiting:
-            own = self._waiting.pop(0)
-            for part in own.parts:
+            added = self._waiting.pop(0)
+            for part in added.parts:
                 for field, used in part.used_types():
-                    self._require(own, part.lines[field], used)
+                    self._require(added, part.lines[field], used)
         if not self.problems:
-            for own in self.interfaces.values():
-                self._check_size(own)
+            for added in self.interfaces.values():
+                self._check_size(added)
 
-    def _require(self, own: OwnInterface, line: int, used: str) -> None:
+    def _require(self, interface: OwnInterface, line: int, used: str) -> None:
         if used in self.interfaces or used in _added or _shipped(used) is not None:
             return
         source = _located(used)
@@ -332,25 +341,25 @@ class _Batch:
             same = sorted(name for name in known if name.endswith(used[used.rindex("/") :]) and "/msg/" in name)
             hint = f"did you mean {same[0]!r}?" if same else did_you_mean(used, known)
             hint = hint or "add the folder of its package with --interfaces DIR"
-            self._report(own.source, UNKNOWN_TYPE, line, f"unknown type {used!r}", hint)
+            self._report(interface.source, UNKNOWN_TYPE, line, f"unknown type {used!r}", hint)
 
-    def _check_size(self, own: OwnInterface) -> None:
+    def _check_size(self, interface: OwnInterface) -> None:
         """Check each field of an interface alone, so that a problem has its line, and then all fields together."""
-        for part in own.parts:
-            for fields in (*([one] for one in part.fields), part.fields):
+        for part in interface.parts:
+            for fields in (*([field] for field in part.fields), part.fields):
                 try:
-                    check_size(own.name, partial(self._fields_of, {own.name: fields}))
+                    check_size(interface.name, partial(self._fields_of, {interface.name: fields}))
                 except DefinitionTooLarge as error:
                     name = fields[0][0]
-                    self._report(own.source, _TOO_LARGE, part.lines[name], f"{name!r}: {error}")
+                    self._report(interface.source, _TOO_LARGE, part.lines[name], f"{name!r}: {error}")
                     break
 
-    def _fields_of(self, given: Mapping[str, Fields], type_name: str) -> Fields:
-        if type_name in given:
-            return given[type_name]
-        found = self.interfaces.get(type_name) or _added.get(type_name) or _shipped(type_name)
-        assert found is not None
-        return found.parts[0].fields
+    def _fields_of(self, definitions: Mapping[str, Fields], type_name: str) -> Fields:
+        if type_name in definitions:
+            return definitions[type_name]
+        added = self.interfaces.get(type_name) or _added.get(type_name) or _shipped(type_name)
+        assert added is not None
+        return added.parts[0].fields
 
     def _report(self, file: str, code: str, line: int, message: str, hint: str = "") -> None:
         self.problems.append(Diagnostic(code, "error", message, file, line or None, hint))
@@ -364,17 +373,17 @@ def _received_interface(name: str) -> OwnInterface | None:
 
 def _shipped(name: str) -> OwnInterface | None:
     """Return an interface that is shipped with simkit or with rosbags."""
-    found = shipped_parts(name)
-    return None if found is None else OwnInterface(name, found, "simkit's own definition")
+    parts = shipped_parts(name)
+    return None if parts is None else OwnInterface(name, parts, "simkit's own definition")
 
 
 def _difference(before: OwnInterface, now: OwnInterface) -> str:
     """Describe the first difference between two definitions of an interface."""
-    for one, other in zip(before.parts, now.parts, strict=True):
+    for old, other in zip(before.parts, now.parts, strict=True):
         for what, first, second in (
-            ("fields", one.fields, other.fields),
-            ("constants", one.constants, other.constants),
-            ("defaults", sorted(one.defaults.items()), sorted(other.defaults.items())),
+            ("fields", old.fields, other.fields),
+            ("constants", old.constants, other.constants),
+            ("defaults", sorted(old.defaults.items()), sorted(other.defaults.items())),
         ):
             if first != second:
                 pairs = enumerate(zip(first, second, strict=False))

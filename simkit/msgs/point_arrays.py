@@ -34,11 +34,11 @@ def points(message: PointCloud2) -> PointArray:
     """
     if getattr(message, "__msgtype__", "") != "sensor_msgs/msg/PointCloud2":
         raise wrong_type("the point cloud", "a sensor_msgs/msg/PointCloud2", message)
-    found = read_points(message)
-    names = found.dtype.names or ()
-    packed = np.empty(found.shape, [(name, found.dtype[name].newbyteorder("=")) for name in names])
+    read = read_points(message)
+    names = read.dtype.names or ()
+    packed = np.empty(read.shape, [(name, read.dtype[name].newbyteorder("=")) for name in names])
     for name in names:
-        packed[name] = found[name]
+        packed[name] = read[name]
     return packed
 
 

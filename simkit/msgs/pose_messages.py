@@ -36,16 +36,16 @@ def pose(message: Message) -> Pose:
         ArgumentTypeError: the message has no pose.
         ArgumentValueError: the pose has NaN or infinite numbers, or a quaternion of zeros.
     """
-    found = message
-    while is_message(found) and not isinstance(found, type):
-        if found.__msgtype__ == POSE:
-            return _pose(found.position, found.orientation)
-        if found.__msgtype__ == _TRANSFORM:
-            return _pose(found.translation, found.rotation)
-        if all(hasattr(found, name) for name in _FLAT):
-            x, y, theta = checked_vector((found.x, found.y, found.theta), "the pose of the message").tolist()
+    part = message
+    while is_message(part) and not isinstance(part, type):
+        if part.__msgtype__ == POSE:
+            return _pose(part.position, part.orientation)
+        if part.__msgtype__ == _TRANSFORM:
+            return _pose(part.translation, part.rotation)
+        if all(hasattr(part, name) for name in _FLAT):
+            x, y, theta = checked_vector((part.x, part.y, part.theta), "the pose of the message").tolist()
             return Pose((x, y, 0.0), quat_from_rpy(0.0, 0.0, theta))
-        found = next((getattr(found, name) for name in _WRAPPING if hasattr(found, name)), None)
+        part = next((getattr(part, name) for name in _WRAPPING if hasattr(part, name)), None)
     if isinstance(message, Pose):
         return message
     raise wrong_type("the message", _KINDS, message)
@@ -105,8 +105,8 @@ def pose_message(value: Pose, type_name: str = POSE, header: Message = None, chi
     fields = _pose_fields(value, builder.name)
     if fields is None:
         raise wrong_type("the type", "that of a message with a pose, such as geometry_msgs/msg/PoseStamped", type_name)
-    given = {"header": header} if header is not None else {}
-    return builder.build(fields | given | ({"child_frame_id": child_frame_id} if child_frame_id else {}))
+    head = {"header": header} if header is not None else {}
+    return builder.build(fields | head | ({"child_frame_id": child_frame_id} if child_frame_id else {}))
 
 
 def _pose_fields(value: Pose, type_name: str) -> dict[str, FieldValue] | None:

@@ -178,8 +178,8 @@ class TransformTree:
 
     def frames(self) -> dict[str, str]:
         """Return the parent of each frame, sorted by name; an empty text for a root."""
-        found = {name: frame.parent(None) for name, frame in self._frames.items()}
-        return dict(sorted((dict.fromkeys(found.values(), "") | found).items()))
+        parents = {name: frame.parent(None) for name, frame in self._frames.items()}
+        return dict(sorted((dict.fromkeys(parents.values(), "") | parents).items()))
 
     def lookup(self, target: str, source: str, time: FieldValue = None) -> Pose:
         """Return the pose of the frame `source` in the frame `target`.
@@ -233,8 +233,7 @@ class TransformTree:
         when = "" if stamp is None else f" at t={stamp / _NS:g} s"
         missing = f"no transform connects {self._end(source, down, stamp)!r} with {self._end(target, up, stamp)!r}"
         raise TransformError(
-            f"{NOT_CONNECTED} the frames {source!r} and {target!r} are not connected{when}: {ways}; {missing}",
-            NOT_CONNECTED,
+            NOT_CONNECTED, f"the frames {source!r} and {target!r} are not connected{when}: {ways}; {missing}"
         )
 
     def _end(self, name: str, steps: list[_Step], stamp: int | None) -> str:
@@ -250,7 +249,7 @@ class TransformTree:
         while name in self._frames:
             if name in seen:
                 circle = " → ".join(repr(n) for n in (*seen[seen.index(name) :], name))
-                raise TransformError(f"{NOT_CONNECTED} the frames form a circle: {circle}", NOT_CONNECTED)
+                raise TransformError(NOT_CONNECTED, f"the frames form a circle: {circle}")
             seen.append(name)
             yield _Step(name, self._frames[name])
             name = self._frames[name].parent(stamp)
@@ -277,8 +276,8 @@ class TransformTree:
         rest = f"the known frames are {shown}" if known else "no frame is known yet"
         since = "" if self.since_ns is None else f"; transforms are received since t={self.since_ns / _NS:g} s"
         what = "frame" if len(missing) == 1 else "frames"
-        text = f"{UNKNOWN_FRAME} unknown {what} {' and '.join(hints)}; {rest}{since}"
-        raise TransformError(text, UNKNOWN_FRAME)
+        text = f"unknown {what} {' and '.join(hints)}; {rest}{since}"
+        raise TransformError(UNKNOWN_FRAME, text)
 
     def _outside(self, step: _Step, stamp: int) -> TransformError:
         first, last = step.frame.stamps[0], step.frame.stamps[-1]
@@ -291,7 +290,7 @@ class TransformTree:
             hint = f"transforms are received since t={self.since_ns / _NS:.9g} s; use `tf` before the time of interest"
         else:
             hint = f"the history has {self.length:g} s; set `tf.length` to a longer one"
-        return TransformError(f"{OUTSIDE_HISTORY} {text}\n    help: {hint}", OUTSIDE_HISTORY)
+        return TransformError(OUTSIDE_HISTORY, text, help=hint)
 
     # ------------------------------------------------------------------ state
 

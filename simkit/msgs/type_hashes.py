@@ -8,12 +8,16 @@ from __future__ import annotations
 import hashlib
 import json
 from functools import cache
-from typing import Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit.msgs.definition_parser import ARRAY, BASE, NAME, SEQUENCE, FieldNode
 from simkit.msgs.derived_types import Fields, derived_fields, is_derived
 from simkit.msgs.message_types import full_name, type_store
 from simkit.msgs.shipped_interfaces import NO_FIELD
+
+if TYPE_CHECKING:
+    from simkit.run_spec import JsonObject
+
 
 _IDS: Final = {
     "int8": 2, "uint8": 3, "int16": 4, "uint16": 5, "int32": 6, "uint32": 7, "int64": 8, "uint64": 9, "float32": 10,
@@ -33,14 +37,14 @@ def rihs(type_name: str) -> str:
         MessageError: the type is unknown.
     """
     name = type_name if is_derived(type_name) else full_name(type_name)
-    structs: dict[str, dict[str, Any]] = {}
+    structs: dict[str, JsonObject] = {}
     _describe(name, structs)
     first = structs.pop(name)
     content = {"type_description": first, "referenced_type_descriptions": [structs[key] for key in sorted(structs)]}
     return "RIHS01_" + hashlib.sha256(json.dumps(content).encode()).hexdigest()
 
 
-def _describe(name: str, structs: dict[str, dict[str, Any]]) -> None:
+def _describe(name: str, structs: dict[str, JsonObject]) -> None:
     """Add the description of a type, and those of all types that it uses, to a table."""
     if name not in structs:
         fields = _fields(name)
@@ -51,7 +55,7 @@ def _describe(name: str, structs: dict[str, dict[str, Any]]) -> None:
                 _describe(inner[1], structs)
 
 
-def _field(name: str, node: FieldNode) -> dict[str, Any]:
+def _field(name: str, node: FieldNode) -> JsonObject:
     kind, content = int(node[0]), node[1]
     offset = size = 0
     inner = node
@@ -64,8 +68,8 @@ def _field(name: str, node: FieldNode) -> dict[str, Any]:
     else:
         basic, bound = inner[1]
         number = _IDS[basic] + (_BOUNDED_TEXT if bound else 0)
-    found = {"type_id": offset + number, "capacity": size, "string_capacity": bound, "nested_type_name": nested}
-    return {"name": name, "type": found}
+    field_type = {"type_id": offset + number, "capacity": size, "string_capacity": bound, "nested_type_name": nested}
+    return {"name": name, "type": field_type}
 
 
 def _fields(name: str) -> Fields:

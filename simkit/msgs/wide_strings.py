@@ -9,6 +9,7 @@ from __future__ import annotations
 import copy
 import sys
 from array import array
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.msgs.definition_parser import ARRAY, BASE, NAME, SEQUENCE, FieldNode
@@ -50,8 +51,8 @@ class _Codecs(dict[str, Any]):
         replaced: Any = [(field, _replaced(node)) for field, node in fields]
         store = copy.copy(self._store)
         store.fielddefs, store.cache = {name: (constants, replaced)}, {}
-        found = self[name] = type(store).get_msgdef(store, name)
-        return found
+        definition = self[name] = type(store).get_msgdef(store, name)
+        return definition
 
 
 def _replaced(node: FieldNode) -> FieldNode:
@@ -63,14 +64,14 @@ def _replaced(node: FieldNode) -> FieldNode:
     return (node[0], ((NAME, _WIDE), node[1][1])) if is_array else (NAME, _WIDE)
 
 
-def _wide_codec() -> Any:
+def _wide_codec() -> object:
     """Return the code for texts in the form that rosbags generates for message types."""
     from rosbags.interfaces import Msgdef
 
     def size(position: int, text: str, _: object) -> int:
         return position + 4 + 4 * len(_units(text))
 
-    def writer(is_swapped: bool) -> Any:
+    def writer(is_swapped: bool) -> Callable[[memoryview, int, str, object], int]:
         def write(data: memoryview, position: int, text: str, _: object) -> int:
             units = _units(text)
             content = array("I", [len(units), *units])
@@ -82,7 +83,7 @@ def _wide_codec() -> Any:
 
         return write
 
-    def reader(is_swapped: bool) -> Any:
+    def reader(is_swapped: bool) -> Callable[..., tuple[str, int]]:
         def read(data: memoryview, position: int, *_: object) -> tuple[str, int]:
             count = _numbers(data[position : position + 4], 1, is_swapped)[0]
             end = position + 4 + 4 * count
@@ -95,9 +96,8 @@ def _wide_codec() -> Any:
 
     swapped = sys.byteorder != "little"
     little, big = (writer(swapped), writer(not swapped)), (reader(swapped), reader(not swapped))
-    unused: Any = None
     codec: Any = Msgdef
-    return codec(_WIDE, _UNITS, str, 0, size, *little, *big, 0, *[unused] * 7)
+    return codec(_WIDE, _UNITS, str, 0, size, *little, *big, 0, *[None] * 7)
 
 
 _UTF_16: Final = "utf-16-le" if array("H", [1]).tobytes()[0] else "utf-16-be"
@@ -116,7 +116,7 @@ def _numbers(data: bytes | memoryview, count: int, is_swapped: bool) -> array[in
     """
     if len(data) != 4 * count:
         raise ValueError(f"a wstring has {len(data)} bytes; expected {4 * count}")
-    found = array("I", bytes(data))
+    codes = array("I", bytes(data))
     if is_swapped:
-        found.byteswap()
-    return found
+        codes.byteswap()
+    return codes

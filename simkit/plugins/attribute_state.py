@@ -15,7 +15,7 @@ _PLAIN: Final = frozenset({bool, bytes, float, int, str, type(None)})
 """Types whose values cannot change, so that a copy is the value itself; `deepcopy` takes 0.3 µs for each."""
 
 
-class AttributeState(dict[str, Any]):
+class AttributeState(dict[str, object]):
     """Copied attributes by name, which `restore_attributes` copies again at each restore.
 
     The attributes are divided at the first restore, because `deepcopy` takes 20 to 100 µs for a plugin and most of its
@@ -31,7 +31,7 @@ class AttributeState(dict[str, Any]):
 
     is_divided = False
     kept: Set[str] = frozenset()
-    shallow: tuple[tuple[str, Callable[[], Any]], ...] = ()
+    shallow: tuple[tuple[str, Callable[[], object]], ...] = ()
     deep: tuple[str, ...] = ()
 
     def divide(self, owner: object) -> None:
@@ -53,7 +53,7 @@ def _is_constant(value: Any, owner: object) -> bool:
         return True
     own_parameters = vars(type(value)).get("__dataclass_params__")
     if own_parameters is not None and own_parameters.frozen:
-        names = {one.name for one in fields(value)}
+        names = {attribute.name for attribute in fields(value)}
         return getattr(value, "__dict__", {}).keys() <= names and all(
             _is_constant(getattr(value, name), owner) for name in names
         )
@@ -65,11 +65,11 @@ def _is_flat(value: Any, owner: object) -> bool:
     if type(value) is np.ndarray:
         return not value.dtype.hasobject
     if type(value) is dict:
-        return all(_is_constant(one, owner) for one in (*value, *value.values()))
-    return type(value) in (list, set) and all(_is_constant(one, owner) for one in value)
+        return all(_is_constant(element, owner) for element in (*value, *value.values()))
+    return type(value) in (list, set) and all(_is_constant(element, owner) for element in value)
 
 
-def _copier(value: Any) -> Callable[[], Any]:
+def _copier(value: Any) -> Callable[[], object]:
     """Return the function that copies a flat value; an array keeps its order in memory, as with `deepcopy`."""
     return partial(value.copy, "K") if type(value) is np.ndarray else value.copy
 
@@ -84,15 +84,15 @@ def copy_attributes(
         left_out: names of the attributes that are not part of the state.
         report: function that receives the name of an attribute that cannot be copied and the exception, once for each.
     """
-    own = {key: value for key, value in vars(owner).items() if key not in left_out}
+    attributes = {key: value for key, value in vars(owner).items() if key not in left_out}
     memo: dict[int, object] = {id(owner): owner}
     try:
-        return AttributeState(copy.deepcopy(own, memo))
+        return AttributeState(copy.deepcopy(attributes, memo))
     except Exception:  # noqa: BLE001 - a foreign object may raise anything when copied
         pass
     memo = {id(owner): owner}
     state, uncopied = AttributeState(), set()
-    for key, value in own.items():
+    for key, value in attributes.items():
         try:
             state[key] = copy.deepcopy(value, memo)
         except Exception as error:  # noqa: BLE001 - a foreign object may raise anything when copied
@@ -103,24 +103,24 @@ def copy_attributes(
     return state
 
 
-def restore_attributes(owner: object, left_out: Collection[str], state: Mapping[str, Any]) -> None:
+def restore_attributes(owner: object, left_out: Collection[str], state: Mapping[str, object]) -> None:
     """Restore a state from `copy_attributes`; later attributes are deleted, except those that cannot be copied."""
-    own = vars(owner)
+    attributes = vars(owner)
     if isinstance(state, AttributeState):
         if not state.is_divided:
             state.divide(owner)
             state.kept = state.keys() | set(left_out)
-        kept = state.kept
+        lasting_names = state.kept
     else:
-        kept = state.keys() | set(left_out)
-    if not own.keys() <= kept:
-        for key in own.keys() - kept - {"_uncopied", *own.get("_uncopied", ())}:
+        lasting_names = state.keys() | set(left_out)
+    if not attributes.keys() <= lasting_names:
+        for key in attributes.keys() - lasting_names - {"_uncopied", *attributes.get("_uncopied", ())}:
             delattr(owner, key)
     if not isinstance(state, AttributeState):  # a plugin has made its own state
-        own.update(copy.deepcopy(dict(state), {id(owner): owner}))
+        attributes.update(copy.deepcopy(dict(state), {id(owner): owner}))
         return
-    own.update(state)
+    attributes.update(state)
     for key, copied in state.shallow:
-        own[key] = copied()
+        attributes[key] = copied()
     if state.deep:
-        own.update(copy.deepcopy({key: state[key] for key in state.deep}, {id(owner): owner}))
+        attributes.update(copy.deepcopy({key: state[key] for key in state.deep}, {id(owner): owner}))

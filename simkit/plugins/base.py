@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import abc
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Literal, TypeVar
 
@@ -27,13 +28,15 @@ from simkit.plugins.unread_parameters import report_unread
 from simkit.topic_logger import TopicLogger
 
 if TYPE_CHECKING:
-    from simkit.compiler import ActuatorRef, SpecBuilder
+    from simkit.compiler import SpecBuilder
+    from simkit.msgs import Message
     from simkit.run_spec import PluginErrorPolicy
     from simkit.runtime import Simulation
+    from simkit.runtime.array_rules import PluginRule
     from simkit.runtime.communication.action_server import Action, GoalHandle
     from simkit.runtime.communication.parameter import Parameter
     from simkit.runtime.communication.publisher import Listener, Publisher
-    from simkit.runtime.communication.service_call import Service
+    from simkit.runtime.communication.service_server import Service
     from simkit.runtime.communication.subscription import Subscription
     from simkit.runtime.engine.random_streams import RandomStream
     from simkit.scene import ScenePlugin
@@ -57,7 +60,7 @@ class Plugin(abc.ABC):
     Attributes:
         filenames: library names in files that select this class (`libgazebo_ros_diff_drive.so`).
         names: gz class names that select this class (`gz::sim::systems::DiffDrive`).
-        parent_kind: kind, or kinds, of entities that the plugin can be attached to; the base classes set it.
+        parent_kind: kind, or kinds, of entities that the plugin can be attached to; derived base classes set it.
         lets_sleep: true if the model may sleep at rest without an effect on what the plugin reads or does.
         option_types: classes of options in addition to the class of `options`; see `simkit.plugins.options`.
         only_publishes: true if the plugin only publishes or waits for requests; a batch of environments then leaves its
@@ -78,7 +81,7 @@ class Plugin(abc.ABC):
 
     filenames: ClassVar[tuple[str, ...]] = ()
     names: ClassVar[tuple[str, ...]] = ()
-    parent_kind: ClassVar[ParentKind | tuple[ParentKind, ...]]
+    parent_kind: ClassVar[ParentKind | tuple[ParentKind, ...]] = "any"
     lets_sleep: ClassVar[bool] = False
     only_publishes: ClassVar[bool] = False
     option_types: ClassVar[tuple[type[Options], ...]] = ()
@@ -90,9 +93,6 @@ class Plugin(abc.ABC):
     after_step_rate: float | None = None
     on_error: PluginErrorPolicy | None = None
 
-    _failed: tuple[str, Exception] | None = None  # hook that failed before the simulation existed, and its exception
-    _actuators: tuple[ActuatorRef, ...] = ()  # servos and motors that `prepare` added
-    _order: tuple[object, ...] = ()  # sort key for the order of all plugins
     plugin_paths: tuple[Path, ...] = ()  # folders whose Python modules the user allows
     _source: ScenePlugin | None = None
     sim: Simulation
@@ -103,7 +103,7 @@ class Plugin(abc.ABC):
     ros: RosNames
     log: TopicLogger
 
-    def __init__(self, **values: Any) -> None:
+    def __init__(self, **values: object) -> None:
         """Create a plugin in Python instead of in a file.
 
         Args:
@@ -144,6 +144,16 @@ class Plugin(abc.ABC):
     def close(self) -> None:
         """Release resources when the simulation closes."""
 
+    def array_rule(self) -> PluginRule | None:
+        """Return what the plugin does in many simulations at once, which a batch of environments needs.
+
+        The method does not hold for derived classes. Without it, a world with the plugin's hooks is not batched.
+
+        Raises:
+            CannotBatchError: the plugin cannot be computed as arrays with its present options.
+        """
+        return None
+
     # ------------------------------------------------------------------ methods that a plugin's author calls
 
     def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Publisher:
@@ -151,7 +161,7 @@ class Plugin(abc.ABC):
         with self.sim.communication.bus.owned_by(self):
             return self.sim.communication.bus.advertise(self.ros.topic(topic), type_name, latched=latched)
 
-    def listen(self, topic: str, types: str | Sequence[str], callback: Callable[[Any], object]) -> Listener:
+    def listen(self, topic: str, types: str | Sequence[str], callback: Callable[[Message], object]) -> Listener:
         """Call `callback(message)` between two steps for each message on `topic`; it may have any of the `types`."""
         name = self.ros.topic(topic)
         guarded = self.sim.engine.faults.guard(self, f"its callback for {name!r}", callback)
@@ -160,7 +170,7 @@ class Plugin(abc.ABC):
             return self.sim.communication.bus.listen(name, kinds, guarded)
 
     def subscribe(
-        self, topic: str, callback: Callable[[Any], None] | None = None, keep: int | None = None
+        self, topic: str, callback: Callable[[Message], None] | None = None, keep: int | None = None
     ) -> Subscription:
         """Receive each message on a topic at the moment of its publication.
 
@@ -176,7 +186,7 @@ class Plugin(abc.ABC):
         with self.sim.communication.bus.owned_by(self):
             return self.sim.subscribe(name, guarded, keep)
 
-    def offer(self, service: str, type_name: str, handler: Callable[[Any], Any]) -> Service:
+    def offer(self, service: str, type_name: str, handler: Callable[[Message], object]) -> Service:
         """Open a service.
 
         Args:
@@ -274,15 +284,18 @@ class Plugin(abc.ABC):
         return self._source
 
     @source.setter
-    def source(self, plugin: ScenePlugin | None) -> None:
-        """Set the name, location and parameters from the file; done before `prepare`."""
-        if plugin is not None and not hasattr(plugin, "params"):
-            raise AttributeError("`source` is the plugin's description in the file; rename your own attribute")
-        self._source = plugin
-        if plugin is None:
-            self.hand_over(Diagnostics())
-            return
-        self._describe(plugin.name, plugin.scoped, plugin.params, plugin.where)
+    def source(self, _: object) -> None:
+        raise AttributeError("`source` is the plugin's description in the file; rename your own attribute")
+
+    def take_source(self, source: ScenePlugin, plugin_paths: Sequence[Path] = ()) -> None:
+        """Set the name, location and parameters from the file; done before `prepare`.
+
+        Args:
+            source: description of the plugin in the file.
+            plugin_paths: folders whose Python modules the user allows.
+        """
+        self._source, self.plugin_paths = source, tuple(plugin_paths)
+        self._describe(source.name, source.scoped, source.params, source.where)
 
     def hand_over(self, diagnostics: Diagnostics, scoped: str = "") -> None:
         """Set the name, location and parameters of an instance created in Python; done before `prepare`.
@@ -318,22 +331,32 @@ class Plugin(abc.ABC):
 
     def report_unread(self) -> None:
         """Warn about elements of the file that the plugin did not read; done after `load`."""
-        report_unread(self.params, f"plugin {self.name!r}", getattr(self, "system", self) or self)
+        report_unread(self.params, f"plugin {self.name!r}", self.code_objects()[0])
         if not self.reads_parameter_files:
             self.ros.arguments.report_unused(f"plugin {self.name!r}", self.params.diagnostics)
 
-    def _setup(self, sim: Simulation, source: ScenePlugin | None = None) -> None:
+    def join_simulation(self, sim: Simulation) -> None:
         """Connect the instance to its simulation; done before `load`."""
         self.sim, self._once = sim, OneTimeWarnings(self)
-        if source is not None or not hasattr(self, "params"):
-            self.source = source
+        if self._source is not None:
+            self.take_source(self._source, self.plugin_paths)
+        elif not hasattr(self, "params"):
+            self.hand_over(Diagnostics())
+
+    def code_objects(self) -> tuple[object, ...]:
+        """Return the objects with code of the plugin's author; the first one reads the parameters."""
+        return (self,)
+
+    def importing(self) -> AbstractContextManager[None]:
+        """Return a context in which the modules of the plugin's author can be imported."""
+        return nullcontext()
 
     @classmethod
     def has_hook(cls, hook: Hook) -> bool:
         """Check whether the class overrides an optional hook."""
         return getattr(cls, hook) is not getattr(Plugin, hook)
 
-    def get_state(self) -> dict[str, Any]:
+    def get_state(self) -> dict[str, object]:
         """Return a copy of every attribute that the plugin has set; handles and publishers are not copied.
 
         An attribute that cannot be copied is left out and reported once (SK-PLUGIN-006). Override this method and
@@ -341,7 +364,7 @@ class Plugin(abc.ABC):
         """
         return copy_attributes(self, _OWNED, self._report_uncopied)
 
-    def set_state(self, state: Mapping[str, Any]) -> None:
+    def set_state(self, state: Mapping[str, object]) -> None:
         """Restore a state from `get_state`; later attributes are deleted, except those that cannot be copied."""
         restore_attributes(self, _OWNED, state)
 
@@ -350,7 +373,7 @@ class Plugin(abc.ABC):
         message = f"{message}; snapshots and reset do not change it: {error}"
         self.sim.engine.reports.warning("SK-PLUGIN-006", message, self.where, "override get_state and set_state")
 
-    def _remember_loaded(self) -> dict[str, Any]:
+    def get_loaded_state(self) -> dict[str, object]:
         """Return the state after `load`, and report attributes that cannot be copied."""
         return self.get_state()
 
@@ -364,7 +387,7 @@ class Plugin(abc.ABC):
 
 _OWNED = frozenset(
     ("sim", "name", "scoped", "params", "where", "ros", "log", "_source", "_uncopied", "_values")  # noqa: RUF005
-    + ("_actuators", "_failed", "_order", "_once", "_read_options", "plugin_paths")
+    + ("_once", "_read_options", "plugin_paths")
 )
 
 

@@ -26,32 +26,32 @@ def find_joint(scene: SceneModel, name: str, params: Params) -> SceneJoint | Non
     """Return a joint of the model; None after an error. The name is plain, or scoped from the world or the model."""
     joints = scene.all_joints()
     table = {j.scoped: j for j in joints}
-    found = _find_by_suffix(scene.scoped, name, table)
-    if found is None and _find_by_suffix(
+    joint = _find_by_suffix(scene.scoped, name, table)
+    if joint is None and _find_by_suffix(
         scene.scoped, name, dict.fromkeys((link.scoped for link in scene.all_links()), True)
     ):
-        found = _find_by_suffix(scene.scoped, f"{name}_joint", table)  # the loader renames a joint with a link's name
-    if found is None:
+        joint = _find_by_suffix(scene.scoped, f"{name}_joint", table)  # the loader renames a joint with a link's name
+    if joint is None:
         _report_unknown("joint", name, scene, (j.name for j in joints), params)
-    return found
+    return joint
 
 
 def find_link(scene: SceneModel, name: str, params: Params) -> SceneLink | None:
     """Return a link of the model; None after an error. The name is plain, or scoped from the world or the model."""
     links = scene.all_links()
-    found = _find_by_suffix(scene.scoped, name, {link.scoped: link for link in links})
-    if found is None:
+    named_link = _find_by_suffix(scene.scoped, name, {link.scoped: link for link in links})
+    if named_link is None:
         _report_unknown("link", name, scene, (link.name for link in links), params)
-    return found
+    return named_link
 
 
 def find_sensor(scene: SceneModel, name: str, params: Params) -> SceneSensor | None:
     """Return a sensor of the model; None after an error. The name is plain, or scoped from the world or the model."""
     sensors = scene.all_sensors()
-    found = _find_by_suffix(scene.scoped, name, {sensor.scoped: sensor for sensor in sensors})
-    if found is None:
+    named_sensor = _find_by_suffix(scene.scoped, name, {sensor.scoped: sensor for sensor in sensors})
+    if named_sensor is None:
         _report_unknown("sensor", name, scene, (sensor.name for sensor in sensors), params)
-    return found
+    return named_sensor
 
 
 def find_named_link(scene: SceneModel, element: str, params: Params) -> str:
@@ -78,10 +78,10 @@ def find_named_sensor(scene: SceneModel, element: str, kinds: Sequence[str], par
     if named is None or not named.value:
         return ""
     sensors = {sensor.scoped: sensor.name for sensor in scene.all_sensors() if sensor.kind in kinds}
-    found = _find_by_suffix(scene.scoped, named.value, {scoped: scoped for scoped in sensors})
-    if found is None:
+    scoped_name = _find_by_suffix(scene.scoped, named.value, {scoped: scoped for scoped in sensors})
+    if scoped_name is None:
         _report_unknown(f"{kinds[0]} sensor", named.value, scene, sensors.values(), named)
-    return found or ""
+    return scoped_name or ""
 
 
 def read_required_name(params: Params, element: str) -> str:
@@ -99,8 +99,8 @@ def read_topic(params: Params, element: str, default: str) -> str:
     topic = valid_topic(written or default)
     named = params.child(element)
     if topic == "/" and named is not None:
-        found = f"found <{element}>{written}</{element}>"
-        named.error("SK-PARAM-002", f"{found}; expected a name with a letter or a digit")
+        problem = f"found <{element}>{written}</{element}>"
+        named.error("SK-PARAM-002", f"{problem}; expected a name with a letter or a digit")
     return topic
 
 
@@ -174,12 +174,11 @@ def find_plugin_file(plugin: Plugin, uri: str, builder: SpecBuilder, places: Seq
 class SensorFrameOptions(Options):
     """Name of a sensor's frame, in the spelling of ROS 2 or of ROS 1."""
 
-    frame_name: str = text()
-    frame_name_ros_1: str = text(element="frameName")
+    frame_name: str = text(ros_1="frameName")
 
     def frame_of(self, sensor: Sensor) -> str:
         """Return the frame that the file names, or else the name of the sensor's link."""
-        return self.frame_name or self.frame_name_ros_1 or link_name(sensor)
+        return self.frame_name or link_name(sensor)
 
 
 def link_name(sensor: Sensor) -> str:

@@ -16,6 +16,7 @@ from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import publishes
 from simkit.plugins.find_entities import find_joint
 from simkit.plugins.options import Options, OptionsOf, number, text, texts
+from simkit.runtime.array_rules import CannotBatchError, PluginRule, PresentNumbers, TopicRule
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.pose import Vector
     from simkit.runtime import Joint, Model
+    from simkit.runtime.state_arrays import StateArrays
     from simkit.scene import SceneJoint, SceneModel
 
 JOINT_STATE = "sensor_msgs/msg/JointState"
@@ -79,19 +81,49 @@ def _joint_states_packer(names: tuple[str, ...]) -> Callable[..., bytes]:
 
 
 class JointStates(ModelPlugin):
-    """Base class of plugins that publish joint states after a step; a subclass chooses the joints and the topic."""
+    """Base class of plugins that publish joint states after a step; a subclass chooses the joints and the topic.
 
-    _joints: list[str]
+    Attributes:
+        joint_names: scoped names of the joints.
+    """
+
+    joint_names: list[str]
     _handles: list[Joint]
     _topic: str
 
     def load(self, parent: Model, params: Params) -> None:
-        self._handles = [self.sim.joint(name) for name in self._joints]
+        self._handles = [self.sim.joint(name) for name in self.joint_names]
         self._states = self.advertise(self._topic, JOINT_STATE)
+
+    def array_rule(self) -> JointStatesRule:
+        return JointStatesRule(self)
 
     def after_step(self) -> None:
         if self._states.wanted:
             self._states.publish_later(partial(joint_state_message, self.sim.time_ns, joint_readings(self._handles)))
+
+
+class JointStatesRule(PluginRule):
+    """Joint states in n simulations: positions, then velocities."""
+
+    def __init__(self, plugin: JointStates) -> None:
+        self._plugin, self._topic = plugin, plugin._states.topic
+
+    def bind(self, states: StateArrays) -> None:
+        self._states = states
+
+    def reading(self, topic: str) -> TopicRule | None:
+        if topic != self._topic:
+            return None
+        plugin, states = self._plugin, self._states
+        joints = [plugin.sim.engine.names.joint(name) for name in plugin.joint_names]
+        if any(len(joint.dofs) != 1 or len(joint.qpos) != 1 for joint in joints):
+            raise CannotBatchError("joint states of joints with several degrees of freedom")
+        places, dofs = (np.array([getattr(j, name)[0] for j in joints], np.intp) for name in ("qpos", "dofs"))
+        grid = plugin.sim.engine.clock.grid(plugin.after_step_rate or 0.0)
+        return PresentNumbers(
+            grid, lambda ids, _: np.hstack((states.qpos[np.ix_(ids, places)], states.qvel[np.ix_(ids, dofs)]))
+        )
 
 
 class GazeboRosJointStatePublisherOptions(Options):
@@ -99,8 +131,7 @@ class GazeboRosJointStatePublisherOptions(Options):
 
     joint_name: str = text(required=True)
     joint_name_ros_1: tuple[str, ...] = texts(element="jointName")
-    update_rate_ros_1: float = number(100.0, "Hz", element="updateRate", minimum=0.0)
-    update_rate: float = number(100.0, "Hz", minimum=0.0)
+    update_rate: float = number(100.0, "Hz", minimum=0.0, ros_1="updateRate")
 
 
 class GazeboRosJointStatePublisher(JointStates):
@@ -112,17 +143,17 @@ class GazeboRosJointStatePublisher(JointStates):
     options = OptionsOf(GazeboRosJointStatePublisherOptions)
     filenames = ("libgazebo_ros_joint_state_publisher.so",)
     only_publishes = True
+    array_rule = JointStates.array_rule
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         names = [c.value for c in params.all("joint_name")]
         names += [name for value in self.options.joint_name_ros_1 for name in value.replace(",", " ").split()]
         if not names:
             _ = self.options.joint_name
-        found = [find_joint(scene, name, params) for name in names]
-        self._joints = [joint.scoped for joint in found if joint is not None]
+        named_joints = [find_joint(scene, name, params) for name in names]
+        self.joint_names = [joint.scoped for joint in named_joints if joint is not None]
         self._topic = "joint_states"
-        is_ros_1 = params.has("updateRate")
-        self.after_step_rate = self.options.update_rate_ros_1 if is_ros_1 else self.options.update_rate
+        self.after_step_rate = self.options.update_rate
 
 
 class JointStatePublisherOptions(Options):
@@ -144,14 +175,17 @@ class JointStatePublisher(JointStates):
     filenames = ("gz-sim-joint-state-publisher-system",)
     names = ("gz::sim::systems::JointStatePublisher",)
     only_publishes = True
+    array_rule = JointStates.array_rule
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         named = params.all("joint_name")
-        found: list[SceneJoint | None] = [find_joint(scene, element.value, params) for element in named]
-        joints = [joint.scoped for joint in (found if named else scene.joints) if joint is not None]
-        self._joints = list(dict.fromkeys(joints))
-        for scoped in self._joints if len(self._joints) < len(joints) else ():
-            again = [element for element, joint in zip(named, found, strict=True) if joint and joint.scoped == scoped]
+        named_joints: list[SceneJoint | None] = [find_joint(scene, element.value, params) for element in named]
+        joints = [joint.scoped for joint in (named_joints if named else scene.joints) if joint is not None]
+        self.joint_names = list(dict.fromkeys(joints))
+        for scoped in self.joint_names if len(self.joint_names) < len(joints) else ():
+            again = [
+                element for element, joint in zip(named, named_joints, strict=True) if joint and joint.scoped == scoped
+            ]
             for element in again[1:]:
                 message = f"joint {element.value!r} is listed twice; its state is published once"
                 params.diagnostics.warning("SK-PLUGIN-063", message, element.where)

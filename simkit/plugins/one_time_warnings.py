@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, Protocol
+from typing import TYPE_CHECKING, Final, Protocol
 
 from simkit.plugins.not_deep_copied import SharedByCopies
 
 if TYPE_CHECKING:
     from simkit.diagnostics import Where
+    from simkit.msgs import Message
     from simkit.runtime import Simulation
 
 _LEFT_OUT: Final = "SK-PLUGIN-041"
@@ -59,7 +60,7 @@ class OneTimeWarnings(SharedByCopies):
         text = f"{command} with a NaN or infinite number is ignored"
         self.left_out("finite", text, f"numbers above {LARGEST_COMMAND:g} count as infinite")
 
-    def has_type(self, message: Any, expected: str, parameter: str, code: str = _LEFT_OUT) -> bool:
+    def has_type(self, message: Message, expected: str, parameter: str, code: str = _LEFT_OUT) -> bool:
         """Check the type of a message, and warn that a message of another type is ignored.
 
         Args:
@@ -68,8 +69,8 @@ class OneTimeWarnings(SharedByCopies):
             parameter: parameter with the name of the topic.
             code: code of the warning.
         """
-        found: str = message.__msgtype__
-        if found != expected:
-            text = f"messages of the type {found} on <{parameter}> are ignored; expected {expected}"
+        type_name: str = message.__msgtype__
+        if type_name != expected:
+            text = f"messages of the type {type_name} on <{parameter}> are ignored; expected {expected}"
             self.warn(code, f"type of {parameter}", text, f"check <{parameter}>")
-        return found == expected
+        return type_name == expected

@@ -18,10 +18,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Generic, Literal, Protocol, Self, TypeVar, overload
+from typing import Any, ClassVar, Generic, Literal, Protocol, Self, TypeVar, overload
 
 from simkit.params import Params
 from simkit.plugins.not_deep_copied import SharedByCopies
+from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import IDENTITY, Pose
 
 OptionKind = Literal["number", "integer", "boolean", "text", "vector", "pose", "choice", "block", ""]
@@ -37,8 +38,11 @@ class Options(SharedByCopies):
         params: block of the file that contains the options.
 
     Attributes:
+        ros_1_marks: elements that only a file for ROS 1 has. Without marks, each option decides by its own element.
         is_given: whether the file has the block.
     """
+
+    ros_1_marks: ClassVar[tuple[str, ...]] = ()
 
     def __init__(self, params: Params) -> None:
         self.params = params
@@ -60,11 +64,22 @@ class Options(SharedByCopies):
                     getattr(self, name)
         return self
 
+    @property
+    def is_ros_1(self) -> bool:
+        """True if the file has the spelling of ROS 1."""
+        return is_ros_1(self.params, self.ros_1_marks)
+
+    def element_of(self, field: str) -> str:
+        """Return the name of the element that a field reads, in the spelling of the file."""
+        return self.fields()[field].element_in(self)
+
     @classmethod
     def element_names(cls) -> Iterator[str]:
         """Yield the names of all elements that the options read, including elements within blocks."""
         for option in cls.fields().values():
             yield option.element
+            if option.ros_1:
+                yield option.ros_1
             if option.options is not None:
                 yield from option.options.element_names()
 
@@ -76,6 +91,7 @@ class Option:
     Attributes:
         kind: type of the value; empty if the element has no effect.
         element: name of the element in the file, or `@name` for an attribute; by default the name of the field.
+        ros_1: name of the element in a file for ROS 1; empty if it is the same.
         default: value if the file does not have the element; for a computed default, a text for `simkit plugin info`.
         unit: SI unit; empty for a value without unit.
         minimum, maximum: bounds of a number.
@@ -105,6 +121,7 @@ class Option:
     options: type[Options] | None = None
     is_live: bool = False
     description: str = ""
+    ros_1: str = ""
 
     def __set_name__(self, owner: type[Options], name: str) -> None:
         self.name, self.element = name, self.element or name
@@ -114,11 +131,20 @@ class Option:
             return self
         default = getattr(options, self.instead) if self.instead else self.default
         # the instance's attribute now replaces the class's descriptor, so the element is read only once
-        found = vars(options)[self.name] = self._read(options.params, default)
-        return found
+        value = vars(options)[self.name] = self._read(options.params, self.element_in(options), default)
+        return value
 
-    def _read(self, params: Params, default: Any) -> Any:
-        name, required = self.element, self.required
+    def element_in(self, options: Options) -> str:
+        """Return the name of the element in the spelling of a file."""
+        if not self.ros_1:
+            return self.element
+        if options.ros_1_marks:
+            return self.ros_1 if options.is_ros_1 else self.element
+        params = options.params
+        return self.ros_1 if params.has(self.ros_1) and not params.has(self.element) else self.element
+
+    def _read(self, params: Params, name: str, default: Any) -> Any:
+        required = self.required
         if self.options is not None:
             if self.repeated:
                 return tuple(self.options(block) for block in params.all(name))
@@ -131,10 +157,10 @@ class Option:
             if self.kind == "number":
                 items = params.each(name)
                 return tuple(item.number(name, minimum=self.minimum, maximum=self.maximum) for item in items)
-            found = params.all(name)
-            if required and not found:
+            elements = params.all(name)
+            if required and not elements:
                 params.text(name, required=True)
-            return tuple(element.value for element in found)
+            return tuple(element.value for element in elements)
         match self.kind:
             case "number":
                 return params.number(name, default, required, self.minimum, self.maximum, self.finite)
@@ -180,10 +206,10 @@ class OptionsOf(Generic[OptionsKind_co]):
         if plugin is None:
             return self
         made = vars(plugin).setdefault("_read_options", {})
-        found = made.get(self.kind)
-        if found is None or found.params is not plugin.params:
-            found = made[self.kind] = self.kind(plugin.params)
-        known: OptionsKind_co = found
+        options = made.get(self.kind)
+        if options is None or options.params is not plugin.params:
+            options = made[self.kind] = self.kind(plugin.params)
+        known: OptionsKind_co = options
         return known
 
 
@@ -213,6 +239,7 @@ def number(
     instead: str = "",
     is_live: bool = False,
     description: str = "",
+    ros_1: str = "",
 ) -> float:
     """Declare a number."""
     option = Option(
@@ -227,6 +254,7 @@ def number(
         instead=instead,
         is_live=is_live,
         description=description,
+        ros_1=ros_1,
     )
     return _declare(float, option)
 
@@ -256,9 +284,11 @@ def boolean(default: bool = False, *, element: str = "", instead: str = "") -> b
     return _declare(bool, Option("boolean", element, default, instead=instead))
 
 
-def text(default: str | None = "", *, element: str = "", required: bool = False, instead: str = "") -> str:
+def text(
+    default: str | None = "", *, element: str = "", required: bool = False, instead: str = "", ros_1: str = ""
+) -> str:
     """Declare a text."""
-    return _declare(str, Option("text", element, default, required=required, instead=instead))
+    return _declare(str, Option("text", element, default, required=required, instead=instead, ros_1=ros_1))
 
 
 def texts(*, element: str = "", required: bool = False) -> tuple[str, ...]:
@@ -287,10 +317,11 @@ def vector3(
     element: str = "",
     required: bool = False,
     instead: str = "",
+    ros_1: str = "",
 ) -> tuple[float, float, float]:
     """Declare an element with three numbers."""
     x, y, z = map(float, default)
-    option = Option("vector", element, (x, y, z), unit, size=3, required=required, instead=instead)
+    option = Option("vector", element, (x, y, z), unit, size=3, required=required, instead=instead, ros_1=ros_1)
     return _declare(tuple[float, float, float], option)
 
 
@@ -309,6 +340,6 @@ def blocks(options: type[OptionsKind], *, element: str = "") -> tuple[OptionsKin
     return _declare(tuple[OptionsKind, ...], Option("block", element, options=options, repeated=True))
 
 
-def without_effect(*, element: str = "") -> bool:
+def without_effect(*, element: str = "", ros_1: str = "") -> bool:
     """Declare an element without an effect; the value of the field is true if the file has the element."""
-    return _declare(bool, Option("", element))
+    return _declare(bool, Option("", element, ros_1=ros_1))

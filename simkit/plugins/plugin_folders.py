@@ -65,9 +65,9 @@ def folder_help(module: str, where: Where, searched: Sequence[Path]) -> str:
         nearby += [Path(folder).absolute() for folder in sys.path]
     if module.endswith(".py") and Path(module).is_absolute():
         nearby, module = [Path(module).parent], Path(module).name
-    found = find_module(module, nearby)
-    if found is not None:
-        shown = _short(found[1])
+    module_file = find_module(module, nearby)
+    if module_file is not None:
+        shown = _short(module_file[1])
         return f"allow its folder: add `--plugin-path {shown}`, or plugin_paths=[{shown!r}] in Python"
     suffix = ".py" if module.endswith(".py") else ""
     folders = dict.fromkeys((*searched, *beside))

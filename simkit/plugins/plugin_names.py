@@ -10,9 +10,6 @@ from simkit.scene import ScenePlugin
 ENTRY_POINT_GROUP: Final = "simkit.plugins"
 """Group of entry points with which installed Python packages provide plugins."""
 
-GZ_HOOKS: Final = ("configure", "pre_update", "update", "post_update", "reset", "shutdown")
-"""Hooks of a system of gz-sim in Python; an object without any of them is not a system."""
-
 
 def normalise(name: str) -> str:
     """Return the normalised spelling of a plugin's name: `gz-sim-imu-system` for `libignition-gazebo6-imu-system.so`.

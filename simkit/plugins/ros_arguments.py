@@ -101,8 +101,8 @@ class RosArguments(SharedByCopies):
             elif kind in (_REMAP, None) and rule is not None:
                 self._remappings.append(_Remapping(rule["node"] or "", rule["name"].strip(), rule["value"].strip()))
             elif kind != _NO_EFFECT or not value:
-                found = word if kind is None or not value else f"{word} {value}"
-                message = f"found <{element.name}>{found[:200]}</{element.name}>; expected {expected}"
+                text = word if kind is None or not value else f"{word} {value}"
+                message = f"found <{element.name}>{text[:200]}</{element.name}>; expected {expected}"
                 element.error("SK-PARAM-002", message, did_you_mean(word, (*_FLAGS, *_FLAGS_WITH_VALUE)))
 
     def remappings_of(self, node: str, *, only_own: bool = False) -> list[tuple[str, str]]:

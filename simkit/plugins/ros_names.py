@@ -93,14 +93,19 @@ class RosNames(SharedByCopies):
 
         return self.arguments.values_of(f"{self.namespace}/{self.node}", name, find, self._params.diagnostics)
 
-    def topic_of_node(self, name: str, node: str) -> str:
+    def topic_of_node(self, name: str, node: str, own_rules: Iterable[tuple[str, str]] = ()) -> str:
         """Return the name of a topic in another node of the plugin, such as a controller: `~/x` becomes `node/x`.
 
         Rules with a private source (`~/x:=y`) and rules for this node (`node:x:=y`) apply to the node. All other rules
         apply when the result is given to `topic`.
+
+        Args:
+            name: name of the topic.
+            node: plain name of the node.
+            own_rules: source and target of further rules for the node, which come first.
         """
         full = self._expand(name, node)
-        for source, target in self.arguments.remappings_of(node, only_own=True):
+        for source, target in (*own_rules, *self.arguments.remappings_of(node, only_own=True)):
             if self._expand(source, node) == full:
                 return self._expand(target, node)
         return f"{node}/{name[2:]}" if name.startswith("~/") else name

@@ -26,6 +26,7 @@ class ParameterBlock(Params):
     """
 
     __slots__ = ("forms", "is_block")
+    empty_is_default = False
 
     def __init__(
         self,
@@ -57,16 +58,16 @@ class ParameterBlock(Params):
         return Params(name, where=self.where, diagnostics=self.diagnostics)
 
     def all(self, name: str) -> list[Params]:
-        found = super().all(name)
+        items = super().all(name)
         if not self._has_form(name, "a list", ("value", "nothing", "list")):
-            for item in found:
+            for item in items:
                 item.mark_all_read()
             return []
-        for item in found:
+        for item in items:
             if isinstance(item, ParameterBlock) and item.is_block:
                 self._bad(f"a block in the list {name!r}", "a value", item.where)
                 item.mark_all_read()
-        return [item for item in found if not (isinstance(item, ParameterBlock) and item.is_block)]
+        return [item for item in items if not (isinstance(item, ParameterBlock) and item.is_block)]
 
     def number(
         self,
@@ -87,8 +88,8 @@ class ParameterBlock(Params):
         if self.forms.get(name, ("", None))[0] != "list":
             return super().vector(name, size, default, required)
         joined = " ".join(item.value for item in self.all(name))
-        whole = Params(name, joined, where=self.forms[name][1], diagnostics=self.diagnostics)
-        alone = Params(self.name, children=[whole], where=self.where, diagnostics=self.diagnostics)
+        joined_item = Params(name, joined, where=self.forms[name][1], diagnostics=self.diagnostics)
+        alone = Params(self.name, children=[joined_item], where=self.where, diagnostics=self.diagnostics)
         return alone.vector(name, size, default, required)
 
     def _numeral(self, found: Params, text: str) -> str:
@@ -129,10 +130,10 @@ def read_numbers(params: Params, name: str, default: Sequence[float], minimum: f
     items = params.each(name)
     if not any(child.value for item in items for child in item.children):
         return list(default)
-    found = [item.number(name, minimum=minimum) for item in items]
-    if len(found) == len(default):
-        return found
-    items[0].error("SK-PARAM-002", f"found {len(found)} numbers in {name!r}; expected {len(default)}")
+    numbers = [item.number(name, minimum=minimum) for item in items]
+    if len(numbers) == len(default):
+        return numbers
+    items[0].error("SK-PARAM-002", f"found {len(numbers)} numbers in {name!r}; expected {len(default)}")
     return list(default)
 
 
@@ -146,11 +147,11 @@ def read_names(params: Params, name: str, *, required: bool = False, code: str =
         code: code of the error about a duplicate.
     """
     before = params.diagnostics.error_count
-    found = [item for item in params.all(name) if item.value or item.children]
-    for k, item in enumerate(found):
-        if item.value in [other.value for other in found[:k]]:
+    named = [item for item in params.all(name) if item.value or item.children]
+    for k, item in enumerate(named):
+        if item.value in [other.value for other in named[:k]]:
             item.error(code, f"{item.value!r} occurs twice in {name!r}; expected each name once")
-    if required and not found and params.diagnostics.error_count == before:
+    if required and not named and params.diagnostics.error_count == before:
         near = did_you_mean(name, [item.name for item in params.children if item.name != name])
         params.error("SK-PARAM-001", f"<{params.name}> needs <{name}>: a list of names", near)
-    return list(dict.fromkeys(item.value for item in found))
+    return list(dict.fromkeys(item.value for item in named))

@@ -118,10 +118,10 @@ class ParameterFiles:
     def of_node(self, name: str) -> Entry | None:
         """Return the parameters of a node by its full name, such as `/robot/arm_controller`; None if there are none."""
         if name not in self._nodes:
-            found: Entry | None = None
+            parameters: Entry | None = None
             for entry in self._of_node(name):
-                found = entry if found is None else found.merged(entry)
-            self._nodes[name] = found
+                parameters = entry if parameters is None else parameters.merged(entry)
+            self._nodes[name] = parameters
         return self._nodes[name]
 
     def _of_node(self, name: str) -> Iterator[Entry]:
@@ -219,8 +219,8 @@ def _nodes(entry: Entry, path: str, diagnostics: Diagnostics) -> Iterator[tuple[
             if below.below is not None:
                 yield path or "/**", _expand_dotted_keys(below)
             elif below.text or below.items:
-                found = below.text or "a list"
-                message = f"found {found!r} under {PARAMETERS!r} of {path or '/**'!r}; expected names with values"
+                content = below.text or "a list"
+                message = f"found {content!r} under {PARAMETERS!r} of {path or '/**'!r}; expected names with values"
                 diagnostics.error("SK-CONTROL-002", message, below.where)
         else:
             yield from _nodes(below, f"{path}/{key.strip('/')}", diagnostics)
@@ -230,13 +230,13 @@ def _expand_dotted_keys(entry: Entry) -> Entry:
     """Return a block without dotted keys: `a.b: 1` becomes `a: {b: 1}`. `_EntryReader` limits the depth."""
     if entry.below is None:
         return entry
-    whole = Entry(entry.where, below={})
+    expanded = Entry(entry.where, below={})
     for key, below in entry.below.items():
         inner = _expand_dotted_keys(below)
         for part in reversed(key.split(".")):
             inner = Entry(below.where, below={part: inner})
-        whole = whole.merged(inner)
-    return whole
+        expanded = expanded.merged(inner)
+    return expanded
 
 
 # ------------------------------------------------------------------ YAML
@@ -315,10 +315,14 @@ class _EntryReader:
         merged: dict[str, Entry] = {}
         for key, value in node.value:
             name = str(getattr(key, "value", ""))
+            if key.value == "" and isinstance(value, yaml.MappingNode):  # rosparam ignores an empty part of a name
+                for inner, entry in self._block(value, depth + 1).items():
+                    below[inner] = self._with_repeated(below[inner], entry, inner) if inner in below else entry
+                continue
             if not name or not isinstance(getattr(key, "value", None), str):
                 where = Where(self._file, key.start_mark.line + self._first_line)
-                found = "an empty name" if not name else "a list or block as a name"
-                self._diagnostics.error("SK-CONTROL-002", f"found {found}; expected a text", where)
+                problem = "an empty name" if not name else "a list or block as a name"
+                self._diagnostics.error("SK-CONTROL-002", f"found {problem}; expected a text", where)
                 continue
             entry = self.entry(value, depth + 1 + name.count("."))  # a dotted key stands for several levels
             if key.tag == _MERGE:
@@ -344,13 +348,13 @@ class _EntryReader:
 
         If several blocks have the same key, the first block is used.
         """
-        found: dict[str, Entry] = {}
+        merged: dict[str, Entry] = {}
         for item in [entry] if entry.items is None else entry.items:
             if item.below is None:
                 where = Where(self._file, key.start_mark.line + self._first_line)
                 self._diagnostics.error("SK-CONTROL-002", "found a value after '<<'; expected a block", where)
-            found = {**(item.below or {}), **found}
-        return found
+            merged = {**(item.below or {}), **merged}
+        return merged
 
 
 def _value_text(node: yaml.Node) -> str:

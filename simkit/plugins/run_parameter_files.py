@@ -58,7 +58,7 @@ def read_run_parameter_files(
     if isinstance(named, (str, os.PathLike)):
         named = [named]
     read: dict[Path, ParameterFile | None] = {}
-    found = []
+    parameter_files = []
     for argument in named:
         model, text = model_and_file(argument)
         path = _find_file(text, find)
@@ -72,16 +72,16 @@ def read_run_parameter_files(
             read[path] = read_parameter_file(path, diagnostics)
         file = read[path]
         if file is not None:
-            found.append(RunParameterFile(model, file))
-    return tuple(found)
+            parameter_files.append(RunParameterFile(model, file))
+    return tuple(parameter_files)
 
 
 def _find_file(text: str, find: Callable[[str], Path | None]) -> Path | None:
     if text and is_there(Path(text)):
         return Path(text)
     try:
-        found = find(text) if text else None
-        return found if found is not None and found.is_file() else None
+        file = find(text) if text else None
+        return file if file is not None and file.is_file() else None
     except (OSError, ValueError):  # the text is not a valid file name
         return None
 
@@ -96,12 +96,15 @@ def _closest_file_name(text: str) -> str:
 
 
 def report_unused_control(
-    given: Iterable[RunParameterFile], plugins: Sequence[AttachedPlugin], world: SceneWorld, diagnostics: Diagnostics
+    parameter_files: Iterable[RunParameterFile],
+    plugins: Sequence[AttachedPlugin],
+    world: SceneWorld,
+    diagnostics: Diagnostics,
 ) -> None:
     """Warn about parameter files of a run that no plugin reads, and about `<ros2_control>` without a control plugin.
 
     Args:
-        given: parameter files of the run.
+        parameter_files: parameter files of the run.
         plugins: all plugins of the world.
         world: world with its models.
         diagnostics: collector of the warnings.
@@ -110,7 +113,7 @@ def report_unused_control(
     models = [model for top in world.models for model in top.all_models()]
     with_hosts = {plugin.scoped for plugin in plugins if plugin.reads_parameter_files}
     hosts = [model for model in models if model.scoped in with_hosts]
-    for file in given:
+    for file in parameter_files:
         if any(file.is_for(model) for model in hosts):
             continue
         name, where = file.file.path.name, Where(str(file.file.path), 1)

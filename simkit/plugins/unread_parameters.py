@@ -28,8 +28,8 @@ def names_read(cls: type[object]) -> frozenset[str]:
 
     The text of the source is searched, not executed; to parse it takes 5 ms for a plugin with many parameters.
     """
-    own = (c for c in cls.__mro__ if c.__module__ != "simkit.plugins.base")
-    modules = dict.fromkeys(c.__module__ for c in own if c is not object)
+    plugin_classes = (c for c in cls.__mro__ if c.__module__ != "simkit.plugins.base")
+    modules = dict.fromkeys(c.__module__ for c in plugin_classes if c is not object)
     declared = (name for options in option_types_of(cls) for name in options.element_names())
     return frozenset(declared).union(*map(_names_in_module, modules))
 

@@ -11,12 +11,12 @@ from __future__ import annotations
 import heapq
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from simkit.diagnostics import did_you_mean
-from simkit.errors import InputError, MessageError
+from simkit.errors import InputError, MessageError, raise_together
 from simkit.input_file import read_failure, read_input_text
 from simkit.run_spec import JsonMapping, JsonObject
 from simkit.yaml_reader import NotYaml, compose_nodes, finite_number, node_value
@@ -62,8 +62,8 @@ class Command:
 
     def plain(self) -> JsonObject:
         """Return the command as a mapping in the format of a scenario file."""
-        found = {"at": self.at, "topic": self.topic, "message": self.message, "where": self.where}
-        return found if self.until is None else {**found, "until": self.until, "rate": self.rate}
+        fields = {"at": self.at, "topic": self.topic, "message": self.message, "where": self.where}
+        return fields if self.until is None else {**fields, "until": self.until, "rate": self.rate}
 
 
 class Commands:
@@ -98,7 +98,9 @@ class Commands:
             try:
                 self._sim.publish(command.topic, command.message)
             except MessageError as error:
-                raise InputError(f"{command.where}: SK-CLI-012 {error}", "SK-CLI-012") from None
+                raise InputError("SK-CLI-012", f"{command.where}: SK-CLI-012 {error}", shows_code=False) from None
+            except InputError as error:  # nodes had time to create the topic
+                raise _script_error(command.where, error.message) from None
             self._push(number, index + 1)
 
     def _push(self, number: int, index: int) -> None:
@@ -107,6 +109,53 @@ class Commands:
             # a rounding error must not add a step to a whole number of steps
             tick = math.ceil(time / self._sim.timestep - 1e-6)
             heapq.heappush(self._queue, (tick, number, index))
+
+
+class LateVelocity:
+    """Constant velocity of a run in which a node may create the topic during the run.
+
+    Args:
+        sim: simulation that receives the commands.
+        text: value of `--cmd-vel`.
+
+    Attributes:
+        problem: reason why no command has been sent; empty after the first command.
+
+    Raises:
+        InputError: SK-CLI-010 the numbers are invalid.
+    """
+
+    def __init__(self, sim: Simulation, text: str) -> None:
+        _velocity(text)
+        self._sim, self._text = sim, text
+        self._commands: Commands | None = None
+        self._next_look = sim.tick
+        self.problem = ""
+
+    @property
+    def next_tick(self) -> int | None:
+        """Tick of the next command, or of the next search for its topic."""
+        return self._next_look if self._commands is None else self._commands.next_tick
+
+    def send_due(self) -> None:
+        """Send the commands that are due at the present tick, if the world has a topic for them."""
+        if self._commands is None and self._sim.tick >= self._next_look:
+            try:
+                command = steady_velocity(self._text, self._topics())
+            except InputError as error:
+                self.problem = error.message
+                self._next_look = self._sim.tick + max(1, round(1.0 / _RATE / self._sim.timestep))
+                return
+            self.problem = ""
+            self._commands = Commands(self._sim, [replace(command, at=self._sim.time)])
+        if self._commands is not None:
+            self._commands.send_due()
+
+    def _topics(self) -> dict[str, str]:
+        """Return the types by topic, with topics that only a node subscribes, such as an input of `twist_mux`."""
+        bus = self._sim.communication.bus
+        subscribed = {each.topic: each.type_name for each in bus.subscriptions() if each.type_name}
+        return dict(sorted({**subscribed, **bus.topics()}.items()))
 
 
 def steady_velocity(text: str, topics: Mapping[str, str]) -> Command:
@@ -121,26 +170,34 @@ def steady_velocity(text: str, topics: Mapping[str, str]) -> Command:
     Raises:
         InputError: SK-CLI-010 the numbers are invalid, or the topic is not unique.
     """
-    parts = text.replace(",", " ").split()
-    try:
-        linear, angular = (float(p) for p in parts)
-        if not (math.isfinite(linear) and math.isfinite(angular)):
-            raise ValueError
-    except ValueError:
-        raise InputError(
-            f"SK-CLI-010 --cmd-vel: found {text!r}; expected LINEAR,ANGULAR such as 0.2,0.3", "SK-CLI-010"
-        ) from None
+    linear, angular = _velocity(text)
     twists = [topic for topic, type_name in topics.items() if type_name in _TWISTS]
     # a controller of ros2_control takes commands without a stamp on a second topic and publishes its limited commands
     companions = {f"{topic}{suffix}" for topic in twists for suffix in ("_unstamped", "_out")}
     twist_topics = [topic for topic in twists if topic not in companions]
     topic = twist_topics[0] if len(twist_topics) == 1 else _outermost_cmd_vel(twist_topics)
     if topic is None:
-        found = f"several ({', '.join(twist_topics)}); choose one in a --script" if twist_topics else "none"
-        raise InputError(f"SK-CLI-010 --cmd-vel needs exactly one Twist topic; found {found}", "SK-CLI-010")
+        topics_text = f"several ({', '.join(twist_topics)}); choose one in a --script" if twist_topics else "none"
+        raise InputError("SK-CLI-010", f"--cmd-vel needs exactly one Twist topic; found {topics_text}")
     twist = {"linear": {"x": linear}, "angular": {"z": angular}}
     message = twist if topics[topic] == _TWISTS[0] else {"twist": twist}
     return Command(0.0, topic, message, until=_LATEST, where="--cmd-vel")
+
+
+def _velocity(text: str) -> tuple[float, float]:
+    """Return forward speed [m/s] and yaw rate [rad/s] of a text.
+
+    Raises:
+        InputError: SK-CLI-010 the numbers are invalid.
+    """
+    parts = text.replace(",", " ").split()
+    try:
+        linear, angular = (float(p) for p in parts)
+        if not (math.isfinite(linear) and math.isfinite(angular)):
+            raise ValueError
+    except ValueError:
+        raise InputError("SK-CLI-010", f"--cmd-vel: found {text!r}; expected LINEAR,ANGULAR such as 0.2,0.3") from None
+    return linear, angular
 
 
 def _outermost_cmd_vel(topics: list[str]) -> str | None:
@@ -152,8 +209,8 @@ def _outermost_cmd_vel(topics: list[str]) -> str | None:
     return None
 
 
-def read_script(path: Path, topics: Mapping[str, str]) -> list[Command]:
-    """Read the commands of a YAML script.
+def read_script(path: Path, topics: Mapping[str, str] | None) -> list[Command]:
+    """Read the commands of a YAML script; see `commands_of`.
 
     Raises:
         InputError: SK-CLI-011 the script is invalid; with file and line.
@@ -183,14 +240,14 @@ def script_items(path: Path) -> list[JsonObject]:
         return []
     if root.id != "sequence":
         raise _script_error(f"{path}:{root.start_mark.line + 1}", "the script is not a list of {at, topic, message}")
-    found = []
+    items = []
     for node in root.value:
         where = f"{path}:{node.start_mark.line + 1}"
         try:
-            found.append((node_value(node), where))
+            items.append((node_value(node), where))
         except NotYaml as error:
             raise _script_error(where, f"is not YAML: {error!s:.200}") from None
-    return validate_items(found)
+    return validate_items(items)
 
 
 def validate_items(items: Iterable[tuple[object, str]]) -> list[JsonObject]:
@@ -216,8 +273,12 @@ def _validate_item(item_with_location: tuple[object, str]) -> JsonObject:
     return {**item, "where": where}
 
 
-def commands_of(items: Iterable[JsonMapping], topics: Mapping[str, str]) -> list[Command]:
+def commands_of(items: Iterable[JsonMapping], topics: Mapping[str, str] | None) -> list[Command]:
     """Convert the mappings of a script to commands; each mapping has its file and line under "where".
+
+    Args:
+        items: mappings.
+        topics: topics of the world; None for a run whose nodes may create further topics.
 
     Raises:
         InputError: SK-CLI-011 with one line for each invalid command.
@@ -232,15 +293,14 @@ def commands_of(items: Iterable[JsonMapping], topics: Mapping[str, str]) -> list
 
 def _collect(make: Callable[[_Item], _Result], items: Iterable[_Item]) -> list[_Result]:
     """Convert each item, and report the errors of all items together."""
-    found, errors = [], []
+    made, errors = [], []
     for item in items:
         try:
-            found.append(make(item))
+            made.append(make(item))
         except InputError as error:
             errors.append(error)
-    if errors:
-        raise InputError("\n".join(map(str, errors)), errors[0].code)
-    return found
+    raise_together(errors)
+    return made
 
 
 def _command(item: JsonMapping, where: str, topics: Mapping[str, str] | None) -> Command:
@@ -280,4 +340,4 @@ def _number(value: object, key: str, where: str, minimum: float, maximum: float)
 
 
 def _script_error(where: str, message: str) -> InputError:
-    return InputError(f"{where}: SK-CLI-011 {message}", "SK-CLI-011")
+    return InputError("SK-CLI-011", f"{where}: SK-CLI-011 {message}", shows_code=False)

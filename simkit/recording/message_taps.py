@@ -73,7 +73,7 @@ class TopicTaps:
             self._taps[topic] = bus.tap(topic, receiver, takes_later=True, settle=self._settle)
 
 
-def serialised(message: Message | LazyMessage) -> Any:
+def serialised(message: Message | LazyMessage) -> object:
     """Return the type and CDR of a message; NO_MESSAGE if the message cannot be made."""
     if isinstance(message, LazyMessage):
         return message.serialised()
@@ -95,7 +95,9 @@ class MessageQueue(Generic[_Source]):
             then waits until the image is rendered.
     """
 
-    def __init__(self, deliver: Deliver[_Source], freeze: Callable[[Message | LazyMessage], Any] | None = None) -> None:
+    def __init__(
+        self, deliver: Deliver[_Source], freeze: Callable[[Message | LazyMessage], object] | None = None
+    ) -> None:
         self._deliver, self._freeze, self._resolve = deliver, freeze, freeze or _made
         self._waiting: deque[Any] = deque()  # source, tick and message in turn
 
@@ -141,8 +143,8 @@ class MessageQueue(Generic[_Source]):
         waiting, resolve, take = self._waiting, self._resolve, self._waiting.popleft
         sources: list[_Source] = []
         ticks: list[int] = []
-        found: list[Any] = []
-        keep = found.append if self._freeze is None else found.extend
+        delivered: list[Any] = []
+        keep = delivered.append if self._freeze is None else delivered.extend
         try:
             while waiting:
                 message = waiting[2]
@@ -159,7 +161,7 @@ class MessageQueue(Generic[_Source]):
                 ticks.append(tick)
         finally:
             if sources:
-                self._deliver(sources, ticks, found)
+                self._deliver(sources, ticks, delivered)
 
     def __len__(self) -> int:
         return len(self._waiting) // 3

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -12,9 +14,10 @@ from numpy.typing import NDArray
 from simkit.errors import InputError
 from simkit.linear_algebra import matmul
 from simkit.pose import Pose
+from simkit.recording.pictures.camera import Camera
 from simkit.recording.pictures.frames import Look, Render, choose_camera, draw_frame
 from simkit.recording.pictures.overlay import Marks
-from simkit.recording.pictures.subject import find_subject, last_scans, scan_points
+from simkit.recording.pictures.subject import Subject, find_subject, last_scans, scan_points, scan_traces
 from simkit.recording.travel import Travel
 
 if TYPE_CHECKING:
@@ -25,6 +28,7 @@ __all__ = ["DrivenPath", "check_target", "marks_of", "save_picture", "scan_point
 
 Points = NDArray[np.float64]
 
+_MOST_NAMED: Final = 2  # models outside of the picture that its title names
 _GOALS: Final = "geometry_msgs/msg/PoseStamped"
 
 
@@ -56,8 +60,8 @@ class DrivenPath:
 
     def paths(self) -> dict[str, Points]:
         """Return the path of each model that moved [m], shape (n, 3), the longest first."""
-        found = {name: path for name, path in self._travel.paths().items() if len(path) > 1}
-        return dict(sorted(found.items(), key=lambda item: -len(item[1])))
+        paths = {name: path for name, path in self._travel.paths().items() if len(path) > 1}
+        return dict(sorted(paths.items(), key=lambda item: -len(item[1])))
 
     def _watch_goals(self, topic: str, type_name: str) -> None:
         if topic in self._watched or not is_goal(topic, type_name):
@@ -105,19 +109,30 @@ def save_picture(
 
     look = Look(quality=sim.world.quality if sim.world.quality == "high" else "gazebo") if look is None else look
     marks = marks_of(sim, driven)
-    subject = find_subject(
-        sim, [*marks.paths.values(), *marks.scans.values(), *(g[None] for g in marks.goals.values())]
-    )
+    goals = (("", goal[None]) for goal in marks.goals.values())
+    subject = find_subject(sim, [*marks.paths.items(), *scan_traces(sim, marks.scans), *goals])
     camera = choose_camera(sim, render, subject, look)
+    marks = replace(marks, title=" · ".join((marks.title, *_notes(subject, camera))))
     colours = draw_frame(sim, render, camera, look, marks, subject)
     try:
         is_saved = cv2.imwrite(str(path), colours[:, :, ::-1], [cv2.IMWRITE_PNG_COMPRESSION, 9])
     except cv2.error as error:
-        raise InputError(
-            f"SK-CLI-013 cannot write {path}: {str(error).strip().splitlines()[-1]}", "SK-CLI-013"
-        ) from None
+        raise InputError("SK-CLI-013", f"cannot write {path}: {str(error).strip().splitlines()[-1]}") from None
     if not is_saved:
-        raise InputError(f"SK-CLI-013 cannot write {path}", "SK-CLI-013")
+        raise InputError("SK-CLI-013", f"cannot write {path}")
+
+
+def _notes(subject: Subject, camera: Camera) -> list[str]:
+    """Return what the title says about models and shapes that the picture leaves out."""
+    names, notes = subject.left_out, []
+    if names:
+        listed = ", ".join(names[:_MOST_NAMED]) + (
+            f" and {len(names) - _MOST_NAMED} more" if names[_MOST_NAMED:] else ""
+        )
+        notes.append(f"outside of the picture: {listed}")
+    if math.isfinite(camera.ceiling):
+        notes.append(f"opened above z = {camera.ceiling:.3g} m")
+    return notes
 
 
 def check_target(path: Path) -> None:
@@ -127,11 +142,9 @@ def check_target(path: Path) -> None:
         InputError: SK-CLI-013 the suffix is not supported, or the folder does not exist.
     """
     if path.suffix.lower() not in (".png", ".jpg", ".jpeg"):
-        raise InputError(
-            f"SK-CLI-013 --picture {path}: found the ending {path.suffix!r}; expected .png or .jpg", "SK-CLI-013"
-        )
+        raise InputError("SK-CLI-013", f"--picture {path}: found the ending {path.suffix!r}; expected .png or .jpg")
     if not path.absolute().parent.is_dir():
-        raise InputError(f"SK-CLI-013 --picture {path}: folder {path.absolute().parent} does not exist", "SK-CLI-013")
+        raise InputError("SK-CLI-013", f"--picture {path}: folder {path.absolute().parent} does not exist")
 
 
 def _frame_pose(sim: Simulation, frame: str) -> Pose:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -34,8 +34,8 @@ class Travel:
         self._model: object = None
         self._names: list[str] = []
         self._models: dict[str, Model] = {}
-        self._bodies: npt.NDArray[Any] = np.zeros(0, int)
-        self._last: npt.NDArray[Any] = np.zeros((0, 3))
+        self._bodies: npt.NDArray[np.int_] = np.zeros(0, int)
+        self._last: npt.NDArray[np.float64] = np.zeros((0, 3))
         self._tick = -1
 
     def sample(self) -> None:
@@ -72,14 +72,14 @@ class Travel:
         """Find the body of each moving model: that of its first link with a body."""
         sim = self._sim
         links = sim.engine.names.links
-        found: dict[str, int] = {}
+        body_by_model: dict[str, int] = {}
         for link in links.values():
             if link.body > 0 and not sim.models[link.model].static:
-                found.setdefault(link.model, link.body)
+                body_by_model.setdefault(link.model, link.body)
         self._model = sim.mj_model
-        self._names, self._bodies = list(found), np.array(list(found.values()), dtype=int)
+        self._names, self._bodies = list(body_by_model), np.array(list(body_by_model.values()), dtype=int)
         self._last = sim.engine.physics.fresh().xpos[self._bodies].copy()
-        before, self._models = self._models, {name: sim.models[name] for name in found}
+        before, self._models = self._models, {name: sim.models[name] for name in body_by_model}
         self.tracks = {  # a model that was removed and spawned again begins a new path
             name: path for name, path in self.tracks.items() if self._models.get(name, self) is before.get(name)
         }

@@ -29,10 +29,10 @@ def find_fallen_models(sim: Simulation) -> Diagnostics:
     which a model left the ground follows from its velocity if it falls freely. A divergence and a model that
     `StrayBodies` has reported have other causes, so they get no warning here.
     """
-    found = Diagnostics()
+    diagnostics = Diagnostics()
     gravity, engine = float(sim.mj_model.opt.gravity[2]), sim.engine
     if not gravity < 0.0 or engine.physics.has_diverged:
-        return found
+        return diagnostics
     lowest, extent = _lowest_height(sim.mj_model), float(sim.mj_model.stat.extent)
     for name, model in sim.models.items():
         height = float(model.pose.position[2])
@@ -43,14 +43,14 @@ def find_fallen_models(sim: Simulation) -> Diagnostics:
         velocity, acceleration = float(link.linear_velocity[2]), float(link.linear_acceleration[2])
         is_free = abs(acceleration - gravity) <= _FREE_FALL * -gravity and velocity < 0.0
         since = f", freely since about t = {max(0.0, sim.time - velocity / gravity):.2f} s" if is_free else ""
-        found.warning(
+        diagnostics.warning(
             "SK-SPAWN-007",
             f"{name} fell out of the world{since}: it is at z = {height:.4g} m at t = {sim.time:.2f} s, and everything "
             f"else is above {lowest:.4g} m",
             model.scene.where,
             _GROUND_HINT if any(s.collisions for s in model.scene.all_links()) else _COLLISION_HINT,
         )
-    return found
+    return diagnostics
 
 
 def _lowest_height(model: mujoco.MjModel) -> float:

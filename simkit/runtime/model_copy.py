@@ -14,11 +14,13 @@ from simkit.scene.model_transform import transform_model
 def check_model_name(name: object) -> None:
     """Raise InputError for a name that no model in a file can have."""
     if not isinstance(name, str) or not name.strip():
-        raise InputError(f"found the name {name!r} for a model; expected a text that is not empty", "SK-NAME-005")
+        raise InputError(
+            "SK-NAME-005", f"found the name {name!r} for a model; expected a text that is not empty", shows_code=False
+        )
     is_reserved = name == "world" or (name.startswith("__") and name.endswith("__"))
     if is_reserved or "::" in name:
         reason = "is reserved" if is_reserved else "has '::', which separates names"
-        raise InputError(f"a model cannot have the name {name!r}: it {reason}", "SK-NAME-005")
+        raise InputError("SK-NAME-005", f"a model cannot have the name {name!r}: it {reason}", shows_code=False)
 
 
 def copy_model(model: SceneModel, name: str, pose: Pose) -> SceneModel:
@@ -28,8 +30,8 @@ def copy_model(model: SceneModel, name: str, pose: Pose) -> SceneModel:
         InputError: the model is in MuJoCo's own format, which has names of its own.
     """
     if any(nested.mjcf for nested in model.all_models()):
-        message = f"SK-SERVICE-002 model {model.name!r} is in MuJoCo's own format and cannot be copied"
-        raise InputError(f"{message}; spawn its file again", "SK-SERVICE-002")
+        message = f"model {model.name!r} is in MuJoCo's own format and cannot be copied"
+        raise InputError("SK-SERVICE-002", f"{message}; spawn its file again")
     return transform_model(model, name, pose @ model.pose_world.inverse())
 
 

@@ -29,7 +29,7 @@ class IncompatiblePlugin(InputError):
     """Error for a new plugin that needs other physics elements than the old plugin has added."""
 
     def __init__(self, change: str) -> None:
-        super().__init__(f"{_CODE} {change}; restart the run to apply this change", _CODE)
+        super().__init__(_CODE, f"{change}; restart the run to apply this change")
 
 
 def replace_plugin(sim: Simulation, old: AttachedPlugin, new: AttachedPlugin, scene: object) -> None:
@@ -52,10 +52,10 @@ def replace_plugin(sim: Simulation, old: AttachedPlugin, new: AttachedPlugin, sc
     """
     snapshots = sim.contents.spawner.snapshots
     before = snapshots.take()
-    nodes = {node: dict(found) for node, found in sim.communication.live_parameters._parameters.items()}
+    parameters = sim.communication.live_parameters.entries()
     try:
         _prepare(sim, old, new, scene)
-        new.sim = sim
+        new.join_simulation(sim)
         snapshots.restore(_swap_in_snapshot(before, old, new, new.get_state()))
         _load(sim, new)
         loaded, first = new.get_state(), _parameter_values(sim, new)
@@ -67,15 +67,15 @@ def replace_plugin(sim: Simulation, old: AttachedPlugin, new: AttachedPlugin, sc
         sim.communication.live_parameters.set_state(values)
     except Exception:
         close_endpoints(sim, new)
-        sim.communication.live_parameters._parameters = nodes
+        sim.communication.live_parameters.replace_entries(parameters)
         snapshots.restore(before)
         sim.engine.reschedule()
         raise
-    _hand_over_goals(sim, old, new)
+    sim.communication.actions.hand_over(old, new, f"plugin {new.name!r} was reloaded without this action")
     if sim.engine.faults.is_disabled(old):
         _restore_servo_gains(sim, new)
     close_endpoints(sim, old)
-    sim._loaded = _add_parameter_values(sim, _swap_in_snapshot(sim._loaded, old, new, loaded), first)
+    sim.loaded.change(_add_parameter_values(sim, _swap_in_snapshot(sim.loaded.snapshot, old, new, loaded), first))
     loaded_plugins = sim.contents.spawner.loaded_plugins
     loaded_plugins[:] = [plugin for plugin in loaded_plugins if plugin is not old]
     sim.engine.reschedule()
@@ -83,22 +83,28 @@ def replace_plugin(sim: Simulation, old: AttachedPlugin, new: AttachedPlugin, sc
 
 
 def _prepare(sim: Simulation, old: AttachedPlugin, new: AttachedPlugin, scene: object) -> None:
+    actuators = _actuators_of(sim, old)
     if not new.has_hook("prepare"):
-        if old._actuators:
-            raise IncompatiblePlugin(f"{new.name!r} no longer drives {_list_actuators(old._actuators)}")
+        if actuators:
+            raise IncompatiblePlugin(f"{new.name!r} no longer drives {_list_actuators(actuators)}")
         return
-    builder = _CompiledBuilder(sim.engine.structure.builder, old)
+    builder = _CompiledBuilder(sim.engine.structure.builder, old.name, actuators)
     new.prepare(scene, new.params, builder)
     new.params.diagnostics.raise_if_errors()
     if builder.left:
         raise IncompatiblePlugin(f"{new.name!r} no longer drives {_list_actuators(builder.left)}")
-    new._actuators = old._actuators
+
+
+def _actuators_of(sim: Simulation, plugin: AttachedPlugin) -> tuple[ActuatorRef, ...]:
+    entry = sim.engine.structure.entry_of(plugin)
+    return () if entry is None else entry.actuators
 
 
 def _load(sim: Simulation, new: AttachedPlugin) -> None:
-    parents = {id(plugin): parent for part in sim.engine.structure.parts.values() for plugin, parent in part.plugins}
+    entry = sim.engine.structure.entry_of(new)
+    assert entry is not None
     with sim.communication.bus.owned_by(new):
-        sim.contents.spawner.load_plugin(new, parents[id(new)](sim))
+        sim.contents.spawner.load_plugin(entry)
     new.params.diagnostics.raise_if_errors()
 
 
@@ -109,9 +115,8 @@ def _list_actuators(actuators: Iterable[ActuatorRef]) -> str:
 class _CompiledBuilder:
     """Builder of a model that is already compiled: every requested element must exist."""
 
-    def __init__(self, builder: SpecBuilder, old: AttachedPlugin) -> None:
-        self._builder, self._old = builder, old
-        self.left = list(old._actuators)
+    def __init__(self, builder: SpecBuilder, plugin: str, actuators: Iterable[ActuatorRef]) -> None:
+        self._builder, self._plugin, self.left = builder, plugin, list(actuators)
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._builder, name)
@@ -129,12 +134,12 @@ class _CompiledBuilder:
 
     def add_site(self, link_scoped: str, pose_link: object, name: str) -> str:
         if not any(name in record.sites for record in self._builder.records.values()):
-            raise IncompatiblePlugin(f"{self._old.name!r} adds a site {name!r} to {link_scoped!r}")
+            raise IncompatiblePlugin(f"{self._plugin!r} adds a site {name!r} to {link_scoped!r}")
         return name
 
     def add_weld(self, name: str, parent_link: str, child_link: str, *, active: bool = True) -> str:
         if name not in self._builder.names.joints:
-            raise IncompatiblePlugin(f"{self._old.name!r} welds {child_link!r} to {parent_link!r}")
+            raise IncompatiblePlugin(f"{self._plugin!r} welds {child_link!r} to {parent_link!r}")
         return name
 
     def _existing(self, kind: str, joint: str, *, axis: int = 0, max_effort: float, **options: Any) -> ActuatorRef:
@@ -145,7 +150,7 @@ class _CompiledBuilder:
             if (ref.kind, ref.joint, ref.axis, ref.max_effort, (ref.kp, ref.kv)) == (kind, joint, axis, effort, gains):
                 self.left.remove(ref)
                 return ref
-        raise IncompatiblePlugin(f"{self._old.name!r} drives {joint!r} by {kind} with at most {effort:g}")
+        raise IncompatiblePlugin(f"{self._plugin!r} drives {joint!r} by {kind} with at most {effort:g}")
 
 
 # ---------------------------------------------------------------------- state
@@ -159,16 +164,17 @@ def _swap_in_snapshot(snapshot: Snapshot, old: AttachedPlugin, new: AttachedPlug
 
 def _swap_in_structure(structure: WorldStructure, old: AttachedPlugin, new: AttachedPlugin) -> WorldStructure:
     def swapped(part: SensorsAndPlugins) -> SensorsAndPlugins:
-        if all(plugin is not old for plugin, _ in part.plugins):
+        if all(entry.plugin is not old for entry in part.plugins):
             return part
-        return replace(part, plugins=[(new if plugin is old else plugin, parent) for plugin, parent in part.plugins])
+        entries = [replace(entry, plugin=new) if entry.plugin is old else entry for entry in part.plugins]
+        return replace(part, plugins=entries)
 
     return replace(structure, parts={name: swapped(part) for name, part in structure.parts.items()})
 
 
 def _loaded_state(sim: Simulation, plugin: AttachedPlugin) -> PluginState:
     """Return a plugin's state after its `load`; empty for a plugin that was spawned later."""
-    return next((state for p, state in sim._loaded.plugins if p is plugin), {})
+    return next((state for p, state in sim.loaded.snapshot.plugins if p is plugin), {})
 
 
 def _carried_state(new: Any, loaded: PluginState, old_state: PluginState, first: PluginState) -> PluginState:
@@ -252,7 +258,7 @@ def _take_over_parameters(sim: Simulation, old: AttachedPlugin, new: AttachedPlu
     A new parameter may hide the old parameter of the same name. The first snapshot still contains both.
     """
     table = sim.communication.live_parameters
-    first = {p: value for part, state in sim._loaded.handles if part is table for p, value in state}
+    first = {p: value for part, state in sim.loaded.snapshot.handles if part is table for p, value in state}
     changed = {p.name: p.value for p, value in first.items() if p.owner is old and not _is_equal(p.value, value)}
     for parameter, _ in table.get_state():
         if parameter.owner is new and parameter.name in changed:
@@ -274,19 +280,9 @@ def _add_parameter_values(sim: Simulation, snapshot: Snapshot, values: Parameter
     return replace(snapshot, handles=handles)
 
 
-def _hand_over_goals(sim: Simulation, old: AttachedPlugin, new: AttachedPlugin) -> None:
-    """Continue active goals with the new plugin's action of the same name, or abort them."""
-    actions = sim.communication.actions.endpoints_of(new)
-    for goal in [g for g in sim.communication.actions._goals if g._action.owner is old and not g.is_done]:
-        if goal._action.name in actions:
-            goal._action = actions[goal._action.name]
-        else:
-            goal.abort(reason=f"plugin {new.name!r} was reloaded without this action")
-
-
 def _restore_servo_gains(sim: Simulation, plugin: AttachedPlugin) -> None:
     """Restore the servo gains of a plugin that was disabled."""
-    if plugin._actuators:
-        indices = [sim.engine.names.actuator(ref) for ref in plugin._actuators]
+    if actuators := _actuators_of(sim, plugin):
+        indices = [sim.engine.names.actuator(ref) for ref in actuators]
         for field in ("actuator_gainprm", "actuator_biasprm"):
             sim.engine.touch(field)[indices] = sim.engine.original(field)[indices]

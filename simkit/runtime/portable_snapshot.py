@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from simkit.runtime.engine.entity_structure import AttachedSensor
 
 
-_PLAIN_FIELDS: Final = ("tick", "fields", "one_shot", "last_applied", "last_pushed", "window", "sleep", "seed", "inbox")
+_PLAIN_FIELDS: Final = ("fields", "physics", "seed", "inbox")
 _AWAKE: Final = ("nbody_awake", "ntree_awake", "nv_awake")  # MuJoCo's own pickles of the data do not have them
 
 
@@ -110,7 +110,7 @@ def unpack_snapshot(sim: SnapshotOwner, portable: PortableSnapshot) -> Snapshot:
     try:
         memory = content["memory"]
         if (content["changes"], memory) != (_changes_of(sim, before), before.structure.builder.spec.memory):
-            spawner.snapshots.restore(sim._loaded_state())
+            spawner.snapshots.restore(sim.loaded.snapshot)
             places = References(sim, spawner.snapshots.take(), has_states=False)
             if sim.engine.structure.builder.spec.memory != memory:
                 spawner.reserve_memory(memory)
@@ -124,7 +124,7 @@ def unpack_snapshot(sim: SnapshotOwner, portable: PortableSnapshot) -> Snapshot:
         if isinstance(error, ImportError):
             message = "the snapshot cannot be restored, because another version of simkit or of a plugin took it"
             help_ = "restore it with that version"
-        raise ArgumentValueError(f"{message}: {error}\n    help: {help_}") from error
+        raise ArgumentValueError(f"{message}: {error}", help=help_) from error
 
 
 def _changes_of(sim: SnapshotOwner, snapshot: Snapshot) -> bytes:
@@ -183,5 +183,5 @@ def _fingerprint(model: mujoco.MjModel) -> str:
 
 def _to_bytes(of_engine: Any) -> bytes:
     """Return the engine's own bytes of a model or of data."""
-    found: bytes = of_engine.__getstate__()
-    return found
+    data: bytes = of_engine.__getstate__()
+    return data

@@ -37,9 +37,9 @@ def _xml_elements(values: Mapping[str, object]) -> Iterator[str]:
     for key, value in values.items():
         for item in value if isinstance(value, list) else [value]:
             if isinstance(item, Mapping):
-                own = {k.removeprefix("@"): v for k, v in item.items() if k.startswith("@")}
+                attributes = {k.removeprefix("@"): v for k, v in item.items() if k.startswith("@")}
                 inside = {k: v for k, v in item.items() if not k.startswith("@")}
-                text = "".join(f" {k}='{_xml_text(v)}'" for k, v in own.items())
+                text = "".join(f" {k}='{_xml_text(v)}'" for k, v in attributes.items())
                 yield f"<{key}{text}>{''.join(_xml_elements(inside))}</{key}>"
             else:
                 yield f"<{key}>{_xml_text(item)}</{key}>"
@@ -77,13 +77,13 @@ def build_sensor_model(structure: WorldStructure, name: str, read: SceneModel) -
     """
     top, owner = find_owner(structure, name)
     on_joint = isinstance(owner, SceneJoint)
-    found = read.joints[0].sensors if on_joint else read.links[0].sensors
-    if len(found) != 1:
-        raise InputError(f"add_sensor needs one <sensor>, got {len(found)}")
-    scoped = f"{owner.scoped}::{found[0].name}"
+    sensors = read.joints[0].sensors if on_joint else read.links[0].sensors
+    if len(sensors) != 1:
+        raise InputError(f"add_sensor needs one <sensor>, got {len(sensors)}")
+    scoped = f"{owner.scoped}::{sensors[0].name}"
     if any(sensor.scoped == scoped for sensor in structure.all_sensors()):
-        raise InputError(f"a sensor {scoped!r} exists already", "SK-NAME-004")
-    sensor = _move_sensor(found[0], scoped, owner)
+        raise InputError("SK-NAME-004", f"a sensor {scoped!r} exists already", shows_code=False)
+    sensor = _move_sensor(sensors[0], scoped, owner)
     shell = SceneModel(name=top, scoped=owner.scoped.rpartition("::")[0], pose_world=read.pose_world)
     if isinstance(owner, SceneJoint):
         return top, replace(shell, joints=(replace(owner, sensors=(sensor,), plugins=()),)), scoped

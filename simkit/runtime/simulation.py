@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from os import PathLike
 from typing import TYPE_CHECKING, Any, Final, cast
 
-from simkit.argument_checks import check_function, check_kind, checked_seed
-from simkit.errors import InputError, SimulationDiverged
+from simkit.argument_checks import check_function, check_kind, check_table, checked_seed
+from simkit.errors import LoadError, NodeError, SimulationDiverged
+from simkit.facade import pack_module
 from simkit.in_process import InProcess
 from simkit.memory_error import find_memory_error
 from simkit.pose import Pose, Vector
@@ -20,24 +22,28 @@ from simkit.runtime.communication.script_graph import ScriptGraph
 from simkit.runtime.communication.topic_bus import TopicBus
 from simkit.runtime.contact.collision_contacts import Contact, list_contacts
 from simkit.runtime.engine.engine import Engine
+from simkit.runtime.engine.engine_state import EngineCallbacks
 from simkit.runtime.engine.plugin_faults import add_driver_hints
 from simkit.runtime.engine.simulated_time import Clock
-from simkit.runtime.engine.snapshot import Snapshot, Stateful
-from simkit.runtime.engine.step_tasks import fill_schedule
+from simkit.runtime.engine.snapshot import Snapshot, Snapshots, Stateful
+from simkit.runtime.engine.step_tasks import StepTasks
 from simkit.runtime.handles.joint import Joint
 from simkit.runtime.handles.light import Light
 from simkit.runtime.handles.link import Link
 from simkit.runtime.handles.model import Model
 from simkit.runtime.handles.visual import Visual
 from simkit.runtime.portable_snapshot import PortableSnapshot, pack_snapshot, unpack_snapshot
-from simkit.runtime.spawner import ModelLoader, SensorsAndPluginsMaker
 from simkit.runtime.world_contents import WorldContents
-from simkit.runtime.world_control import Page, WorldControl
+from simkit.runtime.world_control import Page, Programs, WorldControl
+from simkit.runtime.world_source import LoadedState, WorldSource
+from simkit.topic_logger import TopicLogger
 
 if TYPE_CHECKING:
     import mujoco
 
     from simkit.diagnostics import Diagnostic, Diagnostics
+    from simkit.facade import NodeProgram
+    from simkit.runtime.communication.name_remapping import NameRemapping
     from simkit.runtime.engine.entity_structure import WorldStructure
     from simkit.runtime.engine.scheduler import Scheduler
     from simkit.scene import SceneWorld
@@ -56,12 +62,23 @@ class Simulation(ScriptGraph, InProcess):
         communication: topics, services, actions and live parameters.
         contents: models, links, joints, sensors and plugins, with functions to add and remove them.
         control: pause, gravity, collisions, geographic origin, reset of models.
-        run_spec: specification of the run from `simkit.load`; None for a simulation made in another way.
+        loaded: state to which a reset returns.
+
+    Args:
+        world: scene of the world.
+        structure: compiled structure of the world.
+        diagnostics: collection of the diagnostics of the load and of the run.
+        seed: seed of all random streams.
+        source: functions that read and write files.
+        on_error: policy for plugins that raise; None uses the policy of the file or of the plugin's class.
+        run_spec: specification of the run.
+        render_thread: True to draw camera images on another thread.
+        remapping: other names for the topics, services and actions of plugins and sensors; None for none.
     """
 
-    run_spec: RunSpec | None = None
-    _open_page: Callable[[Simulation, int], Page] | None = None
-    _page: Page | None = None
+    communication: Communication
+    contents: WorldContents
+    control: WorldControl
 
     def __init__(
         self,
@@ -69,23 +86,48 @@ class Simulation(ScriptGraph, InProcess):
         structure: WorldStructure,
         diagnostics: Diagnostics,
         seed: int,
-        load_model: ModelLoader,
-        make_parts: SensorsAndPluginsMaker,
+        source: WorldSource,
+        *,
         on_error: PluginErrorPolicy | None = None,
+        run_spec: RunSpec | None = None,
+        render_thread: bool = False,
+        remapping: NameRemapping | None = None,
     ) -> None:
-        clock = Clock(world.physics.max_step_size)
-        self._bus = bus = TopicBus(diagnostics, lambda: self.time)
-        self.engine = Engine(world, structure, clock, seed, diagnostics, bus, self._fill, on_error)
+        self._page = cast("Page | None", None)
+        self._programs = cast("Programs | None", None)
+        self.loaded = LoadedState(world, run_spec)
+        self._bus = bus = TopicBus(diagnostics, lambda: self.time, remapping)
+        callbacks = EngineCallbacks(
+            fill=self._fill,
+            velocity_limit=lambda name, axis: self.contents.handles.velocity_limit(name, axis),
+            set_active=lambda owners: self.communication.set_active(owners),
+            abandon=lambda owner, reason: self.communication.abandon(owner, reason),
+            large_commands=lambda: large_commands(bus),
+        )
+        clock, log = Clock(world.physics.max_step_size), TopicLogger("simkit", self, "simkit")
+        self.engine = Engine(
+            world, structure, clock, seed, diagnostics, log, callbacks, bus, on_error, render_thread=render_thread
+        )
+        self._tasks = StepTasks(self.engine)
         self.communication = Communication(bus, self.engine)
-        self.engine.faults.interfaces = self.communication
-        self.contents = WorldContents(self, self.engine, self.communication, self._stateful, load_model, make_parts)
-        self._snapshots = self.contents.spawner.snapshots
-        self._snapshots.pack = partial(pack_snapshot, self)
-        self.control = WorldControl(self.engine, bus, self.contents.handles, self._advance, self._loaded_state)
+        self._snapshots = Snapshots(
+            self, self.engine, self._stateful, bus.inbox, self._adopt, partial(pack_snapshot, self)
+        )
+        self.contents = WorldContents(self, self.engine, self.communication, self._snapshots, source)
+        self.control = WorldControl(self.engine, bus, self.contents.handles, self._advance, self.loaded, source)
         self.contents.spawner.adopt(structure)
-        self.contents.spawner.start(list(structure.parts.values()), diagnostics)
+        try:
+            self.contents.spawner.start(list(structure.parts.values()), diagnostics)
+        except LoadError:
+            self.contents.spawner.close_plugins()  # the world may be built again without a faulty plugin
+            raise
         self.engine.reschedule()
-        self._loaded = self.snapshot()
+        self.loaded.change(self.snapshot())
+
+    @property
+    def run_spec(self) -> RunSpec | None:
+        """Specification of the run from `simkit.load`; None for a simulation made in another way."""
+        return self.loaded.run_spec
 
     @property
     def tick(self) -> int:
@@ -150,14 +192,14 @@ class Simulation(ScriptGraph, InProcess):
     def _advance(self, target: int, *, is_served: bool = False) -> None:
         self.engine.check_open()
         self.communication.log_topic.use_thread()
-        journal = self._bus.journal
-        if journal is not None:
-            journal.before_steps()
+        advance: Callable[[int], None] = partial(self._make_steps, is_served=is_served)
+        if self._programs is not None:
+            advance = partial(self._programs.advance, advance=advance)
         try:
             if self._page is None or is_served:
-                self.engine.loop.advance(target, is_served=is_served)
+                advance(target)
             else:
-                self._page.advance(target, self.engine.loop.advance)
+                self._page.advance(target, advance)
         except SimulationDiverged as error:
             add_driver_hints(self.engine.structure.all_plugins(), error, large_commands(self._bus))
             raise
@@ -165,9 +207,17 @@ class Simulation(ScriptGraph, InProcess):
             if too_little := find_memory_error(error):
                 raise too_little from error
             raise
+
+    def _make_steps(self, target: int, *, is_served: bool) -> None:
+        journal = self._bus.journal
+        if journal is None:
+            self.engine.loop.advance(target, is_served=is_served)
+            return
+        journal.before_steps()
+        try:
+            self.engine.loop.advance(target, is_served=is_served)
         finally:
-            if journal is not None:
-                journal.after_steps()
+            journal.after_steps()
 
     def reset(self, seed: int | None = None, *, keep_changes: bool = False) -> None:
         """Reset physics, plugins, sensors and random streams to the loaded state at t = 0.
@@ -178,20 +228,26 @@ class Simulation(ScriptGraph, InProcess):
         """
         check_kind(keep_changes, bool, "keep_changes", "True or False")
         changes, gravity = self.engine.numbers.values, self.gravity
+        if self._programs is not None:
+            self._programs.end()
         self._reset(seed)
         if keep_changes:
             self.gravity = gravity
             self.contents.handles.set_values(changes)
+        if self._programs is not None:
+            self._programs.restart()
 
     @journaled
     def _reset(self, seed: int | None = None) -> None:
-        loaded, engine = self._loaded_state(), self.engine
+        engine = self.engine
+        engine.check_open()
+        loaded = self.loaded.snapshot
         seed = engine.streams.seed if seed is None else checked_seed(seed)
         engine.loop.drop_deferred()
         self.communication.bus.settle()
         forget_commands(self._bus)
         engine.streams.reseed(seed)
-        self._restore(loaded)
+        self.contents.spawner.restore(loaded)
         for sensor in engine.structure.all_sensors():
             sensor.reset()
         for plugin in engine.structure.all_plugins():
@@ -206,6 +262,8 @@ class Simulation(ScriptGraph, InProcess):
         Use this snapshot only after the step.
         """
         self.engine.check_open()
+        if self._programs is not None:
+            self._programs.note_snapshot()
         if not self.engine.is_stepping:
             return self._snapshots.take()
         snapshot, keep = self._snapshots.defer()
@@ -227,29 +285,29 @@ class Simulation(ScriptGraph, InProcess):
         if isinstance(snapshot, PortableSnapshot):
             snapshot = unpack_snapshot(self, snapshot)
         self._snapshots.check(snapshot)
+        before_ns = self.time_ns
         engine.loop.drop_deferred()
         if snapshot.seed != engine.streams.seed:
             self.communication.bus.settle()
             engine.streams.reseed(snapshot.seed)
-        self._restore(snapshot)
+        self.contents.spawner.restore(snapshot)
+        if self._programs is not None:
+            self._programs.follow_restore(before_ns)
 
-    def _restore(self, snapshot: Snapshot) -> None:
-        self._snapshots.restore(snapshot)
-        self.engine.loop.halt()  # `simkit run` then computes its target again
-        self.engine.reschedule()
-        self.contents.spawner.forget_gone()
+    def _adopt(self, structure: WorldStructure) -> None:
+        self.contents.spawner.adopt(structure)
 
     def _stateful(self) -> list[Stateful]:
         """Return every part with a state, except sensors and plugins, in the order of restoring."""
         engine, interfaces, control, handles = self.engine, self.communication, self.control, self.contents.handles
-        own = (engine.faults, *interfaces.stateful(), control.pausing, control.origin)
-        return [*handles.stateful(), *own, engine.numbers, engine.velocity_servos, *handles.tables["model"].values()]
-
-    def _loaded_state(self) -> Snapshot:
-        self.engine.check_open()
-        if "_loaded" not in vars(self):
-            raise InputError("the world is still being loaded, so there is no state to reset to", "SK-CORE-004")
-        return self._loaded
+        of_simulation = (engine.faults, *interfaces.stateful(), control.pausing, control.origin)
+        return [
+            *handles.stateful(),
+            *of_simulation,
+            engine.numbers,
+            engine.velocity_servos,
+            *handles.tables["model"].values(),
+        ]
 
     @property
     def world(self) -> SceneWorld:
@@ -303,11 +361,13 @@ class Simulation(ScriptGraph, InProcess):
             LoadError: the source has errors, or the name is already used.
             InputError: no model can have this name.
         """
-        return self.contents.spawn_all([(source, name, pose)])[0]
+        spawn = partial(self.contents.spawn_all, [(source, name, pose)])
+        return (spawn() if self._programs is None else self._programs.call_outside(spawn))[0]
 
     def remove(self, name: str) -> None:
         """Remove a top-level model during the run."""
-        self.contents.remove(name)
+        remove = partial(self.contents.remove, name)
+        remove() if self._programs is None else self._programs.call_outside(remove)
 
     @property
     def gravity(self) -> Vector:
@@ -349,8 +409,7 @@ class Simulation(ScriptGraph, InProcess):
         return self.engine.physics.data
 
     def _fill(self, scheduler: Scheduler) -> None:
-        handles = self.contents.handles
-        fill_schedule(self.engine, scheduler, handles.tables["joint"].values(), handles.exact_limits)
+        self._tasks.fill(scheduler, *self.contents.handles.limited_dofs())
         self.communication.on_demand.fill(scheduler)
 
     def view(self, port: int = 0) -> str:
@@ -361,31 +420,157 @@ class Simulation(ScriptGraph, InProcess):
 
         Returns:
             Address of the page. A notebook shows the page itself.
+
+        Raises:
+            InputError: SK-INPUT-004 the pack view is not installed, or SK-WEB-006 the port cannot be used.
         """
         self.engine.check_open()
         if self._page is None:
-            if self._open_page is None:
-                raise InputError("only simulations from simkit.load have a view", "SK-WEB-006")
-            self._page = self._open_page(self, port)
+            self._page = pack_module("sim.view").ScriptView(self, port)
         return self._page.address
+
+    def add_node(
+        self,
+        program: str | PathLike[str] | Callable[[], object],
+        *,
+        name: str | None = None,
+        namespace: str | None = None,
+        remap: Mapping[str, str] | None = None,
+        params: Mapping[str, object] | None = None,
+        args: Sequence[str] = (),
+        latency: float | tuple[float, float] = 0.0,
+        discovery: float = 0.0,
+        limit: float = 60.0,
+        restart: float | None = None,
+        keys: str | Sequence[tuple[float, str]] | None = None,
+        label: str | None = None,
+        after: Mapping[str, str] | None = None,
+        delay: float = 0.0,
+        respawn: float | None = None,
+        ends_run: bool = False,
+        env: Mapping[str, str] | None = None,
+        cwd: str | PathLike[str] | None = None,
+    ) -> NodeProgram:
+        """Run a program for ROS in lock-step with the simulation: it runs only between steps, in simulated time.
+
+        The program starts with the next call of `step` or `run`, or when the condition of `after` and `delay` holds.
+        Programs that start at the same time start in the order in which they were added. A reset starts all anew.
+
+        Args:
+            program: Python file, `PACKAGE/EXECUTABLE` of a ROS workspace or of a known node, or function.
+            name: name of its node, instead of the one in the program.
+            namespace: namespace of its node.
+            remap: new names by the names in the program, for topics, services and actions.
+            params: values of parameters by name.
+            args: further arguments of the command line.
+            latency: delay of all messages to the program [s], simulated time; two numbers are the limits of a delay
+                that is drawn for each message.
+            discovery: simulated time until its publishers and subscriptions are matched [s]; at least one step.
+            limit: wall time that the program may compute without waiting [s]; a longer time is an error.
+            restart: simulated time after which the program starts anew if it raised an exception [s]; None for never.
+            keys: what the program reads from its standard input: a text as of a file, or texts with the simulated times
+                [s] at which somebody types them. By default nobody types.
+            label: name of the program in `after` of others; None for `name`, or the name of the program.
+            after: `{"exit": LABEL}` or `{"start": LABEL}`: the program starts after the first exit or start of another
+                one. By default it starts at once.
+            delay: simulated time between this event, or the present time, and the start [s].
+            respawn: simulated time after which the program starts again whenever it has ended [s]; None for never.
+            ends_run: True to end all programs and the run as soon as the program has ended.
+            env: variables of the environment that the program has besides those of the process.
+            cwd: working directory of the program; None for that of the process.
+
+        Raises:
+            InputError: SK-INPUT-004 the pack nodes is not installed, or the program does not exist, or SK-NODE-065 two
+                nodes have one label.
+        """
+        programs = self._started_programs("sim.add_node")
+        add = partial(
+            programs.add,
+            program,
+            name=name,
+            namespace=namespace,
+            remap=remap or {},
+            params=params or {},
+            args=args,
+            latency=latency,
+            discovery=discovery,
+            limit=limit,
+            restart=restart,
+            keys=keys,
+            label=label,
+            after=after,
+            delay=delay,
+            respawn=respawn,
+            ends_run=ends_run,
+            env=env,
+            cwd=cwd,
+        )
+        added: NodeProgram = programs.call_outside(add)
+        return added
+
+    def set_ros_parameters(self, values: Mapping[str, object]) -> None:
+        """Set parameters of the parameter server of ROS 1, which all programs of ROS 1 share; a reset keeps them.
+
+        Args:
+            values: values by absolute name, such as `{"/robot/speed": 0.2}`; dictionaries are namespaces.
+
+        Raises:
+            InputError: SK-INPUT-004 the pack nodes is not installed, or SK-NODE-066 a name or a value is not allowed.
+        """
+        check_table(values, object, "values", "parameters")
+        self._started_programs("sim.set_ros_parameters").set_parameters(values)
+
+    def _started_programs(self, name: str) -> Programs:
+        """Return the programs of the simulation, which a user's name needs."""
+        self.engine.check_open()
+        if self._programs is None:
+            self._programs = cast("Programs", pack_module(name).LockStep(self))
+        return self._programs
+
+    @property
+    def ended_by(self) -> str:
+        """Name of the program with `ends_run` whose end has ended the run; empty before."""
+        return "" if self._programs is None else self._programs.ended_by
+
+    @property
+    def nodes(self) -> tuple[NodeProgram, ...]:
+        """Programs of `add_node`, in the order in which they were added."""
+        return () if self._programs is None else tuple(self._programs.programs)
+
+    def check_nodes(self) -> None:
+        """Check that no program of `add_node` raised an exception; the runs of scenarios do this at their end.
+
+        Programs that are not done report at first what is only known at the end of a run.
+
+        Raises:
+            NodeError: SK-SCEN-010 a program raised; the error names all such programs.
+        """
+        for program in self.nodes:
+            for report in () if program.done else program.on_report:
+                report()
+        failed = [program for program in self.nodes if program.error is not None]
+        if failed:
+            raise NodeError([program.failure for program in failed]) from failed[0].error
 
     def close(self) -> None:
         """Close plugins and sensors; further calls do nothing."""
         engine = self.engine
         if engine.is_closed:
             return
+        if self._programs is not None:
+            self._programs.close()
         if self._page is not None:
             self._page.close()
         first = self.contents.spawner.close_plugins()
         for sensor in engine.structure.all_sensors():
             sensor.close()
         self.contents.handles.close()
-        engine.is_closed = True
+        engine.close()
         if first is not None:
             raise first
 
     def __repr__(self) -> str:
-        if "_loaded" not in vars(self):
+        if not self.loaded.is_complete:
             return "<Simulation (being loaded)>"
         plural = "" if len(self.contents.models) == 1 else "s"
         state = "closed" if self.engine.is_closed else f"t={self.time:g} s, {len(self.contents.models)} model{plural}"

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from simkit.runtime.communication.communication import Communication
     from simkit.runtime.engine.engine import Engine
     from simkit.runtime.world_contents import WorldContents
+    from simkit.runtime.world_source import LoadedState
 
 Place = tuple[Any, ...]
 """Kind of a referenced object, followed by its name and the attributes, keys and positions that lead to it."""
@@ -44,8 +45,7 @@ class SnapshotOwner(Protocol):
     engine: Engine
     communication: Communication
     contents: WorldContents
-
-    def _loaded_state(self) -> Snapshot: ...
+    loaded: LoadedState
 
 
 class References:
@@ -72,11 +72,11 @@ class References:
         self._roots |= {id(item): ("parameter", *key) for key, item in self._parameters().items()}
         self._found: dict[int, Place] | None = None if has_states else {}
 
-    def _parameters(self) -> dict[tuple[str, int], Any]:
-        table = self._sim.communication.live_parameters._parameters
-        return {(node, n): item for node, found in table.items() for n, item in enumerate(found.values())}
+    def _parameters(self) -> dict[tuple[str, int], object]:
+        table = self._sim.communication.live_parameters.entries()
+        return {(node, n): item for node, of_node in table.items() for n, item in enumerate(of_node.values())}
 
-    def place_of(self, value: Any) -> Place | None:
+    def place_of(self, value: object) -> Place | None:
         """Return the reference to an object; None for a value, which is stored itself."""
         kind = type(value)
         if kind in _VALUES:
@@ -85,9 +85,9 @@ class References:
             return ("simulation",)
         if isinstance(value, mujoco.MjModel):  # code that keeps an earlier one computes its values again
             return ("model", value is self._model)
-        found = self._roots.get(id(value))
-        if found is not None:
-            return found
+        known_place = self._roots.get(id(value))
+        if known_place is not None:
+            return known_place
         if isinstance(value, Diagnostics):
             return ("diagnostics",)
         if isinstance(value, WorldStructure):  # a plugin that keeps an earlier one builds its lists again
@@ -107,7 +107,7 @@ class References:
                     self._found.setdefault(id(item), place)
         return self._found.get(id(value))
 
-    def object_at(self, place: Place) -> Any:
+    def object_at(self, place: Place) -> object:
         """Return the object of a reference."""
         match place:
             case ("simulation",):
@@ -153,7 +153,7 @@ def _place_of_handle(handle: Handle) -> Place:
     return ("handle", type(handle).__name__.lower(), handle.scoped)
 
 
-def _handle_at(sim: SnapshotOwner, kind: str, scoped: str) -> Any:
+def _handle_at(sim: SnapshotOwner, kind: str, scoped: str) -> object:
     handles = sim.contents.handles
     if kind == "visual":
         return handles.find_visual(scoped)
@@ -165,7 +165,7 @@ def _handle_at(sim: SnapshotOwner, kind: str, scoped: str) -> Any:
 
 def _shared_objects(state: object, place: Place) -> Iterator[tuple[Place, object]]:
     """Yield the objects in a state that a deep copy shares, with their places; the nearest place comes first."""
-    waiting: deque[tuple[Place, Any]] = deque([(place, state)])
+    waiting: deque[tuple[Place, object]] = deque([(place, state)])
     seen: set[int] = set()
     while waiting and len(seen) < _MOST_OBJECTS:
         at, value = waiting.popleft()
@@ -182,14 +182,14 @@ def _shared_objects(state: object, place: Place) -> Iterator[tuple[Place, object
 _LEAVES: Final = frozenset((int, float, str, bytes, bool, type(None), np.ndarray, type))
 
 
-def _children(value: Any) -> Iterator[tuple[object, object]]:
+def _children(value: object) -> Iterator[tuple[object, object]]:
     """Yield the attributes, entries or items of an object, with the steps that lead to them."""
     if isinstance(value, dict):
         yield from (
-            (("key", key) if isinstance(key, str) else ("at", n), one) for n, (key, one) in enumerate(value.items())
+            (("key", key) if isinstance(key, str) else ("at", n), item) for n, (key, item) in enumerate(value.items())
         )
     elif isinstance(value, (list, tuple)):
-        yield from ((("at", n), one) for n, one in enumerate(value))
+        yield from ((("at", n), item) for n, item in enumerate(value))
     else:
         names = [*getattr(value, "__dict__", ())]
         names += [name for kind in type(value).__mro__ for name in _slots(kind) if hasattr(value, name)]
@@ -210,11 +210,11 @@ def _child(value: Any, step: tuple[str, Any]) -> Any:
     return value[key]
 
 
-def _read_only(values: dict[Any, Any]) -> MappingProxyType[Any, Any]:
+def _read_only(values: dict[object, object]) -> MappingProxyType[object, object]:
     return MappingProxyType(values)  # pickle cannot find the class itself under its name
 
 
-def _named_in_module(module: str, name: str) -> Any:
+def _named_in_module(module: str, name: str) -> object:
     """Return a class or function of a plugin's file, whose module name is no name for `import`."""
     return attrgetter(name)(sys.modules[module])
 
@@ -228,7 +228,7 @@ class _Pickler(pickle.Pickler):
         super().__init__(file, pickle.DEFAULT_PROTOCOL)
         self._places = places
 
-    def persistent_id(self, value: Any) -> Place | None:
+    def persistent_id(self, value: object) -> Place | None:
         return self._places.place_of(value)
 
     def reducer_override(self, value: Any) -> Any:
@@ -247,7 +247,7 @@ class _Unpickler(pickle.Unpickler):
         super().__init__(file)
         self._places = places
 
-    def persistent_load(self, place: Place) -> Any:
+    def persistent_load(self, place: Place) -> object:
         return self._places.object_at(place)
 
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 import weakref
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
-from simkit.compiler.number_edits import bind_scenes
 from simkit.compiler.state_transfer import copy_fields_by_name, restore_compiled_fields
 from simkit.diagnostics import MOST_ERRORS, Diagnostic, Diagnostics
 from simkit.errors import InputError, LoadError, SimkitError
@@ -20,13 +19,14 @@ from simkit.runtime.engine.entity_structure import (
     AttachedPlugin,
     AttachedSensor,
     AttachedState,
+    PluginEntry,
     SensorsAndPlugins,
     WorldStructure,
-    bodies_kept_awake,
-    plugins_in_order,
+    entries_in_order,
 )
 from simkit.runtime.engine.plugin_faults import call_plugin
-from simkit.runtime.engine.snapshot import Snapshot, Snapshots, Stateful
+from simkit.runtime.engine.snapshot import Snapshot, Snapshots
+from simkit.runtime.world_source import WorldSource
 from simkit.scene import SceneJoint, SceneModel
 
 if TYPE_CHECKING:
@@ -38,8 +38,6 @@ if TYPE_CHECKING:
 MOST_SPAWN_REPORTS: Final = 1000
 """Largest number of diagnostics of spawned models; the oldest ones are dropped."""
 
-ModelLoader = Callable[..., SceneModel]
-SensorsAndPluginsMaker = Callable[..., SensorsAndPlugins]
 SpawnRequest = tuple[object, str | None, Pose | None]
 """Source of a model (or a model), new name and new pose; None keeps the name or the pose of the source."""
 
@@ -52,9 +50,8 @@ class Spawner:
         engine: engine of the simulation.
         communication: communication of the simulation.
         handles: handles of the simulation.
-        stateful: function that returns every part with a state, except sensors and plugins.
-        load_model: function that reads a model to spawn.
-        make_parts: function that makes the sensors and plugins of a model and prepares a spec for them.
+        snapshots: functions that take and restore the state of the simulation.
+        source: functions that read models and make their sensors and plugins.
 
     Attributes:
         load_model: function that reads a model to spawn.
@@ -69,13 +66,13 @@ class Spawner:
         engine: Engine,
         communication: Communication,
         handles: EntityHandles,
-        stateful: Callable[[], Sequence[Stateful]],
-        load_model: ModelLoader,
-        make_parts: SensorsAndPluginsMaker,
+        snapshots: Snapshots,
+        source: WorldSource,
     ) -> None:
         self._sim, self._engine, self._communication, self._handles = sim, engine, communication, handles
-        self.load_model, self._make_parts = load_model, make_parts
-        self.snapshots = Snapshots(sim, engine, stateful, communication.bus.inbox, self.adopt)
+        self.load_model, self._make_parts = source.load_model, source.make_parts
+        self._leave_out = source.leave_out
+        self.snapshots = snapshots
         self._attached: set[AttachedSensor] = set()
         self._spawned = 0
         self._reported: list[Diagnostic] = []
@@ -85,21 +82,34 @@ class Spawner:
 
     def spawn(self, requests: Sequence[SpawnRequest]) -> list[str]:
         """Add models, compiled once for all of them; return their names. A failure undoes all changes."""
-        old = self._engine.structure
-        before, builder, found = self.snapshots.take(), old.builder.copy(), Diagnostics()
-        models, parts, names, scenes = dict(old.models), dict(old.parts), [], []
+        diagnostics, taken, read = Diagnostics(), set(self._engine.structure.models), list[SceneModel]()
+        diagnostics.can_leave_out = self._engine.reports.can_leave_out
         for source, name, pose in requests:
             if isinstance(source, SceneModel):
-                scene = source  # a copy of a present model
+                read.append(source)  # a copy of a present model
             else:
-                scene = self.load_model(source, found, name=name, pose=pose, taken=models)
+                read.append(self.load_model(source, diagnostics, name=name, pose=pose, taken=taken))
+            taken.add(read[-1].name)
+        while True:
+            try:
+                return self._add(read, diagnostics)
+            except LoadError:  # sensors and plugins with errors are left out
+                if not self._leave_out(diagnostics):
+                    raise
+
+    def _add(self, read: Sequence[SceneModel], diagnostics: Diagnostics) -> list[str]:
+        """Add models and start their sensors and plugins; a failure undoes all changes."""
+        old = self._engine.structure
+        before, builder = self.snapshots.take(), old.builder.copy()
+        models, parts, names, scenes = dict(old.models), dict(old.parts), [], []
+        for scene in read:
             builder.add_model(scene)
-            models[scene.name], parts[scene.name] = scene, self._make(scene, builder, found)
+            models[scene.name], parts[scene.name] = scene, self._make(scene, builder, diagnostics)
             names.append(scene.name)
             scenes.append((scene, None, None))
         changes = old.changed("spawn", scenes)
         self.switch(replace(self._recompiled(builder), models=models, parts=parts, changes=changes))
-        self._start_or_restore([parts[name] for name in names], found, before)
+        self._start_or_restore([parts[name] for name in names], diagnostics, before)
         return names
 
     def read(self, source: object) -> SceneModel:
@@ -115,51 +125,57 @@ class Spawner:
         old = self._engine.structure
         _, owner = sensor_attachment.find_owner(old, name)
         text = sensor_attachment.sensor_model_xml(sensor_attachment.sensor_xml(sensor), isinstance(owner, SceneJoint))
-        found = Diagnostics()
-        read = self.load_model(text, found)
+        diagnostics = Diagnostics()
+        read = self.load_model(text, diagnostics)
         top, shell, scoped = sensor_attachment.build_sensor_model(old, name, read)
         before = self.snapshots.take()
         builder = old.builder.copy()
-        parts = self._make(shell, builder, found)
+        parts = self._make(shell, builder, diagnostics)
         if not parts.sensors:
-            raise LoadError(tuple(found))
+            raise LoadError(tuple(diagnostics))
         present = old.parts[top]
         joined = SensorsAndPlugins([*present.sensors, *parts.sensors], [*present.plugins, *parts.plugins])
         changes = old.changed("add_sensor", name, sensor)
         self.switch(replace(self._recompiled(builder), parts={**old.parts, top: joined}, changes=changes))
-        self._start_or_restore([parts], found, before)
+        self._start_or_restore([parts], diagnostics, before)
         return scoped
 
-    def _make(self, scene: SceneModel, builder: SpecBuilder, found: Diagnostics) -> SensorsAndPlugins:
+    def _make(self, scene: SceneModel, builder: SpecBuilder, diagnostics: Diagnostics) -> SensorsAndPlugins:
         """Make the sensors and plugins of a spawned model; the plugins are called after all present plugins."""
-        parts = self._make_parts(scene, builder, found)
+        parts = self._make_parts(scene, builder, diagnostics)
         self._spawned += 1
-        for plugin, _ in parts.plugins:
-            plugin._order = (FROM_SPAWN, self._spawned, *plugin._order)
-        found.raise_if_errors()
-        return parts
+        diagnostics.raise_if_errors()
+        plugins = [replace(entry, order=(FROM_SPAWN, self._spawned, *entry.order)) for entry in parts.plugins]
+        return replace(parts, plugins=plugins)
 
-    def _start_or_restore(self, added: list[SensorsAndPlugins], found: Diagnostics, before: Snapshot) -> None:
+    def _start_or_restore(self, added: list[SensorsAndPlugins], diagnostics: Diagnostics, before: Snapshot) -> None:
         """Start added sensors and plugins; a failure undoes all changes."""
         try:
-            self.start(added, found)
+            self.start(added, diagnostics)
         except SimkitError:
             self.undo(before)
             raise
         for parts in added:
             for sensor in parts.sensors:
                 sensor.scene.params.report_unread("SK-PARAM-003", f"sensor {sensor.scoped!r}")
-            for plugin, _ in parts.plugins:
-                plugin.report_unread()
-        self._report(found)
+            for entry in parts.plugins:
+                entry.plugin.report_unread()
+        self._report(diagnostics)
 
-    def _report(self, found: Diagnostics) -> None:
+    def _report(self, diagnostics: Diagnostics) -> None:
         """Add diagnostics of spawned models; only the newest ones are kept, because a run may spawn without end."""
         reports = self._engine.reports
-        self._reported += [item for item in found if item not in reports]
-        reports.extend(found)
+        self._reported += [item for item in diagnostics if item not in reports]
+        reports.extend(diagnostics)
         reports.drop(self._reported[:-MOST_SPAWN_REPORTS])
         del self._reported[:-MOST_SPAWN_REPORTS]
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Restore a snapshot of this simulation."""
+        self.snapshots.restore(snapshot)
+        self._engine.loop.halt()  # `simkit run` then computes its target again
+        self._engine.reschedule()
+        self.forget_gone()
 
     def undo(self, before: Snapshot) -> None:
         """Undo a failed change, perhaps within a hook; commands for the next step stay in the queue."""
@@ -171,7 +187,8 @@ class Spawner:
         """Remove a top-level model."""
         old = self._engine.structure
         if name not in old.models:
-            raise InputError(f"{name!r} is not a top-level model; remove {name.split('::')[0]!r}", "SK-NAME-003")
+            text = f"{name!r} is not a top-level model; remove {name.split('::')[0]!r}"
+            raise InputError("SK-NAME-003", text, shows_code=False)
         builder = old.builder.copy()
         builder.remove_model(name)
         models = {k: v for k, v in old.models.items() if k != name}
@@ -199,8 +216,8 @@ class Spawner:
         counts = len(self.loaded_plugins), len(self._attached), self._handles.count
         if counts == (len(now.all_plugins()), len(now.all_sensors()), len(now.models)):
             return  # nothing was removed
-        self._structures = [kept for kept in self._structures if kept() is not None]
-        structures = [structure for kept in self._structures if (structure := kept()) is not None]
+        self._structures = [reference for reference in self._structures if reference() is not None]
+        structures = [structure for reference in self._structures if (structure := reference()) is not None]
         present = {id(p) for structure in structures for p in structure.all_plugins()}
         removed = [plugin for plugin in self.loaded_plugins if id(plugin) not in present]
         for plugin in removed:
@@ -275,24 +292,17 @@ class Spawner:
     def adopt(self, structure: WorldStructure) -> None:
         """Bind handles, sensors and topics to a structure."""
         engine, handles, compiled = self._engine, self._handles, structure.compiled
-        physics = engine.physics
         self._remember(structure)
         self._communication.bus.settle()
         staying = set(structure.all_sensors())
         for sensor in engine.structure.all_sensors() if self._attached else ():
             if sensor in self._attached and sensor not in staying:
                 sensor.leave()
-        if engine.structure is not structure:  # the first structure is bound already, which takes 8 ms for 64 bodies
-            engine.structure = structure
-            physics.rebind(compiled.model, compiled.data)
-        physics.sleep.restrict(bodies_kept_awake(structure))
-        physics.checks_controls = any(n.mjcf for m in structure.models.values() for n in m.all_models())
+        engine.adopt_structure(structure)
         handles.bind(structure)
         handles.labels.bind(structure)
         handles.temperatures.bind(structure)
-        engine.friction.bind(compiled, [plugin for part in structure.parts.values() for plugin, _ in part.plugins])
-        engine.fast_body_warnings.names = compiled.names
-        physics.fast_bodies.on_approach = engine.fast_body_warnings
+        engine.friction.bind(compiled, [entry.plugin for part in structure.parts.values() for entry in part.plugins])
         engine.wrenches.push(are_applied=True)
         self._communication.set_active(engine.faults.living(structure))
         for sensor in structure.all_sensors():
@@ -310,12 +320,11 @@ class Spawner:
         engine, compiled = self._engine, structure.compiled
         self._remember(structure)
         self._communication.bus.settle()
-        engine.structure = structure
-        engine.physics.changed_model()
+        engine.adopt_numbers(structure)
         if are_scenes_changed:
-            bind_scenes(compiled.names, structure.builder.records.values())
+            compiled.names.replace_scenes(structure.builder.records.values())
             self._handles.bind(structure)
-            plugins = [plugin for part in structure.parts.values() for plugin, _ in part.plugins]
+            plugins = [entry.plugin for part in structure.parts.values() for entry in part.plugins]
             engine.friction.bind(compiled, plugins, is_changed=True)
         if are_derived:
             engine.numbers.renew()
@@ -325,8 +334,8 @@ class Spawner:
 
     def _remember(self, structure: WorldStructure) -> None:
         """Add a structure to those that a restore may bring back, and forget those that nothing refers to."""
-        if not any(kept() is structure for kept in self._structures):
-            self._structures = [kept for kept in self._structures if kept() is not None]
+        if not any(reference() is structure for reference in self._structures):
+            self._structures = [reference for reference in self._structures if reference() is not None]
             self._structures.append(weakref.ref(structure))
 
     def start(self, parts: list[SensorsAndPlugins], diagnostics: Diagnostics) -> None:
@@ -336,32 +345,32 @@ class Spawner:
             LoadError: sensors or plugins have errors.
         """
         bus = self._communication.bus
-        bus.refuses_clashes = False
-        for part in parts:
-            for sensor in part.sensors:
-                with bus.owned_by(sensor):
-                    sensor.attach(self._sim)
-                self._attached.add(sensor)
-                sensor.bind(self._engine.compiled)
-        for plugin, parent_of in plugins_in_order(parts):
-            with bus.owned_by(plugin):
-                self.load_plugin(plugin, parent_of(self._sim))
-        new = [*(s for part in parts for s in part.sensors), *(plugin for part in parts for plugin, _ in part.plugins)]
+        with bus.clashes_allowed():
+            for part in parts:
+                for sensor in part.sensors:
+                    with bus.owned_by(sensor):
+                        sensor.attach(self._sim)
+                    self._attached.add(sensor)
+                    sensor.bind(self._engine.compiled)
+            for entry in entries_in_order(parts):
+                with bus.owned_by(entry.plugin):
+                    self.load_plugin(entry)
+        new = [*(s for part in parts for s in part.sensors), *(e.plugin for part in parts for e in part.plugins)]
         report_topic_conflicts(bus.endpoints(), diagnostics, new)
-        bus.refuses_clashes = True
         diagnostics.raise_if_errors()
 
-    def load_plugin(self, plugin: AttachedPlugin, parent: object) -> None:
+    def load_plugin(self, entry: PluginEntry) -> None:
         """Call a plugin's `load` and store its loaded state."""
-        faults = self._engine.faults
+        plugin, faults, parent = entry.plugin, self._engine.faults, entry.parent(self._sim)
         self.loaded_plugins.append(plugin)
         try:
-            plugin._setup(self._sim, plugin.source)
-            if plugin._failed is not None:  # it raised before the simulation existed
-                hook, error = plugin._failed
+            plugin.join_simulation(self._sim)
+            if entry.failure is not None:  # it raised before the simulation existed
+                hook, error = entry.failure
                 faults.meet(plugin, hook, error)
                 return
-            call_plugin(plugin, "load", plugin.load, parent, plugin.params)
+            with plugin.params.diagnostics.blame(plugin.source):
+                call_plugin(plugin, "load", plugin.load, parent, plugin.params)
         except Exception as error:
             if isinstance(error, LoadError) and len(error.diagnostics) >= MOST_ERRORS:
                 raise  # the parameters of the plugin have too many errors
@@ -369,7 +378,7 @@ class Spawner:
             return
         _check_hook_rates(plugin)
         try:
-            self.first_states[id(plugin)] = call_plugin(plugin, "get_state", plugin._remember_loaded)
+            self.first_states[id(plugin)] = call_plugin(plugin, "get_state", plugin.get_loaded_state)
         except Exception as error:  # noqa: BLE001 - as above
             faults.meet(plugin, "get_state", error)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -16,13 +16,14 @@ from simkit.runtime.handles.light import Light
 from simkit.runtime.handles.model import Model
 from simkit.runtime.handles.visual import Labels, Temperatures
 from simkit.runtime.model_copy import check_model_name, copy_model
-from simkit.runtime.spawner import ModelLoader, SensorsAndPluginsMaker, Spawner, SpawnRequest
+from simkit.runtime.spawner import Spawner, SpawnRequest
+from simkit.runtime.world_source import ModelLoader, WorldSource
 from simkit.scene import SceneLink
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.communication import Communication
     from simkit.runtime.engine.engine import Engine
-    from simkit.runtime.engine.snapshot import Stateful
+    from simkit.runtime.engine.snapshot import Snapshots
 
 
 class WorldContents:
@@ -32,9 +33,8 @@ class WorldContents:
         sim: simulation of the sensors and plugins.
         engine: engine of the simulation.
         communication: communication of the simulation.
-        stateful: function that returns every part with a state, except sensors and plugins.
-        load_model: function that reads a model to spawn.
-        make_parts: function that makes the sensors and plugins of a model and prepares a spec for them.
+        snapshots: functions that take and restore the state of the simulation.
+        source: functions that read the models to spawn.
 
     Attributes:
         handles: handles of models, links, joints, lights and sensors.
@@ -46,13 +46,12 @@ class WorldContents:
         sim: object,
         engine: Engine,
         communication: Communication,
-        stateful: Callable[[], Sequence[Stateful]],
-        load_model: ModelLoader,
-        make_parts: SensorsAndPluginsMaker,
+        snapshots: Snapshots,
+        source: WorldSource,
     ) -> None:
         self._engine, self._communication, self._bus = engine, communication, communication.bus
         self.handles = EntityHandles(engine, self.make_movable)
-        self.spawner = Spawner(sim, engine, communication, self.handles, stateful, load_model, make_parts)
+        self.spawner = Spawner(sim, engine, communication, self.handles, snapshots, source)
 
     # ------------------------------------------------------------------ lists
 
@@ -83,10 +82,10 @@ class WorldContents:
 
         The first of equal names counts.
         """
-        found: dict[str, Any] = {}
+        by_name: dict[str, Any] = {}
         for plugin in self._engine.structure.all_plugins():
-            found.setdefault(f"{plugin.scoped}::{plugin.name}" if plugin.scoped else plugin.name, plugin)
-        return found
+            by_name.setdefault(f"{plugin.scoped}::{plugin.name}" if plugin.scoped else plugin.name, plugin)
+        return by_name
 
     @property
     def labels(self) -> Labels:
@@ -139,6 +138,7 @@ class WorldContents:
         self._engine.check_open()
         self.handles.model(name)  # raises KeyError for an unknown name
         self.spawner.remove(name)
+        self._communication.services.abandon_gone()
         self._communication.actions.abandon_gone()
         self._engine.reschedule()
         self.spawner.forget_gone()
@@ -159,7 +159,7 @@ class WorldContents:
         model = self.handles.model(name)
         check_model_name(new_name)
         if new_name in self.handles.models:
-            raise InputError(f"SK-LOAD-011 a model {new_name!r} exists already", "SK-LOAD-011")
+            raise InputError("SK-LOAD-011", f"a model {new_name!r} exists already")
         copied = copy_model(model.scene, new_name, model.pose if pose is None else pose)
         return self.spawn_all([(copied, None, None)])[0]
 
@@ -229,6 +229,21 @@ class WorldContents:
         """
         return self.spawner.read(source).pose_world
 
+    # ------------------------------------------------------------------ frames
+
+    @journaled
+    def set_sensor_frame(self, name: str, frame: str) -> None:
+        """Set the frame of a sensor's messages.
+
+        Args:
+            name: scoped name of the sensor.
+            frame: name of the frame.
+
+        Raises:
+            KeyError: the sensor does not exist.
+        """
+        self.open_handles.find("sensor", name).set_frame_id(frame)
+
     # ------------------------------------------------------------------ welds
 
     @journaled
@@ -257,10 +272,10 @@ class WorldContents:
         model, data = engine.mj_model, engine.physics.fresh()
         first, second = int(model.eq_obj1id[number]), int(model.eq_obj2id[number])
         if closed:
-            one, two = (Pose(data.xpos[b], data.xquat[b]) for b in (first, second))
+            parent, child = (Pose(data.xpos[b], data.xquat[b]) for b in (first, second))
             row = engine.touch("eq_data")[number]
-            row[3:6] = one.inverse().transform(two.transform(row[:3]))
-            row[6:10] = quat_multiply(quat_conjugate(one.quaternion), two.quaternion)
+            row[3:6] = parent.inverse().transform(child.transform(row[:3]))
+            row[6:10] = quat_multiply(quat_conjugate(parent.quaternion), child.quaternion)
         engine.mj_data.eq_active[number] = closed
         for body in (first, second):
             engine.physics.changed_body(STALE, body)

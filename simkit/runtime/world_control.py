@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import TYPE_CHECKING, Protocol
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 import mujoco
 import numpy as np
 
 from simkit.argument_checks import checked_vector
+from simkit.compiler.start_positions import place_joints
 from simkit.compiler.state_transfer import copy_state
 from simkit.errors import InputError
 from simkit.pose import Vector
@@ -19,13 +22,16 @@ from simkit.runtime.engine.physics_state import STALE
 from simkit.runtime.model_copy import present_world
 
 if TYPE_CHECKING:
-    from simkit.diagnostics import Diagnostics
     from simkit.runtime.communication.command_queue import CommandQueue
     from simkit.runtime.communication.topic_bus import TopicBus
     from simkit.runtime.engine.engine import Engine
     from simkit.runtime.engine.snapshot import Snapshot
     from simkit.runtime.handles.entity_handles import EntityHandles
-    from simkit.scene import SceneWorld, SphericalCoordinates
+    from simkit.runtime.world_source import LoadedState, WorldSource
+    from simkit.scene import SphericalCoordinates
+
+
+R = TypeVar("R")
 
 
 class Advance(Protocol):
@@ -86,13 +92,7 @@ class PauseControl:
 
     def run_to(self, time_ns: int) -> None:
         """Run the world to the first tick at or after a simulated time [ns], and pause there."""
-        clock = self._engine.clock
-        tick = clock.ticks(time_ns / 1e9)
-        while clock.time_ns(tick) < time_ns:
-            tick += 1
-        while tick > 0 and clock.time_ns(tick - 1) >= time_ns:
-            tick -= 1
-        self._set(tick, is_stepping=False)
+        self._set(self._engine.clock.tick_at(time_ns), is_stepping=False)
 
     def catch_up(self) -> None:
         """Run to the pause tick if no step is active and no other code keeps the world running."""
@@ -164,7 +164,7 @@ class GeographicOrigin:
         sensors = [s for s in engine.structure.all_sensors() if hasattr(s, "relocate")]
         for sensor in sensors:
             sensor.take_held()
-        engine.world = replace(engine.world, spherical_coordinates=place)
+        engine.change_world(replace(engine.world, spherical_coordinates=place))
         for sensor in sensors:
             sensor.relocate()
 
@@ -192,6 +192,100 @@ class Page(Protocol):
         """Close the page."""
 
 
+class Program(Protocol):
+    """Program that runs between the steps of a simulation.
+
+    Attributes:
+        name: name in messages.
+        file: file of the program; None for a function.
+        log: lines of its log, with the traceback of an exception.
+        error: exception that ended the program, SystemExit for an exit code that is not 0; None without one.
+        exit_code: exit code of the program; 0 without an error.
+        done: True after its end.
+        hand_overs: number of times that the program got its turn.
+        restarts: number of times that the program started anew after an exception.
+        failure: name, with the place and the text of the exception, or the exit code; empty without an error.
+        label: name that no other program of the run has, if the run gives one.
+        awaited: event for which the program has waited until now, such as "the exit of spawn"; empty after its start.
+    """
+
+    name: str
+    file: Path | None
+    log: list[str]
+    error: BaseException | None
+    done: bool
+    exit_code: int
+    hand_overs: int
+    restarts: int
+
+    @property
+    def failure(self) -> str: ...
+    @property
+    def label(self) -> str: ...
+    @property
+    def awaited(self) -> str: ...
+
+
+class Programs(Protocol):
+    """Programs that run between the steps of a simulation, such as ROS nodes.
+
+    Attributes:
+        programs: programs in the order in which they were added.
+        ended_by: name of the program whose end has ended the run; empty before.
+    """
+
+    programs: list[Any]
+    ended_by: str
+
+    def add(
+        self,
+        program: str | PathLike[str] | Callable[[], object],
+        *,
+        name: str | None,
+        namespace: str | None,
+        remap: Mapping[str, str],
+        params: Mapping[str, object],
+        args: Sequence[str],
+        latency: float | tuple[float, float],
+        discovery: float,
+        limit: float,
+        restart: float | None,
+        keys: str | Sequence[tuple[float, str]] | None,
+        label: str | None,
+        after: Mapping[str, str] | None,
+        delay: float,
+        respawn: float | None,
+        ends_run: bool,
+        env: Mapping[str, str] | None,
+        cwd: str | PathLike[str] | None,
+    ) -> Any:
+        """Add a program and return its handle; see `Simulation.add_node`."""
+
+    def set_parameters(self, values: Mapping[str, object]) -> None:
+        """Set parameters of ROS 1 for all programs; see `Simulation.set_ros_parameters`."""
+
+    def call_outside(self, function: Callable[[], R]) -> R:
+        """Call a function that changes the world, also for a program, in the thread of the simulation."""
+
+    def advance(self, target: int, advance: Callable[[int], None]) -> None:
+        """Call `advance` up to the tick `target`, and run the programs at the ticks for which they wait."""
+
+    def end(self) -> None:
+        """End all programs, before a reset."""
+
+    def restart(self) -> None:
+        """Start all programs anew, after a reset."""
+
+    def follow_restore(self, before_ns: int) -> None:
+        """Continue the programs after a restore, which does not restore them, from a simulated time [ns]."""
+
+    def note_snapshot(self) -> None:
+        """Report that a snapshot does not contain the programs."""
+
+    def close(self) -> None:
+        """End all programs."""
+
+
 class WorldControl:
     """Functions behind the services of a world.
 
@@ -200,36 +294,34 @@ class WorldControl:
         bus: topic bus of the simulation.
         handles: handles of the simulation.
         advance: function that makes steps.
-        loaded: function that returns the state at the start; raises InputError while the world is still being loaded.
+        loaded: state to which a reset returns.
+        source: functions that read and write files.
+        has_controller_nodes: True if nodes of the run load the controllers of its robots.
 
     Attributes:
         pausing: pause state.
         origin: geographic position of the world's origin.
-        write_sdf: function that writes a world as SDF text; set from outside, because this package knows no file
-            format.
-        list_models: function that returns the sources of the models that can be spawned, by name; set from outside.
-        check_source: function that raises InputError for a source that a client may not spawn; set from outside.
-        resolve_world: function that returns the world of the file with other overrides; set from outside.
-        file_arguments: arguments of the xacro file of the world, with their values.
-        xacro_overrides: those of the arguments that overrides gave.
-        loaded_world: world of the loaded state.
+        source: functions that read and write files.
     """
 
-    write_sdf: Callable[[SceneWorld], str] | None = None
-    resolve_world: Callable[[Sequence[str], Diagnostics], SceneWorld] | None = None
-    list_models: Callable[[], dict[str, str]] | None = None
-    check_source: Callable[[str], None] | None = None
-
     def __init__(
-        self, engine: Engine, bus: TopicBus, handles: EntityHandles, advance: Advance, loaded: Callable[[], Snapshot]
+        self,
+        engine: Engine,
+        bus: TopicBus,
+        handles: EntityHandles,
+        advance: Advance,
+        loaded: LoadedState,
+        source: WorldSource,
     ) -> None:
         self._engine, self._bus, self._handles = engine, bus, handles
-        self._advance, self._loaded = advance, loaded
+        self._advance, self._loaded, self.source = advance, loaded, source
         self.pausing = PauseControl(engine, advance, bus.inbox)
         self.origin = GeographicOrigin(engine)
-        self.loaded_world = engine.world
-        self.file_arguments: Mapping[str, str] = {}
-        self.xacro_overrides: Mapping[str, str] = {}
+        self.has_controller_nodes = False
+
+    def list_models(self) -> dict[str, str]:
+        """Return the sources of the models that can be spawned, by name."""
+        return self.source.list_models()
 
     def client_source(self, source: str) -> str:
         """Return the source of a model that a client wants to spawn: a text, URI, bundled name or path.
@@ -237,8 +329,8 @@ class WorldControl:
         Raises:
             InputError: SK-URI-003 it is a path outside the folders of the run.
         """
-        if self.check_source is not None:
-            self.check_source(source)
+        if self.source.check_source is not None:
+            self.source.check_source(source)
         return source
 
     # ------------------------------------------------------------------ running
@@ -273,6 +365,11 @@ class WorldControl:
         """Use another seed for all random numbers from now on."""
         self._bus.settle()
         self._engine.streams.reseed(seed)
+
+    @journaled
+    def leave_controllers_to_nodes(self) -> None:
+        """Leave the start of all controllers to nodes: robots do not start their controllers by themselves."""
+        self.has_controller_nodes = True
 
     # ------------------------------------------------------------------ physics
 
@@ -318,13 +415,13 @@ class WorldControl:
         Raises:
             InputError: the simulation has no SDF writer.
         """
-        if self.write_sdf is None:
+        if self.source.write_sdf is None:
             raise InputError("this simulation has no SDF writer; create it with simkit.load")
         models = [(handle.scene, handle.pose) for handle in self._handles.models.values()]
         everything = self._handles.tables["light"].values()
         lights = [(light.scene, light.pose) for light in everything if not light.scene.link]
         x, y, z = self.gravity.tolist()
-        return self.write_sdf(replace(present_world(self._engine.world, models, lights), gravity=(x, y, z)))
+        return self.source.write_sdf(replace(present_world(self._engine.world, models, lights), gravity=(x, y, z)))
 
     @journaled
     def reset_models(self) -> None:
@@ -332,7 +429,9 @@ class WorldControl:
 
         Plugins restart too, as in Gazebo Classic; sensors continue.
         """
-        engine, loaded = self._engine, self._loaded()
+        engine = self._engine
+        engine.check_open()
+        loaded = self._loaded.snapshot
         self._bus.settle()
         for sensor in engine.structure.all_sensors():
             sensor.take_held()
@@ -360,12 +459,13 @@ def _reset_physics(engine: Engine, loaded: Snapshot) -> None:
         if field in engine.originals:
             engine.touch(field)[:] = engine.original(field)
     fresh = mujoco.MjData(model)
+    place_joints(model, fresh, engine.names.joints.values())
     data.qpos[:], data.qvel[:] = fresh.qpos, 0.0
     data.mocap_pos[:], data.mocap_quat[:] = fresh.mocap_pos, fresh.mocap_quat
     data.ctrl[:], data.eq_active[:] = fresh.ctrl, fresh.eq_active
     data.qacc_warmstart[:] = data.qfrc_applied[:] = 0.0
     data.xfrc_applied[:] = physics.persistent_wrenches
     copy_state(loaded.structure.compiled.model, loaded.data, model, data, ("qvel",))
-    physics.one_shot = False
+    physics.push_once(False)
     physics.changed_model()
     physics.changed(STALE)

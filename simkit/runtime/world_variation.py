@@ -11,9 +11,9 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from simkit.compiler.model_compilation import place_followers
 from simkit.compiler.moved_models import SHAPE_FIELDS
-from simkit.compiler.number_edits import DERIVED_FIELDS, plan_number_edits, replace_scenes
+from simkit.compiler.number_edits import DERIVED_FIELDS, plan_number_edits
+from simkit.compiler.start_positions import place_joints
 from simkit.compiler.state_transfer import fields_on_changed_model, restore_compiled_fields
 from simkit.diagnostics import Diagnostics
 from simkit.packs import is_shipped
@@ -50,27 +50,28 @@ def apply_overrides(sim: Simulation, overrides: Overrides, seed: int | None = No
         InputError: an override has no such path, or an invalid value.
     """
     overrides = override_texts(overrides)
-    if sim.control.resolve_world is None:
+    source = sim.control.source
+    if source.resolve_world is None:
         return False
     arguments = xacro_overrides(overrides)
-    if arguments.items() - sim.control.file_arguments.items() or sim.control.xacro_overrides.keys() - arguments.keys():
+    if arguments.items() - source.file_arguments.items() or source.xacro_overrides.keys() - arguments.keys():
         return False
-    found = Diagnostics()
-    world = sim.control.resolve_world(tuple(overrides), found)
+    diagnostics = Diagnostics()
+    world = source.resolve_world(tuple(overrides), diagnostics)
     is_strict = sim.run_spec is not None and sim.run_spec.options.get("strict", False)
-    if found.has_errors or (is_strict and any(item.severity == "warning" for item in found)):
+    if diagnostics.has_errors or (is_strict and any(item.severity == "warning" for item in diagnostics)):
         return False  # a new load reports the problems
-    changes = entity_changes(sim.control.loaded_world, world)
+    changes = entity_changes(sim.loaded.world, world)
     if changes is None or any(_is_read(sim.engine, change) for change in changes):
         return False
     if changes:
-        loaded = sim._loaded_state()
+        sim.engine.check_open()
+        loaded = sim.loaded.snapshot
         edits = plan_number_edits(loaded.structure.compiled, world, changes)
         if edits is None or (edits.are_derived and loaded.fields.keys() & set(DERIVED_FIELDS)):
             return False  # a plugin changed a mass during the load, so that numbers follow from both changes
         _switch_world(sim, loaded, world, edits)
-    if sim.run_spec is not None:
-        sim.run_spec = replace(sim.run_spec, overrides=tuple(overrides))
+    sim.loaded.change_overrides(overrides)
     sim.reset(seed)
     return True
 
@@ -108,11 +109,10 @@ def _switch_world(sim: Simulation, loaded: Snapshot, world: SceneWorld, edits: N
         sensor.reset()  # otherwise a camera would draw its last sample for the change of the model, which takes 50 ms
     lights = [light for light in world.lights if light not in builder.world.lights]
     if lights or engine.structure is not structure:
-        sim._restore(loaded)
+        sim.contents.spawner.restore(loaded)
     models = {model.name: model for model in world.models if structure.models.get(model.name) is not model}
-    for model in models.values():
-        replace_scenes(builder.records[model.scoped], model)
-    builder.world = engine.world = sim.control.loaded_world = world
+    builder.replace_scenes(world, models.values())
+    engine.change_world(world)
     handles.replace_scenes(structure.models, models)
     handles.replace_lights(lights)
     before = dict(engine.originals)
@@ -120,7 +120,7 @@ def _switch_world(sim: Simulation, loaded: Snapshot, world: SceneWorld, edits: N
     structure = replace(structure, compiled=compiled, models={**structure.models, **models})
     if compiled.model is engine.mj_model:
         sim.contents.spawner.adopt_numbers(structure, are_scenes_changed=bool(models), are_derived=edits.are_derived)
-        data, sleep = loaded.data, loaded.sleep
+        data, sleep = loaded.data, loaded.physics.sleep
     else:
         _write_first_state(loaded, compiled)
         sim.contents.spawner.adopt(structure)
@@ -129,12 +129,13 @@ def _switch_world(sim: Simulation, loaded: Snapshot, world: SceneWorld, edits: N
         loaded = replace(loaded, handles=[(part, part.get_state()) for part, _ in loaded.handles])
     fields = fields_on_changed_model(loaded.fields, before, compiled.model)
     fields["gravity"] = compiled.model.opt.gravity.copy()
-    snapshots = sim.contents.spawner.snapshots
-    snapshots.variant += 1
-    sim._loaded = replace(
-        loaded, structure=structure, data=data, sleep=sleep, fields=fields, window=StepWindow(),
-        handles=_states_on_changed_model(engine, loaded, before), variant=snapshots.variant,
+    variant = sim.contents.spawner.snapshots.begin_variant()
+    changed = replace(
+        loaded, structure=structure, data=data, fields=fields,
+        physics=replace(loaded.physics, sleep=sleep, window=StepWindow()),
+        handles=_states_on_changed_model(engine, loaded, before), variant=variant,
     )  # fmt: skip
+    sim.loaded.change(changed, world)
 
 
 def _states_on_changed_model(
@@ -158,7 +159,7 @@ def _write_first_state(loaded: Snapshot, compiled: Compiled) -> None:
     mujoco.mj_copyData(data, compiled.model, loaded.data)
     if not np.array_equal(before.model.qpos0, compiled.model.qpos0):
         first = mujoco.MjData(before.model)
-        place_followers(first, before.names.joints.values())
+        place_joints(before.model, first, before.names.joints.values())
         data.qpos[:] = np.where(data.qpos == first.qpos, positions, data.qpos)
 
 

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from simkit.scene.model import SceneJoint, SceneLink, SceneModel, SceneSensor, SceneVisual
 from simkit.scene.world import SceneWorld
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
 
 HELD_ENTITIES: Final[dict[type, tuple[str, ...]]] = {
     SceneWorld: ("models", "lights", "joints", "plugins", "actors"),
@@ -48,22 +52,22 @@ class _DifferentEntities(Exception):
     """Two worlds have different entities."""
 
 
-def _changes(old: Any, new: Any, owner: SceneModel | None) -> Iterator[EntityChange]:
+def _changes(old: DataclassInstance, new: object, owner: SceneModel | None) -> Iterator[EntityChange]:
     if old is new:
         return
     if type(old) is not type(new) or getattr(old, "name", "") != getattr(new, "name", ""):
         raise _DifferentEntities
-    held = HELD_ENTITIES.get(type(old), ())
+    entities = HELD_ENTITIES.get(type(old), ())
     different = frozenset(
         field.name
         for field in fields(old)
-        if field.name not in held
+        if field.name not in entities
         and field.name != "where"
         and _differ(getattr(old, field.name), getattr(new, field.name))
     )
     if different:
         yield EntityChange(old, new, different, owner)
-    for name in held:
+    for name in entities:
         before, after = getattr(old, name), getattr(new, name)
         if before is after:
             continue
@@ -74,5 +78,5 @@ def _changes(old: Any, new: Any, owner: SceneModel | None) -> Iterator[EntityCha
             yield from _changes(first, second, second if is_top else owner)
 
 
-def _differ(one: object, other: object) -> bool:
-    return one is not other and one != other
+def _differ(value: object, other: object) -> bool:
+    return value is not other and value != other

@@ -85,12 +85,12 @@ class EntityPaths:
 
     def holders(self, entity: Entity) -> list[Any]:
         """Return the descriptions that hold an entity, from the world down."""
-        found: list[Any] = []
+        holders: list[Any] = []
         item: Any = self.world
         for field, index in entity.location:
-            found.append(item)
+            holders.append(item)
             item = getattr(item, field)[index]
-        return found
+        return holders
 
     def find(self, path: str) -> list[tuple[Entity, str]]:
         """Return the entities that a path names, each with the element below it.
@@ -106,9 +106,9 @@ class EntityPaths:
         start = max(path.rfind("*"), path.rfind("?"), path.rfind("::"))
         for dot in (i for i in dots if i > start):
             pattern = _pattern(path[:dot])
-            found = [e for name, entities in self._by_path.items() if pattern.fullmatch(name) for e in entities]
-            if found:
-                return [(entity, path[dot + 1 :]) for entity in dict.fromkeys(found)]
+            matching = [e for name, entities in self._by_path.items() if pattern.fullmatch(name) for e in entities]
+            if matching:
+                return [(entity, path[dot + 1 :]) for entity in dict.fromkeys(matching)]
         return []
 
 
@@ -117,7 +117,7 @@ def _pattern(text: str) -> re.Pattern[str]:
     return re.compile(".*".join(part.replace(r"\*", "(?:(?!::).)*").replace(r"\?", "[^:]") for part in parts))
 
 
-def _entities(holder: Any, location: Location, owner: str) -> Iterator[Entity]:
+def _entities(holder: object, location: Location, owner: str) -> Iterator[Entity]:
     for field in HOLDER_FIELDS.get(type(holder), ()):
         for index, item in enumerate(getattr(holder, field)):
             place = (*location, (field, index))

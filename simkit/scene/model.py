@@ -339,13 +339,13 @@ class SceneModel:
 
     def all_sensors(self) -> list[SceneSensor]:
         """Return every sensor on links and joints, in document order of the models."""
-        found: list[SceneSensor] = []
+        sensors: list[SceneSensor] = []
         for model in self.all_models():
             for link in model.links:
-                found += link.sensors
+                sensors += link.sensors
             for joint in model.joints:
-                found += joint.sensors
-        return found
+                sensors += joint.sensors
+        return sensors
 
 
 @dataclass(frozen=True, slots=True)

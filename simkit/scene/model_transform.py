@@ -58,7 +58,7 @@ class _ModelCopier:
             return value.copied() if self._copies_params else value  # type: ignore[return-value]
         if not is_dataclass(value) or isinstance(value, type):
             return value
-        changed: dict[str, Any] = {}
+        changed: dict[str, object] = {}
         for field in fields(value):
             before = getattr(value, field.name)
             after = self._field(field.name, before)
@@ -75,7 +75,7 @@ class _ModelCopier:
             return tuple(self._shift.rotate(value).tolist())
         return self.of(value)
 
-    def _name(self, value: Any) -> Any:
+    def _name(self, value: object) -> object:
         if self._old == self._new:
             return value
         if value == self._old or (isinstance(value, str) and value.startswith(f"{self._old}::")):

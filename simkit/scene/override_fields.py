@@ -59,11 +59,11 @@ class Field:
 
     element: str
     kind: ValueKind
-    read: Callable[[Any], Any]
-    write: Callable[[Any, Any], Any]
+    read: Callable[[Any], object]
+    write: Callable[[Any, Any], object]
 
 
-def _read_attribute(entity: Any, path: list[str]) -> Any:
+def _read_attribute(entity: Any, path: list[str]) -> object:
     for name in path:
         entity = entity[int(name)] if name.isdigit() else getattr(entity, name)
         if entity is None:
@@ -71,7 +71,7 @@ def _read_attribute(entity: Any, path: list[str]) -> Any:
     return entity
 
 
-def _write_attribute(entity: Any, path: list[str], value: Any) -> Any:
+def _write_attribute(entity: Any, path: list[str], value: object) -> Any:
     name, *rest = path
     if name.isdigit():
         number_ = int(name)
@@ -172,7 +172,7 @@ def _set_mu(collision: SceneCollision, mu: float) -> SceneCollision:
     return replace(collision, surface=replace(collision.surface, mu=mu, mu2=mu))
 
 
-def _given(name: str) -> Callable[[Any], Any]:
+def _given(name: str) -> Callable[[SceneCollision], float]:
     """Return a function that reads a property of a surface; 0 if the file gives no value."""
     return lambda collision: getattr(collision.surface, name) or 0.0
 
@@ -283,15 +283,15 @@ def _turn_axis(joint: SceneJoint, index: int, value: tuple[float, ...]) -> Scene
 
 
 def _joint_fields(joint: SceneJoint) -> tuple[Field, ...]:
-    found: list[Field] = []
+    fields: list[Field] = []
     for index, axis in enumerate(joint.axes[:2]):
         slides = joint.type == "prismatic" or (joint.type == "planar")
-        found += _axis_fields("axis2" if index else "axis", index, slides, axis.mimic is not None)
+        fields += _axis_fields("axis2" if index else "axis", index, slides, axis.mimic is not None)
     if joint.type == "screw":
-        found.append(_field("thread_pitch", number("m")))
+        fields.append(_field("thread_pitch", number("m")))
     if joint.type == "gearbox":
-        found.append(_field("gearbox_ratio", number()))
-    return tuple(found)
+        fields.append(_field("gearbox_ratio", number()))
+    return tuple(fields)
 
 
 def _set_direction(light: SceneLight, value: tuple[float, ...]) -> SceneLight:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 from simkit.params import Params
 from simkit.scene.entity_paths import AREAS, Entity, EntityPaths
@@ -65,9 +65,9 @@ def settable_paths(
         read: function that returns the parameters of a sensor; None for those in the file only.
     """
     paths = EntityPaths(world)
-    found = [(entity, value) for entity in paths.all() for value in _values(paths, entity, read)]
+    values = [(entity, value) for entity in paths.all() for value in _values(paths, entity, read)]
     counts: dict[str, int] = {}
-    for entity, value in found:
+    for entity, value in values:
         path = f"{entity.path}.{value.path}"
         counts[path] = counts.get(path, 0) + 1
     return [SettablePath(f"{XACRO}{name}", text) for name, text in (arguments or {}).items()] + [
@@ -75,13 +75,13 @@ def settable_paths(
             f"{entity.qualified if counts[f'{entity.path}.{value.path}'] > 1 else entity.path}.{value.path}",
             *(value.value, value.unit, value.parts),
         )
-        for entity, value in found
+        for entity, value in values
     ]
 
 
 def _values(paths: EntityPaths, entity: Entity, read: ParameterReader | None) -> Iterator[SettablePath]:
     """Yield the values of one entity; their paths begin below the entity."""
-    item: Any = paths.item(entity)
+    item = paths.item(entity)
     if not entity.area:
         if len(entity.location) == 1 and entity.kind == "model":
             yield SettablePath("count", "1")
@@ -93,9 +93,9 @@ def _values(paths: EntityPaths, entity: Entity, read: ParameterReader | None) ->
         if value is not None:
             yield SettablePath(field.element, field.kind.format(value), field.kind.unit, field.kind.parts)
     if isinstance(item, (SceneSensor, ScenePlugin)):
-        own = _FIELDS_OF_SENSORS if isinstance(item, SceneSensor) else frozenset()
+        of_sensor = _FIELDS_OF_SENSORS if isinstance(item, SceneSensor) else frozenset()
         for path, text in parameter_values(read(item) if read and isinstance(item, SceneSensor) else item.params):
-            if path not in own and not path.startswith("pose."):
+            if path not in of_sensor and not path.startswith("pose."):
                 yield SettablePath(path, text, _unit(path))
 
 

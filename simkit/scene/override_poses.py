@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, Final, TypeVar
+from typing import Final, TypeVar
 
 from simkit.pose import IDENTITY, Pose
 from simkit.scene.geometry import Box, Capsule, Cone, Cylinder, Ellipsoid, Geometry, Sphere, vec3
@@ -31,7 +31,7 @@ _GAP: Final = 1.25
 """Distance of two copies in units of their width."""
 
 
-def pose_of(entity: Any, holders: Sequence[Any]) -> Pose | None:
+def pose_of(entity: object, holders: Sequence[object]) -> Pose | None:
     """Return the pose that an override of `pose` sets; None if the entity has none.
 
     The pose of a model is in the frame of its outer model or of the world, that of a link in its model, that of a
@@ -49,7 +49,7 @@ def pose_of(entity: Any, holders: Sequence[Any]) -> Pose | None:
     return None
 
 
-def _base(entity: Any, holders: Sequence[Any]) -> Pose:
+def _base(entity: object, holders: Sequence[object]) -> Pose:
     """Return the world pose of the frame in which the pose of an entity is given."""
     if isinstance(entity, SceneJoint):
         inner = (owner for owner in reversed(holders) if isinstance(owner, (SceneModel, SceneWorld)))
@@ -60,7 +60,7 @@ def _base(entity: Any, holders: Sequence[Any]) -> Pose:
     return owner.pose_world if isinstance(owner, (SceneModel, SceneLink)) else IDENTITY
 
 
-def set_pose(entity: T, pose: Pose, holders: Sequence[Any]) -> T:
+def set_pose(entity: T, pose: Pose, holders: Sequence[object]) -> T:
     """Return a collision, visual, sensor, light, joint or actor at another pose."""
     match entity:
         case SceneCollision() | SceneVisual():

@@ -30,7 +30,7 @@ class ValueKind:
     format: Callable[[Any], str]
     parts: tuple[str, ...] = ()
 
-    def replace_part(self, value: Any, part: str, text: str) -> str:
+    def replace_part(self, value: object, part: str, text: str) -> str:
         """Return the text of a value in which one component has another text."""
         words = self.format(value).split()
         words[self.parts.index(part)] = text

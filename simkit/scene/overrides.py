@@ -97,7 +97,7 @@ class _Problems:
     def raise_if_any(self) -> None:
         """Raise one InputError with all errors."""
         if self._found:
-            raise InputError("\n".join(self._found), _CODE)
+            raise InputError(_CODE, "\n".join(self._found), shows_code=False)
 
 
 def xacro_overrides(overrides: Sequence[str]) -> dict[str, str]:
@@ -123,10 +123,10 @@ def check_used(diagnostics: Iterable[Diagnostic]) -> None:
     Raises:
         InputError: SK-CLI-014 with the closest name.
     """
-    for found in diagnostics:
-        if found.code == "SK-PARAM-003" and (found.file or "").startswith(SOURCE_PREFIX):
-            hint = f"; {found.hint}" if found.hint else ""
-            raise InputError(f"{_CODE} {found.file}: {found.message}{hint}", _CODE)
+    for problem in diagnostics:
+        if problem.code == "SK-PARAM-003" and (problem.file or "").startswith(SOURCE_PREFIX):
+            hint = f"; {problem.hint}" if problem.hint else ""
+            raise InputError(_CODE, f"{problem.file}: {problem.message}{hint}")
 
 
 class _Override:
@@ -139,7 +139,7 @@ class _Override:
             raise self._error("write PATH=VALUE, such as physics.max_step_size=0.002")
 
     def _error(self, reason: str) -> InputError:
-        return InputError(f"{_CODE} {SOURCE_PREFIX}{self.text}: {reason}", _CODE)
+        return InputError(_CODE, f"{SOURCE_PREFIX}{self.text}: {reason}")
 
     def is_argument(self, scene: Scene) -> bool:
         """Check whether the override is an argument of a xacro file, which was used when the file was read."""
@@ -177,9 +177,9 @@ class _Override:
 
     def named(self, paths: EntityPaths) -> list[tuple[Entity, str]]:
         """Return the entities that the path names, each with the element below it; raise InputError without any."""
-        found = paths.find(self.path)
-        if found:
-            return [(entity, _full_element(paths.item(entity), element)) for entity, element in found]
+        entities = paths.find(self.path)
+        if entities:
+            return [(entity, _full_element(paths.item(entity), element)) for entity, element in entities]
         if paths.has(self.path) or self.path in AREAS:
             raise self._error(f"{self.path!r} needs an element, as in {self.path}.element=value")
         outer, colons, last = self.path.rpartition("::")
@@ -217,17 +217,17 @@ class _Override:
         item, holders = paths.item(entity), paths.holders(entity)
         if element == "pose" or element.startswith("pose."):
             return self._moved(world, entity, item, holders, element)
-        whole, part, field = _field_of(entity, item, element)
+        field_name, part, field = _field_of(entity, item, element)
         if field is not None:
             new = self._written(item, field, part)
             if field.element == MU and (entity.path, MU2) in explicit:
                 new = replace(new, surface=replace(new.surface, mu2=item.surface.mu2))
             if field.element == MASS and any((entity.path, e) in explicit for e in (INERTIA, *_inertia_parts())):
                 new = replace(new, inertial=replace(new.inertial, inertia=item.inertial.inertia))
-            if (isinstance(item, SceneSensor) and whole == "update_rate") or (
-                isinstance(item, SceneSensor) and whole == "topic"
+            if (isinstance(item, SceneSensor) and field_name == "update_rate") or (
+                isinstance(item, SceneSensor) and field_name == "topic"
             ):
-                new = self._with_parameter(new, whole)
+                new = self._with_parameter(new, field_name)
         elif isinstance(item, (SceneSensor, ScenePlugin)):
             if element in ("name", "type"):
                 raise self._error(f"<{element}> cannot be set")
@@ -249,7 +249,7 @@ class _Override:
         value = self._parsed(field.kind, old, part)
         return item if value is old else field.write(item, value)
 
-    def _parsed(self, kind: ValueKind, old: Any, part: str) -> Any:
+    def _parsed(self, kind: ValueKind, old: object, part: str) -> Any:
         """Return the new value; the old object if the text is that of the old value."""
         text = kind.replace_part(old, part, self.value) if part else self.value
         if old is not None and text == kind.format(old):
@@ -260,7 +260,7 @@ class _Override:
             allowed = "a number" if part else kind.allowed
             raise self._error(f"found {self.value!r}; expected {allowed}") from None
 
-    def _moved(self, world: SceneWorld, entity: Entity, item: Any, holders: list[Any], element: str) -> SceneWorld:
+    def _moved(self, world: SceneWorld, entity: Entity, item: object, holders: list[Any], element: str) -> SceneWorld:
         old = pose_of(item, holders)
         part = element.removeprefix("pose").removeprefix(".")
         if old is None or (part and part not in POSE.parts):
@@ -291,7 +291,7 @@ class _NoElementError(InputError):
     """Refusal of an entity that has no such element; another entity of the same name may have it."""
 
     def __init__(self, error: InputError) -> None:
-        super().__init__(str(error), _CODE)
+        super().__init__(_CODE, str(error), shows_code=False)
 
 
 def _listed(names: Sequence[str]) -> str:
@@ -302,11 +302,11 @@ def _inertia_parts() -> list[str]:
     return [f"{INERTIA}.{part}" for part in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")]
 
 
-def _all_fields(entity: Entity, item: Any) -> Sequence[Field]:
+def _all_fields(entity: Entity, item: object) -> Sequence[Field]:
     return AREAS.get(entity.area) or fields_of(item)
 
 
-def _full_element(item: Any, element: str) -> str:
+def _full_element(item: object, element: str) -> str:
     """Return the full name of an element that is written without its first names, such as `mu`."""
     known = [field.element for field in fields_of(item)]
     head = next((name for name in known if element == name or element.startswith(name + ".")), None)
@@ -319,7 +319,7 @@ def _full_element(item: Any, element: str) -> str:
     return ends[0] if len(ends) == 1 else element
 
 
-def _has_element(item: Any, element: str) -> bool:
+def _has_element(item: object, element: str) -> bool:
     """Check whether an entity has an element; a sensor or plugin may read elements that its file leaves out."""
     if element.split(".")[0] == "pose":
         return not isinstance(item, ScenePlugin)
@@ -328,7 +328,7 @@ def _has_element(item: Any, element: str) -> bool:
     return any(element == f.element or element.rpartition(".")[0] == f.element for f in fields_of(item))
 
 
-def _field_of(entity: Entity, item: Any, element: str) -> tuple[str, str, Field | None]:
+def _field_of(entity: Entity, item: object, element: str) -> tuple[str, str, Field | None]:
     """Return the field's element, the component or an empty text, and the field; None for the field if unknown."""
     for field in _all_fields(entity, item):
         if element == field.element:

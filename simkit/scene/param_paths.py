@@ -23,11 +23,11 @@ def _index(block: Params, name: str) -> int | None:
     """Return the position of a child by its name, in any of its spellings; None if it is absent."""
     match = _NUMBERED.fullmatch(name)
     plain, number = (match[1], int(match[2])) if match else (name, 0)
-    found = [i for i, child in enumerate(block.children) if child.name == plain]
-    if not found:
+    indices = [i for i, child in enumerate(block.children) if child.name == plain]
+    if not indices:
         same = next((names for names in _SPELLINGS if plain in names), frozenset())
-        found = [i for i, child in enumerate(block.children) if child.name in same]
-    return found[number] if number < len(found) else None
+        indices = [i for i, child in enumerate(block.children) if child.name in same]
+    return indices[number] if number < len(indices) else None
 
 
 def has_parameter(params: Params, element: str) -> bool:

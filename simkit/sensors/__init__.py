@@ -9,7 +9,6 @@ holds the code that all kinds share. The kinds are discovered at first use, in t
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from simkit.registry import Kinds
@@ -23,11 +22,11 @@ GROUP = "simkit.sensors"
 
 
 @functools.cache
-def sensor_kinds() -> Mapping[str, type[Sensor]]:
+def sensor_kinds() -> Kinds[Sensor]:
     """Return every known sensor class by its `<sensor type>`, as a read-only mapping.
 
     Raises:
-        RuntimeError: two classes claim the same kind.
+        RuntimeError: two classes of simkit claim the same kind.
     """
     from simkit.sensors.base import Sensor
 

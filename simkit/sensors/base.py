@@ -23,10 +23,11 @@ from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.pose import Pose, Vector
 from simkit.runtime import Simulation
+from simkit.runtime.array_rules import CannotBatchError, SensorRule, array_rule_of
 from simkit.runtime.engine.random_streams import RandomStreams
+from simkit.runtime.engine.simulated_time import TickGrid
 from simkit.scene import SceneSensor
-from simkit.sensors.noise import NO_NOISE, Noise, NoiseModel, UniformNoise
-from simkit.sensors.noise_keeper import SettableNoise
+from simkit.sensors.noise import NO_NOISE, Noise, NoiseModel, SettableNoise, UniformNoise
 from simkit.sensors.sample import NoiseProcess, Product, Reading, Sample
 from simkit.sensors.sample_times import DelayedReadings, SampleTimes, read_timing
 from simkit.sensors.sampler import Sampler
@@ -56,6 +57,8 @@ class Sensor(Sampler):
         reads_contacts: True if `measure` reads contacts. Bodies that rest on a static link with such a sensor never
             sleep.
         needs_renderer: True if the readings are drawn images.
+        sees_scene: True if other objects can change a reading without contact, as for cameras and rays. Plugins that
+            move scenery then move it before each sample.
         has_dynamic_bias: True if the bias of this kind drifts in Gazebo, which then passes the time between samples to
             the noise.
         name, scoped, kind: names as in the file.
@@ -70,6 +73,7 @@ class Sensor(Sampler):
     example: ClassVar[str] = ""
     belongs_to: ClassVar[tuple[str, ...]] = ("link",)
     needs_renderer: ClassVar[bool] = False
+    sees_scene: ClassVar[bool] = True
     has_dynamic_bias: ClassVar[bool] = False
 
     options: object = None
@@ -118,7 +122,27 @@ class Sensor(Sampler):
         first = next(iter(self.products()))
         return {first: self._default_topic(first)}
 
+    def array_rule(self) -> SensorRule | None:
+        """Return what the sensor reads in many simulations at once, which a batch of environments needs.
+
+        The method does not hold for derived classes. Without it, a world with an observation of the sensor is not
+        batched.
+
+        Raises:
+            CannotBatchError: the sensor cannot be computed as arrays with its present options.
+        """
+        return None
+
     # ------------------------------------------------------------------ readings
+
+    @property
+    def topics(self) -> Mapping[str, str]:
+        """Topic of each product that is published."""
+        return self._topics
+
+    def product_type(self, product: str) -> str:
+        """Return the ROS type of a product."""
+        return self._products[product].type_name
 
     @property
     def topic(self) -> str:
@@ -155,6 +179,11 @@ class Sensor(Sampler):
         """Return the newest reading without noise, or None before the first."""
         sample = self._finished_sample()
         return None if sample is None else sample.truth
+
+    @property
+    def body(self) -> int:
+        """MuJoCo's body of the sensor's link."""
+        return self._body
 
     @property
     def pose(self) -> Pose:
@@ -199,11 +228,12 @@ class Sensor(Sampler):
     def _open(self, topics: Mapping[str, str]) -> None:
         self._revision = -1
         for product, topic in topics.items():
-            self._topics.setdefault(product, topic)
             spec = self._products[product]
             check = self.check_available if spec.needs_reading and self.needs_renderer else None
-            publisher = self.sim.communication.bus.advertise(topic, spec.type_name, check=check)
-            publisher.pending = self._process_pending
+            publisher = self.sim.communication.bus.advertise(
+                topic, spec.type_name, check=check, pending=self._process_pending
+            )
+            self._topics.setdefault(product, publisher.topic)
             self._publishers.append((product, publisher, spec.needs_reading))
 
     # ------------------------------------------------------------------ methods that the simulation calls
@@ -237,6 +267,10 @@ class Sensor(Sampler):
         if 0 < jitter < 0.5 * step:
             message = f"sensor {self.scoped!r}: <jitter>{jitter:g}</jitter> is less than half a step of {step:g} s"
             sim.engine.reports.warning("SK-SENSOR-023", f"{message} and has no effect", self.scene.where)
+
+    def set_frame_id(self, frame: str) -> None:
+        """Set the frame of all messages."""
+        self.frame_id = frame
 
     def bind(self, compiled: Compiled) -> None:
         """Find the sensor in a compiled model; called again after every change of structure."""
@@ -351,6 +385,24 @@ class Sensor(Sampler):
         """Return the name of the sensor's link; a sensor on a joint belongs to the joint's child link."""
         parent = self.scene.parent
         return str(names.joint(parent).scene.child_link) if self.scene.on_joint else parent
+
+
+def sensor_rule(sensor: Sensor) -> SensorRule:
+    """Return the array rule of a sensor that samples at its rate alone.
+
+    Raises:
+        CannotBatchError: the sensor cannot be computed as arrays.
+    """
+    if "array_rule" not in vars(type(sensor)):
+        raise CannotBatchError(f"sensor {sensor.scoped!r} ({sensor.kind})")
+    if not sensor.keeps_to_grid:
+        raise CannotBatchError(f"latency, jitter, drifting noise or a battery of sensor {sensor.scoped!r}")
+    if not (sensor.is_manual or isinstance(sensor.timetable(), (TickGrid, type(None)))):
+        raise CannotBatchError(f"the phase of sensor {sensor.scoped!r}")
+    rule = array_rule_of(sensor, SensorRule)  # type: ignore[type-abstract]
+    if rule is None:
+        raise CannotBatchError(f"sensor {sensor.scoped!r} ({sensor.kind})")
+    return rule
 
 
 def report_once(sensor: Sensor, severity: Severity, code: str, message: str, where: Where, hint: str = "") -> None:

@@ -25,13 +25,13 @@ class RecordedParams(Params):
     def __init__(self, source: Params) -> None:
         children = [RecordedParams(child) for child in source.children]
         super().__init__(source.name, source.value, source.attributes, children, source.where, Diagnostics())
-        self.defaults: dict[str, Any] = {}
+        self.defaults: dict[str, object] = {}
 
     def block(self, name: str) -> Params:
-        found = self.child(name)
-        if found is None:
-            found = self.defaults[name] = RecordedParams(Params(name, where=self.where))
-        return found
+        child = self.child(name)
+        if child is None:
+            child = self.defaults[name] = RecordedParams(Params(name, where=self.where))
+        return child
 
     def number(self, name: str, default: float | None = None, *args: Any, **options: Any) -> float:
         if default is not None and math.isfinite(default):

@@ -11,10 +11,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from operator import add, mul
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
+from simkit.argument_checks import check_list, checked_number, wrong_value
+from simkit.errors import InputError
 from simkit.params import LARGEST, Params
 from simkit.pose import Vector
 from simkit.sensors.bias_drift import (
@@ -24,9 +27,11 @@ from simkit.sensors.bias_drift import (
     gauss_markov_drift,
     instability_drift,
 )
+from simkit.sensors.sample import Memory, NoiseProcess, Reading, ReadingFunction, Sample
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.random_streams import RandomStream, RandomStreams
+
 
 _TYPES = ("none", "gaussian", "gaussian_quantized")
 _DATA_SHEET_ELEMENTS = ("noise_density", "random_walk", "bias_instability", "correlation_time")
@@ -169,6 +174,8 @@ class Noise:
 
     Attributes:
         state: state at the newest sample; a sample that is finished later has a reference to its own state.
+        white: random stream of the white noise; None without it.
+        is_quantised: True if the values are rounded.
     """
 
     state: NoiseState
@@ -196,8 +203,8 @@ class Noise:
         self.models, self.width = tuple(models), len(models)
         self._mean, self._precision = column("mean"), column("precision")
         self._bias_mean, self._bias_stddev = column("bias_mean"), column("bias_stddev")
-        self._is_quantised = bool(self._precision.any())
-        self._white = self._open_white_noise(streams, scoped, group)
+        self.is_quantised = bool(self._precision.any())
+        self.white = self._open_white_noise(streams, scoped, group)
         self._drawn_bias = streams.stream(scoped, group + "/bias", self.width) if self._bias_stddev.any() else None
         has_bias = self._bias_mean.any() or self._bias_stddev.any()
         has_sign = self._has_random_sign and has_bias
@@ -222,7 +229,7 @@ class Noise:
         self.restart()
         # noise without any effect is skipped
         self.is_silent = not (
-            self._white or self._bias_drift.drifts or self._is_quantised or bool(self.state.constant.any())
+            self.white or self._bias_drift.drifts or self.is_quantised or bool(self.state.constant.any())
         )
 
     def _open_white_noise(self, streams: RandomStreams, scoped: str, group: str) -> RandomStream | None:
@@ -277,23 +284,32 @@ class Noise:
 
     def apply(self, values: Vector, index: int) -> Vector:
         """Return the values of sample `index`, shape (width,), with noise; infinite values stay infinite."""
-        state = self.state
-        out: Vector = values + state.constant
-        if self._white is not None:
-            out += state.interval.stddev * self._white.normal(index)
-        if self._is_quantised:
-            out = quantise(out, self._precision)
-        return out
+        return self._add(values, self.state, None if self.white is None else self.white.normal(index))
+
+    def _add(self, values: Vector, state: NoiseState, normals: Vector | None) -> Vector:
+        """Return values with noise, shape (width,) or (samples, width).
+
+        Args:
+            values: values without noise.
+            state: state of the noise.
+            normals: standard normal numbers of the white noise, one for each value; None without white noise.
+        """
+        out = with_noise(values, state.constant, state.interval.stddev, normals)
+        return quantise(out, self._precision) if self.is_quantised else out
+
+    def rows(self, count: int) -> NoiseRows:
+        """Return the noise of this sensor in n simulations."""
+        return NoiseRows(self, count)
 
     def apply_to_numbers(self, values: Sequence[float], index: int) -> Sequence[float]:
         """Return the same bits as `apply`, faster for a few numbers because each is added without NumPy."""
-        if self._is_quantised:
+        if self.is_quantised:
             rounded: list[float] = self.apply(np.array(values), index).tolist()
             return rounded
         constant, stddev = self.state.numbers
-        if self._white is None:
+        if self.white is None:
             return list(map(add, values, constant))
-        white = self._white.normal(index).tolist()
+        white = self.white.normal(index).tolist()
         return list(map(add, map(add, values, constant), map(mul, stddev, white)))
 
     def apply_to_samples(self, values: Vector, first: int) -> Vector:
@@ -303,17 +319,13 @@ class Noise:
             values: values without noise.
             first: number of the first sample.
         """
-        state = self.state
-        out: Vector = values + state.constant
-        white = self._white
-        if white is not None:
-            parts: list[Vector] = []
-            while (done := sum(map(len, parts))) < len(values):
-                parts.append(white.normals(first + done, len(values) - done))
-            out += state.interval.stddev * np.concatenate(parts)
-        if self._is_quantised:
-            out = quantise(out, self._precision)
-        return out
+        white = self.white
+        if white is None:
+            return self._add(values, self.state, None)
+        parts: list[Vector] = []
+        while (done := sum(map(len, parts))) < len(values):
+            parts.append(white.normals(first + done, len(values) - done))
+        return self._add(values, self.state, np.concatenate(parts))
 
     def covariance(self, first_channel: int = 0) -> Vector:
         """Return the read-only row-major covariance, shape (9,), of the white noise of three channels."""
@@ -367,19 +379,62 @@ class UniformNoise(Noise):
         is_white = self.model.stddev > 0 or self.model.noise_density > 0
         return streams.stream(scoped, self._rays_group, self._rays) if is_white else None
 
-    def apply(self, values: Vector, index: int) -> Vector:
-        """Return the values, shape (width,), with noise; infinite values stay infinite."""
-        state = self.state
-        if self._white is not None:
-            out = self._white.normal(index) * state.interval.stddev
+    def _add(self, values: Vector, state: NoiseState, normals: Vector | None) -> Vector:
+        if normals is not None:
+            out: Vector = normals * state.interval.stddev
             out += values
         else:
             out = values.copy()
         if state.constant[0]:
             out += state.constant
-        if self._is_quantised:
-            out = quantise(out, self._precision)
-        return out
+        return quantise(out, self._precision) if self.is_quantised else out
+
+
+class NoiseRows:
+    """Noise of one sensor in n simulations, each with the seed of its own episode.
+
+    Args:
+        noise: noise of the sensor of the simulation that resets all others; it must not drift.
+        count: number of simulations.
+    """
+
+    def __init__(self, noise: Noise, count: int) -> None:
+        self._noise = noise
+        self._rows: list[tuple[NoiseState, RandomStream | None]] = [(noise.state, None)] * count
+
+    def take(self, row: int) -> None:
+        """Copy the present noise to one row."""
+        white = self._noise.white
+        self._rows[row] = self._noise.state, None if white is None else white.independent_copy()
+
+    def apply(self, values: Vector, ids: npt.NDArray[np.intp], index: npt.NDArray[np.int64]) -> None:
+        """Add the noise to some rows of values, shape (n, width), in place.
+
+        Args:
+            values: values without noise.
+            ids: rows to change.
+            index: number of the sample of each row, shape (n,).
+        """
+        if self._noise.is_silent:
+            return
+        for row, number in zip(ids.tolist(), index[ids].tolist(), strict=True):
+            state, white = self._rows[row]
+            values[row] = self._noise._add(values[row], state, None if white is None else white.normal(number))
+
+
+def with_noise(values: Vector, constant: Vector, stddev: Vector, normals: Vector | None) -> Vector:
+    """Return values with a constant error and white noise; all arrays have the same shape, or one that broadcasts.
+
+    Args:
+        values: values without noise.
+        constant: sum of all noise except white noise.
+        stddev: standard deviation of the white noise.
+        normals: standard normal numbers; None without white noise.
+    """
+    out: Vector = values + constant
+    if normals is not None:
+        out += stddev * normals
+    return out
 
 
 def quantise(values: Vector, precision: Vector) -> Vector:
@@ -390,3 +445,106 @@ def quantise(values: Vector, precision: Vector) -> Vector:
     # a value of so many steps that the product overflows stays as it is
     out: Vector = np.where((precision > 0) & np.isfinite(rounded), rounded, values)
     return out
+
+
+class SettableNoise:
+    """Attribute with the noise of a sensor's channels; a noise model, or a number, that is set changes the noise."""
+
+    def __get__(self, sensor: NoiseKeeper | None, owner: type) -> Any:
+        return self if sensor is None else vars(sensor).get("_noise")
+
+    def __set__(self, sensor: NoiseKeeper, value: Any) -> None:
+        if value is None or isinstance(value, Noise):
+            vars(sensor)["_noise"] = value  # the kind makes its noise
+        else:
+            sensor.change_noise(value)
+
+
+class NoiseKeeper:
+    """Base class of `Sampler` with the sensor's noise processes, which advance, restart and are restored together."""
+
+    scoped: str
+
+    def __init__(self) -> None:
+        self._noises: list[NoiseProcess] = []
+        self._evolving: tuple[NoiseProcess, ...] = ()
+
+    def change_noise(self, value: float | NoiseModel | Sequence[NoiseModel]) -> None:
+        """Change the noise: a standard deviation or a model for all channels, or a model for each channel.
+
+        Raises:
+            InputError: SK-CORE-006 the sensor has no noise of channels, as an image.
+        """
+        noises = self._channel_noises()
+        if not noises:
+            help_ = f"set it before the load, with overrides=['{self.scoped}.….noise.stddev=…']"
+            message = f"the noise of sensor {self.scoped!r} cannot change during a run"
+            raise InputError("SK-CORE-006", message, help=help_)
+        count = sum(len(noise.models) for noise in noises)
+        if isinstance(value, NoiseModel):
+            models = [value] * count
+        elif isinstance(value, (int, float)):
+            models = [NoiseModel(stddev=checked_number(value, "noise", 0.0))] * count
+        else:
+            check_list(value, NoiseModel, "noise", "noise models")
+            models = list(value)
+        if len(models) != count:
+            raise wrong_value("noise", f"a number, a NoiseModel or {count} NoiseModels", value)
+        self._finish_kept_samples()
+        for noise in noises:
+            noise.change(models[: len(noise.models)])
+            models = models[len(noise.models) :]
+        self._noise_changed()
+
+    def noise_models(self) -> list[NoiseModel]:
+        """Return the noise model of each channel."""
+        return [model for noise in self._channel_noises() for model in noise.models]
+
+    def _channel_noises(self) -> list[Noise]:
+        """Return the noise of the measured values; an IMU's orientation, for example, has further noise."""
+        main: Noise | None = vars(self).get("_noise")
+        return [main] if main is not None else [noise for noise in self._noises if isinstance(noise, Noise)]
+
+    def _finish_kept_samples(self) -> None:
+        """Finish the samples that still need the noise of their time."""
+
+    def _noise_changed(self) -> None:
+        """Adapt to changed noise."""
+        self._evolving = tuple(noise for noise in self._noises if noise.evolves)
+
+    def evolve(self, index: int, dt: float) -> None:
+        """Advance noise that has a state by `dt` [s], also for samples without a reader; 0 at the first sample."""
+        for noise in self._noises:
+            if noise.evolves:
+                noise.evolve(index, dt)
+
+    def restart(self) -> None:
+        """Return to t = 0, and draw the constant biases again."""
+        for noise in self._noises:
+            noise.restart()
+
+    def memory(self) -> object:
+        """Return the state that continues from sample to sample, as values that are never modified."""
+        return tuple((noise.state, getattr(noise, "models", ())) for noise in self._noises)
+
+    def remember(self, memory: Memory) -> None:
+        """Restore the state that `memory` returned."""
+        is_changed = False
+        for noise, (state, models) in zip(self._noises, memory, strict=True):
+            if isinstance(noise, Noise) and noise.models != models:
+                noise.change(models)
+                is_changed = True
+            noise.state = state
+        if is_changed:
+            self._noise_changed()
+
+    def _with_noise_of(self, sample: Sample, make: ReadingFunction, reading: Reading, number: int) -> object:
+        """Call `make(reading, number)` while the noise has its state of that sample."""
+        now = [noise.state for noise in self._evolving]
+        for noise, state in zip(self._evolving, sample.noise_states, strict=True):
+            noise.state = state
+        try:
+            return make(reading, number)
+        finally:
+            for noise, state in zip(self._evolving, now, strict=True):
+                noise.state = state

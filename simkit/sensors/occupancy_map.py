@@ -5,17 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Final
+from typing import Final
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from simkit.compiler.meshes.mesh_part import Floats, Ints
 from simkit.compiler.shape_geometry import textured_triangles
 from simkit.elementary_functions import arctan2
 from simkit.errors import InputError
 from simkit.linear_algebra import matmul
+from simkit.loaders.meshes.mesh_part import Floats, Ints
 from simkit.pose import Pose
 from simkit.scene import Capsule, Cylinder, Ellipsoid, Geometry, Sphere
 
@@ -118,8 +118,8 @@ def make_map(
     convex: list[int] = []
     for geom in geoms:
         by_kind.get(int(model.geom_type[geom]), convex).append(geom)
-    found = (_HeightField(model, data, geom, height) for geom in by_kind[_FIELD])
-    fields = [field for field in found if len(field.outline)]
+    height_fields = (_HeightField(model, data, geom, height) for geom in by_kind[_FIELD])
+    fields = [field for field in height_fields if len(field.outline)]
     slices = (_slice(model, data, geom, height) for geom in convex)
     polygons = [polygon for polygon in slices if polygon is not None]
     outlines = polygons + [field.outline for field in fields]
@@ -138,7 +138,7 @@ def make_map(
 
 def map_error(message: str, help: str = "simkit map WORLD --height Z chooses another height") -> InputError:
     """Return the error of a map that cannot be made."""
-    return InputError(f"SK-CLI-054 {message}\n    help: {help}", "SK-CLI-054")
+    return InputError("SK-CLI-054", message, help=help)
 
 
 class _Grid:
@@ -238,8 +238,8 @@ def _crossings(points: Floats, edges: Ints, height: float) -> Floats:
     crosses = (begin[:, 2] > height) != (end[:, 2] > height)
     begin, end = begin[crosses], end[crosses]
     part = (height - begin[:, 2]) / (end[:, 2] - begin[:, 2])
-    found: Floats = (begin + part[:, None] * (end - begin))[:, :2]
-    return found
+    crossing_points: Floats = (begin + part[:, None] * (end - begin))[:, :2]
+    return crossing_points
 
 
 def _edges(model: mujoco.MjModel, geom: int) -> tuple[Floats, Ints]:
@@ -274,7 +274,7 @@ def _hull_edges(model: mujoco.MjModel, mesh: int) -> tuple[Floats, Ints]:
         return vertices, _edges_of(model.mesh_face[start : start + number])
 
 
-def _edges_of(faces: npt.NDArray[Any]) -> Ints:
+def _edges_of(faces: npt.NDArray[np.integer]) -> Ints:
     pairs = np.sort(np.concatenate((faces[:, :2], faces[:, 1:], faces[:, ::2])), axis=1)
     return np.unique(pairs, axis=0).astype(np.int32)
 
@@ -329,5 +329,5 @@ class _HeightField:
         across = np.where(a > b, self._heights[low, right], self._heights[high, left])
         larger, smaller = np.maximum(a, b), np.minimum(a, b)
         surface = near + larger * (across - near) + smaller * (far - across)
-        found: npt.NDArray[np.bool_] = inside & (z <= surface)
-        return found
+        is_below_surface: npt.NDArray[np.bool_] = inside & (z <= surface)
+        return is_below_surface

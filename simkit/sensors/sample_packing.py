@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Protocol
+from typing import Protocol
 
 from simkit import msgs
 from simkit.msgs.message_types import Message
@@ -62,12 +62,12 @@ class SampleGroup:
 
     def sample(self, position: int) -> Sample:
         """Return a sample of the group, always the same object."""
-        found = self._samples.get(position)
-        if found is None:
+        sample = self._samples.get(position)
+        if sample is None:
             time_ns = self._sampler.sim.engine.clock.time_ns(self.ticks[position])
-            found = self._samples[position] = Sample(self._first + position, time_ns)
-            found.raw = self.captures[position]
-        return found
+            sample = self._samples[position] = Sample(self._first + position, time_ns)
+            sample.raw = self.captures[position]
+        return sample
 
     def message(self, position: int) -> Message:
         """Return the message of a sample."""
@@ -101,5 +101,5 @@ class PackedMessage(LazyMessage):
     def get(self) -> Message:
         return self._group.message(self._position)
 
-    def serialised(self) -> Any:
+    def serialised(self) -> object:
         return self._group.serialised(self._position)

@@ -54,8 +54,8 @@ def read_timing(params: Params, rate: float) -> TimingOptions:
         params.block("jitter").error("SK-SENSOR-022", f"<jitter>{jitter:g}</jitter> is too large; the limit is {limit}")
         jitter = 0.0
     if latency_jitter > latency:
-        found = f"<latency_jitter>{latency_jitter:g}</latency_jitter>"
-        message = f"{found} is too large; the limit is the <latency>, {latency:g} s"
+        element = f"<latency_jitter>{latency_jitter:g}</latency_jitter>"
+        message = f"{element} is too large; the limit is the <latency>, {latency:g} s"
         params.block("latency_jitter").error("SK-SENSOR-022", message)
         latency_jitter = latency
     phase = params.number("phase", 0.0, minimum=0)
@@ -132,10 +132,10 @@ class DelayedReadings:
 
     def arrived(self, tick: int) -> list[Sample]:
         """Remove and return the samples that have arrived by `tick`."""
-        found = []
+        readings = []
         while self.samples and self.samples[0][0] <= tick:
-            found.append(self.samples.popleft()[1])
-        return found
+            readings.append(self.samples.popleft()[1])
+        return readings
 
 
 class LatencyTimetable:
@@ -156,14 +156,14 @@ class LatencyTimetable:
 
     def next(self, tick: int) -> int:
         """Return the first due tick after a tick."""
-        found = self._grid.next(tick)
+        due_tick = self._grid.next(tick)
         for arrival, _ in self._delayed.samples:
             if arrival > tick:
-                found = min(found, arrival)
+                due_tick = min(due_tick, arrival)
                 break
         if tick > 0 and self.is_sample(tick):
             # this sample will be measured at `tick`, so it is not in the queue yet
             arrival = self._delayed.arrival(tick, self._next_index())
             if arrival > tick:
-                found = min(found, arrival)
-        return found
+                due_tick = min(due_tick, arrival)
+        return due_tick

@@ -15,7 +15,7 @@ from simkit.runtime import Publisher, Simulation
 from simkit.runtime.communication.subscription import LazyMessage, PendingWork
 from simkit.runtime.engine.physics_state import HeldState
 from simkit.runtime.engine.scheduler import Timetable
-from simkit.sensors.noise_keeper import NoiseKeeper
+from simkit.sensors.noise import NoiseKeeper
 from simkit.sensors.sample import Batch, Memory, Product, Reading, Sample
 from simkit.sensors.sample_packing import SampleGroup
 from simkit.sensors.sample_times import DelayedReadings, LatencyTimetable, SampleTimes, TimingOptions
@@ -132,6 +132,27 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         return self._is_read
 
     @property
+    def has_subscriber(self) -> bool:
+        """True if a topic of the sensor is read, also by readers that need no measurement."""
+        return any(publisher.wanted for _, publisher, _ in self._publishers)
+
+    def sample_now(self, tick: int) -> None:
+        """Take a sample at the present tick unless there is one, and measure it now."""
+        now = self.sim.time_ns
+        if self._sample is None or self._sample.time_ns != now:
+            self.sample(tick)
+        sample = self._sample
+        if sample is not None and sample.held is not None and sample.time_ns == now:
+            # measured in the present data, whose forward pass the next step needs anyway
+            sample.raw, sample.held = self._capture_now(tick), None
+
+    def publish_made(self, sample: Sample, message: Message) -> None:
+        """Take over a sample whose only message a batch has made, and publish it."""
+        self._index, self._time_ns, self._newest = sample.index, sample.time_ns, sample
+        for _, publisher, _ in self._read_publishers:
+            publisher.publish(message)
+
+    @property
     def count(self) -> int:
         """Number of samples taken."""
         self._process_pending()
@@ -155,24 +176,27 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         sim = self.sim
         if self._revision != sim.communication.bus.revision:
             self._update_readers()
-        if self._is_unread:
+        # five ways to take a sample; the first that the readers allow is the cheapest
+        if self._is_unread:  # only `latest` can still ask for a sample, and it shows the last one
             self._skipped += 1
             self._held = tick, sim.engine.physics.hold()
             return
+        # every reader needs its message at once: a batch makes the messages of its sensors together
         if self._is_served and self.batch is not None and self.batch.publish_sample(self, tick):
             return
-        if self._group is not None:
+        if self._group is not None:  # no reader needs its message at once: many samples become messages together
             packed = self._group.add(tick, self._capture_now(tick))
             for _, publisher, _ in self._read_publishers:
                 publisher.publish_packed(packed)
             return
-        if self._gathers:
+        if self._gathers:  # queues keep only their newest messages, so the others need no message at all
             self._gathered.append((tick, self._capture_now(tick)))
             if len(self._gathered) >= _MAX_GATHERED:
                 self._process_pending()
             return
         sample, read_publishers = self._begin_sample(tick), self._read_publishers
         if self._is_read:
+            # the noise and the message can wait, but the data change with the next step
             sample.raw = self._capture_now(tick)
             if self._selects_products_of_sample:
                 self._select_products(sample)
@@ -211,7 +235,7 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         return self._index, self._time_ns, self._sample, flight, self.update_rate, self.memory()
 
     def set_state(self, state: Memory) -> None:
-        self._process_pending()
+        self._process_pending()  # pending captures belong to the present run; later they would follow restored samples
         self._index, self._time_ns, self._sample, flight, rate, memory = state
         if self._delayed is not None:
             self._delayed.samples.clear()
@@ -238,6 +262,7 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         time_ns = self.sim.engine.clock.time_ns(tick)
         self._index = index = self._index + 1
         if self._evolves:
+            # a bias drifts with the time since the last sample, which is not constant with jitter or a changed rate
             self.evolve(index, (time_ns - self._time_ns) * 1e-9 if self._time_ns >= 0 else 0.0)
         self._time_ns = time_ns
         sample = Sample(index, time_ns)
@@ -252,9 +277,9 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
             if batch.is_ready(self, tick):
                 return batch.captured(self.batch_index)
             self.batch = None  # the sensor samples alone until the simulation schedules its sensors again
-        return self.capture(self.sim.mj_model, self._computed_data())
+        return self.capture(self.sim.mj_model, self.computed_data())
 
-    def _computed_data(self) -> mujoco.MjData:
+    def computed_data(self) -> mujoco.MjData:
         """Return MuJoCo's data after computing the quantities that `measure` reads."""
         if self.needs_acceleration or self.reads_contacts:
             return self.sim.engine.physics.fresh_accelerations()
@@ -272,6 +297,7 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         is_plain = self._delayed is None and not (self._selects_ticks or self._selects_products_of_sample)
         self._gathers = self.gathers and self.is_deferred and is_plain and self._is_read and all(patience)
         changes = self._evolves or self._evolving or self._overrides("_begin_sample")
+        # a drifting noise advances at every sample, and a delayed sample is delivered later, so neither is skipped
         self._is_unread = not (self._read_publishers or changes or self._delayed)
         self._patience = max(patience, default=0.0)
         is_packed = is_plain and self.is_deferred and not changes and self._overrides("pack_samples")
@@ -281,11 +307,11 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
     def _process_pending(self) -> None:
         """Make samples of the gathered captures, and publish the newest ones, which a reader's queue can keep."""
         if self._held is not None and self._skipped:
-            (tick, held), count = self._held, self._skipped
+            (tick, is_held), count = self._held, self._skipped
             self._skipped, self._held = 0, None
-            self._index += count - 1
+            self._index += count - 1  # skipped samples count: a reader must not change the noise of later samples
             self._newest = self._begin_sample(tick)
-            self._newest.held = held
+            self._newest.held = is_held
         if self._group is not None:
             self._end_group(self._group)
         if not self._gathered:
@@ -383,7 +409,7 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
                 sample.noisy = self._with_noise_of(sample, self.perturb, truth, sample.index)
             else:
                 sample.noisy = self.perturb(truth, sample.index)
-            sample.raw = sample.surroundings = None
+            sample.raw = sample.surroundings = None  # the reading replaces the captured values, such as an image
 
     def _message(self, sample: Sample, product: str) -> Message:
         message = sample.messages.get(product)

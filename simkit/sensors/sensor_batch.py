@@ -56,7 +56,7 @@ class SensorBatch(abc.ABC, Generic[Member]):
         if tick != self._tick or physics.edition != self._edition:
             if physics.model is not self.model:  # the structure has changed and the batches are not rebuilt yet
                 return False
-            self.capture_all(member._computed_data())
+            self.capture_all(member.computed_data())
             # computing the data may change the edition but no value, so the edition is read afterwards
             self._tick, self._edition = tick, physics.edition
         return True

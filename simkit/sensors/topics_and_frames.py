@@ -36,9 +36,9 @@ def read_frame_id(params: Params) -> str:
 
 def check_topic(topic: str, block: Params, element: str = "topic") -> None:
     """Report a `<topic>`, or another element of a block, with characters that a topic name must not contain."""
-    name, found = valid_topic(topic), f"found <{element}>{topic}</{element}>"
+    name, problem = valid_topic(topic), f"found <{element}>{topic}</{element}>"
     if topic and name == "/":
-        block.block(element).error("SK-PARAM-002", f"{found}; expected a name with a letter or a digit")
+        block.block(element).error("SK-PARAM-002", f"{problem}; expected a name with a letter or a digit")
     elif topic and name.strip("/") != topic.strip("/"):
-        message = f"{found}; expected letters, digits and _ / . : -; the topic is {name!r}, as in Gazebo"
+        message = f"{problem}; expected letters, digits and _ / . : -; the topic is {name!r}, as in Gazebo"
         block.diagnostics.note("SK-SENSOR-129", message, block.block(element).where)

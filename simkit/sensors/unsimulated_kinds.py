@@ -97,7 +97,7 @@ def read_transceiver(params: Params) -> Transceiver:
 
 def read_dvl(params: Params) -> DopplerVelocityLog:
     """Read the `<gz:dvl>` of a Doppler velocity log, with Gazebo's defaults and checks."""
-    block = next((found for name in _DVL_ELEMENTS if (found := params.child(name))), params.block("dvl"))
+    block = next((child for name in _DVL_ELEMENTS if (child := params.child(name))), params.block("dvl"))
     reach = (block.number("minimum_range", 0.1, minimum=0), block.number("maximum_range", 100.0, minimum=0))
     if reach[0] >= reach[1]:
         block.error("SK-PARAM-002", f"found a range from {reach[0]:g} to {reach[1]:g}; expected min < max")
@@ -191,6 +191,6 @@ def report_unsimulated(scene: SceneSensor, diagnostics: Diagnostics) -> bool:
     lost = f", and its plugin {scene.plugins[0].name!r} is ignored" if scene.plugins else ""
     message = f"sensor {scene.scoped!r}: the kind {scene.kind} is not simulated, so the sensor gives no readings{lost}"
     diagnostics.warning("SK-SENSOR-052", message, scene.where)
-    for owner in (params, *(found for name in _DVL_ELEMENTS if (found := params.child(name)))):
+    for owner in (params, *(child for name in _DVL_ELEMENTS if (child := params.child(name)))):
         owner.report_unread("SK-PARAM-003", f"sensor {scene.scoped!r}")
     return True

@@ -33,9 +33,9 @@ def hidden_geoms(mask: int, names: NameMap) -> list[int]:
         mask: visibility mask of a sensor.
         names: name map of a compiled model.
     """
-    found: list[int] = []
+    geoms: list[int] = []
     for link in names.links.values():
         hidden = {visual.scoped for visual in link.scene.visuals if not visual.visibility_flags & mask}
         if hidden:
-            found += [geom for geom in link.visuals if names.geom_owner(geom)[1] in hidden]
-    return found
+            geoms += [geom for geom in link.visuals if names.geom_owner(geom)[1] in hidden]
+    return geoms

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from simkit import progress
-from simkit.compiler.meshes.mesh_part import MeshFileError
-from simkit.compiler.meshes.mesh_reader import SUFFIXES, convert_file
 from simkit.diagnostics import Diagnostics
+from simkit.loaders.meshes.mesh_part import MeshFileError
+from simkit.loaders.meshes.mesh_reader import SUFFIXES, convert_file
 from simkit.scene import Scene
 from simkit.writers.atomic_output import AtomicOutput
 from simkit.writers.sdf_world import sdf_text

@@ -28,7 +28,7 @@ def check_file(path: Path, *, overwrite: bool) -> None:
     """
     if path.exists() and not path.is_file():
         reason = "it is a folder" if path.is_dir() else "it is not a regular file"
-        raise InputError(f"SK-CLI-016 cannot write {path}: {reason}", "SK-CLI-016")
+        raise InputError("SK-CLI-016", f"cannot write {path}: {reason}")
     if path.exists() and not overwrite:
         raise _report_existing(path)
 
@@ -54,7 +54,7 @@ def check_folder(path: Path) -> None:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
     if reason:
-        raise InputError(f"SK-CLI-016 cannot write to {path}: {reason}", "SK-CLI-016")
+        raise InputError("SK-CLI-016", f"cannot write to {path}: {reason}")
 
 
 def check_target(path: Path, folder: str, *, overwrite: bool) -> None:
@@ -65,7 +65,7 @@ def check_target(path: Path, folder: str, *, overwrite: bool) -> None:
     """
     absolute = path.absolute()
     if not absolute.parent.is_dir():
-        raise InputError(f"SK-CLI-016 folder {absolute.parent} does not exist", "SK-CLI-016")
+        raise InputError("SK-CLI-016", f"folder {absolute.parent} does not exist")
     check_file(path, overwrite=overwrite)
     asset_folder = path.with_name(folder)
     if asset_folder.exists() and not overwrite:
@@ -73,7 +73,7 @@ def check_target(path: Path, folder: str, *, overwrite: bool) -> None:
 
 
 def _report_existing(path: Path) -> InputError:
-    return InputError(f"SK-CLI-016 {path} already exists\n    help: replace it with --force", "SK-CLI-016")
+    return InputError("SK-CLI-016", f"{path} already exists", help="replace it with --force")
 
 
 class AtomicOutput:
@@ -132,7 +132,7 @@ class AtomicOutput:
             raise
 
     def _failed(self, error: OSError) -> InputError:
-        return InputError(f"SK-CLI-016 cannot write {self._path}: {error.strerror or error}", "SK-CLI-016")
+        return InputError("SK-CLI-016", f"cannot write {self._path}: {error.strerror or error}")
 
 
 def unfinished_folder(parent: Path, name: str) -> Path:
@@ -196,7 +196,7 @@ def check_writable(path: str | os.PathLike[str] | None) -> None:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
     if reason:
-        raise InputError(f"SK-CLI-016 cannot write {path}: {reason}", "SK-CLI-016")
+        raise InputError("SK-CLI-016", f"cannot write {path}: {reason}")
 
 
 def write_atomically(path: str | os.PathLike[str], data: bytes, *, follow_link: bool = True) -> None:
@@ -235,7 +235,7 @@ def write_atomically(path: str | os.PathLike[str], data: bytes, *, follow_link: 
             raise
     except (OSError, ValueError) as error:
         reason = (error.strerror or str(error)) if isinstance(error, OSError) else str(error)
-        raise InputError(f"SK-CLI-016 cannot write {path}: {reason}", "SK-CLI-016") from None
+        raise InputError("SK-CLI-016", f"cannot write {path}: {reason}") from None
 
 
 def current_umask() -> int:

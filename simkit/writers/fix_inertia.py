@@ -86,7 +86,7 @@ class InertiaFixes:
             os.replace(temporary, target)  # noqa: PTH105 - atomic on every platform
         except OSError as error:
             temporary.unlink(missing_ok=True)
-            raise InputError(f"SK-CLI-016 cannot write {target}: {error.strerror or error}", "SK-CLI-016") from None
+            raise InputError("SK-CLI-016", f"cannot write {target}: {error.strerror or error}") from None
         return len(changes)
 
 
@@ -102,7 +102,7 @@ def find_inertia_fixes(source: Path, resource_paths: Sequence[FilePath] = ()) ->
     path = Path(scene.file or source)
     if not path.is_file():
         diagnostics.raise_if_errors()
-        raise InputError(f"SK-LOAD-002 {source} is not a file", "SK-LOAD-002")
+        raise InputError("SK-LOAD-002", f"{source} is not a file")
     fixes: list[InertiaFix] = []
     problems: list[str] = []
     links = _scene_links(scene)
@@ -144,31 +144,31 @@ def _fix_inertia(file: Path, inertia: WrittenInertia, link: SceneLink | None) ->
     original = Inertial(inertia.mass, (0.0, 0.0, 0.0), inertia.moments)
     if inertia.mass <= 0:
         return None
-    found = repair_inertia(original, slack=_SLACK)
-    if found.verdict == "sound":
+    repair = repair_inertia(original, slack=_SLACK)
+    if repair.verdict == "sound":
         return None
-    if is_point(found) and link is not None:
-        found = _from_collisions(found, inertia, link)
-    new = dict(zip(MOMENT_NAMES, found.inertial.inertia, strict=True))
+    if is_point(repair) and link is not None:
+        repair = _from_collisions(repair, inertia, link)
+    new = dict(zip(MOMENT_NAMES, repair.inertial.inertia, strict=True))
     size = max(abs(v) for v in new.values())
     texts = {k: f"{v:.9g}" if abs(v) > 1e-9 * size else "0" for k, v in new.items()}
     changed = {k: t for k, t in texts.items() if abs(float(t) - inertia.values[k]) > 1e-9 * size}
     return InertiaFix(
-        file, inertia.line, inertia.link, inertia.mass, found.old, found.new, changed, inertia.values, found.why
+        file, inertia.line, inertia.link, inertia.mass, repair.old, repair.new, changed, inertia.values, repair.why
     )
 
 
-def _from_collisions(found: InertiaRepair, inertia: WrittenInertia, link: SceneLink) -> InertiaRepair:
+def _from_collisions(repair: InertiaRepair, inertia: WrittenInertia, link: SceneLink) -> InertiaRepair:
     """Return the repair with the inertia of the link's collisions; unchanged if they have no volume.
 
     If the axes of the inertia are rotated, all moments are the mean, which is the same in all axes.
     """
     tensor = collision_inertia([link], inertia.mass, Diagnostics())
     if tensor is None:
-        return found
+        return repair
     turn = link.pose_world.matrix
     tensor = matmul(turn.T, tensor, turn)
     if inertia.is_rotated:
         tensor = np.eye(3) * (np.trace(tensor) / 3.0)
-    own = repair_inertia(Inertial(inertia.mass, (0.0, 0.0, 0.0), inertia_moments(tensor)), slack=_SLACK)
-    return replace(found, inertial=own.inertial, new=own.new)
+    of_shapes = repair_inertia(Inertial(inertia.mass, (0.0, 0.0, 0.0), inertia_moments(tensor)), slack=_SLACK)
+    return replace(repair, inertial=of_shapes.inertial, new=of_shapes.new)

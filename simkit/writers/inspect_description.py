@@ -6,10 +6,10 @@ import math
 from collections.abc import Callable
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Any
 
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
+from simkit.run_spec import JsonObject
 from simkit.scene import (
     Atmosphere,
     Axis,
@@ -28,18 +28,17 @@ from simkit.scene import (
     SphericalCoordinates,
 )
 
-Block = dict[str, Any]
 _SAME_KIND = {
     "wideanglecamera": "wide_angle_camera",
     "thermal": "thermal_camera",
     "segmentation": "segmentation_camera",
     "boundingbox": "boundingbox_camera",
 }
-SensorReader = Callable[[SceneSensor, Diagnostics], tuple[SceneSensor, Block | None]]
+SensorReader = Callable[[SceneSensor, Diagnostics], tuple[SceneSensor, JsonObject | None]]
 """Function that returns a sensor with the defaults of its preset, and its options (None for an unknown type)."""
 
 
-def describe_scene(scene: Scene, diagnostics: Diagnostics, read_sensor: SensorReader) -> Block:
+def describe_scene(scene: Scene, diagnostics: Diagnostics, read_sensor: SensorReader) -> JsonObject:
     """Describe a scene as a dict of JSON values.
 
     Args:
@@ -57,9 +56,9 @@ def describe_scene(scene: Scene, diagnostics: Diagnostics, read_sensor: SensorRe
     }
 
 
-def _block_of_unknown(sensor: SceneSensor) -> Block:
+def _block_of_unknown(sensor: SceneSensor) -> JsonObject:
     """Return the camera and scan options of a sensor type that simkit does not simulate."""
-    block: Block = {}
+    block: JsonObject = {}
     camera = sensor.params.child("camera")
     if camera is not None:
         image, clip = camera.block("image"), camera.block("clip")
@@ -82,7 +81,7 @@ def _block_of_unknown(sensor: SceneSensor) -> Block:
     return block
 
 
-def _sweep(prefix: str, block: Params, samples: int) -> Block:
+def _sweep(prefix: str, block: Params, samples: int) -> JsonObject:
     low, high = sorted((block.number("min_angle", 0.0), block.number("max_angle", 0.0)))
     return {
         f"{prefix}_samples": block.integer("samples", samples, minimum=1),
@@ -91,7 +90,7 @@ def _sweep(prefix: str, block: Params, samples: int) -> Block:
     }
 
 
-def _world(world: SceneWorld, diagnostics: Diagnostics, read_sensor: SensorReader) -> Block:
+def _world(world: SceneWorld, diagnostics: Diagnostics, read_sensor: SensorReader) -> JsonObject:
     return {
         "name": world.name,
         "gravity": list(world.gravity),
@@ -108,7 +107,7 @@ def _world(world: SceneWorld, diagnostics: Diagnostics, read_sensor: SensorReade
     }
 
 
-def _model(model: SceneModel, diagnostics: Diagnostics, read_sensor: SensorReader) -> Block:
+def _model(model: SceneModel, diagnostics: Diagnostics, read_sensor: SensorReader) -> JsonObject:
     return {
         "name": model.name,
         "scoped": model.scoped,
@@ -124,7 +123,7 @@ def _model(model: SceneModel, diagnostics: Diagnostics, read_sensor: SensorReade
     }
 
 
-def _link(link: SceneLink, diagnostics: Diagnostics, read_sensor: SensorReader) -> Block:
+def _link(link: SceneLink, diagnostics: Diagnostics, read_sensor: SensorReader) -> JsonObject:
     return {
         "name": link.name,
         "pose_world": link.pose_world.as_list(),
@@ -138,11 +137,11 @@ def _link(link: SceneLink, diagnostics: Diagnostics, read_sensor: SensorReader) 
     }
 
 
-def _shape(shape: SceneCollision | SceneVisual) -> Block:
+def _shape(shape: SceneCollision | SceneVisual) -> JsonObject:
     return {"name": shape.name, "pose_link": shape.pose_link.as_list(), "geom": _geometry(shape.geometry)}
 
 
-def _geometry(geometry: Geometry) -> Block:
+def _geometry(geometry: Geometry) -> JsonObject:
     sizes = {f.name: _plain(getattr(geometry, f.name)) for f in fields(geometry)}
     return {"type": type(geometry).__name__.lower(), **sizes}
 
@@ -155,19 +154,19 @@ def _plain(value: object) -> object:
     return str(value) if isinstance(value, Path) else value
 
 
-def _sensor(named: SceneSensor, diagnostics: Diagnostics, read_sensor: SensorReader) -> Block:
-    sensor, own = read_sensor(named, diagnostics)
+def _sensor(named: SceneSensor, diagnostics: Diagnostics, read_sensor: SensorReader) -> JsonObject:
+    sensor, details = read_sensor(named, diagnostics)
     return {
         "name": sensor.name,
         "type": _SAME_KIND.get(sensor.kind, sensor.kind),
         "update_rate": sensor.rate,
         "topic": sensor.topic,
         "pose_world": sensor.pose_world.as_list(),
-        **(_block_of_unknown(sensor) if own is None else own),
+        **(_block_of_unknown(sensor) if details is None else details),
     }
 
 
-def _joint(joint: SceneJoint, diagnostics: Diagnostics, read_sensor: SensorReader) -> Block:
+def _joint(joint: SceneJoint, diagnostics: Diagnostics, read_sensor: SensorReader) -> JsonObject:
     mimic = next((a.mimic for a in joint.axes if a.mimic is not None), None)
     return {
         "name": joint.name,
@@ -181,25 +180,25 @@ def _joint(joint: SceneJoint, diagnostics: Diagnostics, read_sensor: SensorReade
     }
 
 
-def _axis(axis: Axis) -> Block:
+def _axis(axis: Axis) -> JsonObject:
     limits = ("lower", "upper", "effort", "velocity")
     rest = ("damping", "friction", "stiffness", "spring_ref")
     numbers = {name: _json_number(getattr(axis, name)) for name in (*limits, *rest)}
     return {"xyz_world": list(axis.xyz_world), **numbers}
 
 
-def _numbers_of(settings: Atmosphere | SphericalCoordinates | None) -> Block | None:
+def _numbers_of(settings: Atmosphere | SphericalCoordinates | None) -> JsonObject | None:
     """Return settings in the units of the scene; angles in rad."""
     if settings is None:
         return None
     return {f.name: _plain(getattr(settings, f.name)) for f in fields(settings) if f.name != "where"}
 
 
-def _frame(frame: SceneFrame) -> Block:
+def _frame(frame: SceneFrame) -> JsonObject:
     return {"name": frame.name, "pose_world": frame.pose_world.as_list(), "attached_to": frame.attached_to}
 
 
-def _light(light: SceneLight) -> Block:
+def _light(light: SceneLight) -> JsonObject:
     return {
         "name": light.name,
         "type": light.type,
@@ -209,7 +208,7 @@ def _light(light: SceneLight) -> Block:
     }
 
 
-def _plugin(plugin: ScenePlugin) -> Block:
+def _plugin(plugin: ScenePlugin) -> JsonObject:
     return {"name": plugin.name, "filename": plugin.filename}
 
 
@@ -220,7 +219,7 @@ def _json_number(value: float) -> float | str:
     return value
 
 
-def _totals(scene: Scene) -> Block:
+def _totals(scene: Scene) -> JsonObject:
     tops = [m for w in scene.worlds for m in w.models] + ([scene.model] if scene.model is not None else [])
     models = [m for top in tops for m in top.all_models()]
     links = [link for m in models for link in m.links]

@@ -67,7 +67,7 @@ def write_mjcf(builder: SpecBuilder, path: Path, *, overwrite: bool = False) -> 
         except ValueError as error:
             if too_little := find_memory_error(error):
                 raise too_little from error
-            raise InputError(f"SK-CLI-016 cannot write {path}: MuJoCo reports: {error}", "SK-CLI-016") from None
+            raise InputError("SK-CLI-016", f"cannot write {path}: MuJoCo reports: {error}") from None
     balanced = [name for record in builder.records.values() for name in record.exact]
     return WrittenMjcf(path, count, balanced)
 
@@ -82,7 +82,7 @@ def _check_text(path: Path) -> None:
     except UnicodeEncodeError:
         reason = "MuJoCo needs a path that is valid text in the locale"
         hint = "choose another name and folder, or set LC_ALL=C.UTF-8"
-        raise InputError(f"SK-CLI-016 cannot write {path}: {reason}\n    help: {hint}", "SK-CLI-016") from None
+        raise InputError("SK-CLI-016", f"cannot write {path}: {reason}", help=hint) from None
 
 
 @contextmanager
@@ -90,8 +90,8 @@ def _full_precision() -> Iterator[None]:
     """Make MuJoCo write numbers with 17 digits instead of 6, if its library has the private setter."""
     import mujoco
 
-    found = sorted(Path(mujoco.__file__).parent.glob("*mujoco*.*"))
-    libraries = [p for p in found if ".so" in p.name or p.suffix in (".dylib", ".dll")]
+    files = sorted(Path(mujoco.__file__).parent.glob("*mujoco*.*"))
+    libraries = [p for p in files if ".so" in p.name or p.suffix in (".dylib", ".dll")]
     try:
         library = ctypes.CDLL(str(libraries[0]))  # returns the already loaded library
         get, set_ = library._mjPRIVATE__get_xml_precision, library._mjPRIVATE__set_xml_precision
@@ -163,7 +163,7 @@ class _Assets:
         for path in (Path(file), folder / below / file, folder / file):
             if path.is_file():
                 return path.read_bytes()
-        raise InputError(f"SK-CLI-016 the asset {file} does not exist any more", "SK-CLI-016")
+        raise InputError("SK-CLI-016", f"the asset {file} does not exist any more")
 
     def _save(self, content: bytes, stem: str, suffix: str) -> str:
         """Write a file under a unique name; return its path relative to the XML file. Equal contents share one file."""
@@ -193,5 +193,5 @@ def _png(texture: mujoco.MjsTexture) -> bytes:
         pixels = pixels[: texture.width]  # all six sides of the cube have the same image
     is_encoded, encoded = cv2.imencode(".png", pixels[:, :, ::-1])
     if not is_encoded:
-        raise InputError(f"SK-CLI-016 cannot write the texture {texture.name}", "SK-CLI-016")
+        raise InputError("SK-CLI-016", f"cannot write the texture {texture.name}")
     return bytes(encoded.tobytes())

@@ -26,21 +26,21 @@ def mjcf_files(root: Params, folder: Path, resolver: Resolver) -> dict[Path, Doc
         resolver: finds only files that may be read.
     """
     roots, bases = [root], [folder]
-    found: dict[Path, Document | None] = {}
+    files: dict[Path, Document | None] = {}
     inside: dict[str, None] = {"": None}
-    for one in roots:  # the loop also visits the roots that it adds
-        for compiler in one.all("compiler"):
+    for section in roots:  # the loop also visits the roots that it adds
+        for compiler in section.all("compiler"):
             inside |= dict.fromkeys(value for key, value in compiler.attributes.items() if key in _FOLDERS)
-        for source in _named_files(one, bases, ("",), resolver):
+        for source in _named_files(section, bases, ("",), resolver):
             document = parse_file(source, Diagnostics()) if source.suffix == ".xml" else None
-            if document is not None and source not in found:
-                found[source] = document
+            if document is not None and source not in files:
+                files[source] = document
                 roots.append(document.root)
                 bases += [source.parent] if source.parent not in bases else []
-    for one in roots:
-        for source in _named_files(one, bases, inside, resolver):
-            found.setdefault(source, None)
-    return found
+    for section in roots:
+        for source in _named_files(section, bases, inside, resolver):
+            files.setdefault(source, None)
+    return files
 
 
 def _named_files(root: Params, bases: Iterable[Path], inside: Iterable[str], resolver: Resolver) -> Iterator[Path]:

@@ -217,8 +217,8 @@ def _mimic(value: Mimic, leader: str) -> Params:
 
 def sensor(value: SceneSensor, at: Pose) -> Params:
     """Return `<sensor>` as it was written; `at` is its pose in the frame of its link or joint."""
-    kept = [c for c in value.params.children if c.name not in ("pose", "plugin")]
-    children = [c for c in (pose(at), *kept, *(plugin(p) for p in value.plugins)) if c is not None]
+    children_of_file = [c for c in value.params.children if c.name not in ("pose", "plugin")]
+    children = [c for c in (pose(at), *children_of_file, *(plugin(p) for p in value.plugins)) if c is not None]
     return Params("sensor", value.params.value, {**value.params.attributes, "name": value.name}, children)
 
 

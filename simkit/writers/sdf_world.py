@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -12,6 +13,7 @@ from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import (
     Animation,
+    Atmosphere,
     Inertial,
     PersonLook,
     Scene,
@@ -21,17 +23,13 @@ from simkit.scene import (
     SceneLink,
     SceneModel,
     SceneWorld,
+    SphericalCoordinates,
     Trajectory,
 )
 from simkit.scene.simkit_elements import written_name
+from simkit.scene.world import Fog
 from simkit.writers import sdf_elements as parts
 from simkit.writers.sdf_elements import UriOf
-from simkit.writers.sdf_world_settings import (
-    atmosphere_element,
-    physics_element,
-    scene_element,
-    spherical_coordinates_element,
-)
 from simkit.writers.xml_text import (
     changed_element,
     changed_elements,
@@ -85,13 +83,13 @@ class _Writer:
         links = _links_of(world.models)
         joints = (self.joint(j, "", links) for j in world.joints)
         children = [
-            physics_element(world),
+            _physics_element(world),
             *field_elements(world, "gravity", "magnetic_field"),
             element("wind", [text_element("linear_velocity", world.wind)]) if any(world.wind) else None,
-            atmosphere_element(world.atmosphere),
-            spherical_coordinates_element(world.spherical_coordinates),
+            _atmosphere_element(world.atmosphere),
+            _spherical_coordinates_element(world.spherical_coordinates),
             *changed_elements(world, "entity_services", "gazebo_quirks"),
-            scene_element(world),
+            _scene_element(world),
             *(parts.plugin(p) for p in world.plugins),
             *(parts.light(li, li.pose_world) for li in world.lights),
             *(self.frame(f, IDENTITY, "", links) for f in world.frames),
@@ -167,17 +165,17 @@ class _Writer:
             parts.axis(a, name, joint.type, _name_inside(a.mimic.joint, model) if a.mimic else "")
             for a, name in zip(joint.axes, ("axis", "axis2"), strict=False)
         ]
-        own = []
+        of_type = []
         if joint.type == "screw":
-            own = [text_element("screw_thread_pitch", joint.thread_pitch)]
+            of_type = [text_element("screw_thread_pitch", joint.thread_pitch)]
         elif joint.type == "gearbox":
             reference = text_element("gearbox_reference_body", _name_inside(joint.gearbox_reference, model))
-            own = [*field_elements(joint, "gearbox_ratio"), reference]
+            of_type = [*field_elements(joint, "gearbox_ratio"), reference]
         children = [
             pose(frame),
             text_element("parent", _name_inside(joint.parent_link, model)),
             text_element("child", _name_inside(joint.child_link, model)),
-            *own,
+            *of_type,
             *axes,
             *(parts.sensor(s, frame.inverse() @ s.pose_link) for s in joint.sensors),
             *(parts.plugin(p) for p in joint.plugins),
@@ -186,13 +184,13 @@ class _Writer:
 
     def _written_inertia(self, link: SceneLink) -> Inertial:
         """Return the link's inertia; for a negative moment, the nearest inertia that SDF accepts."""
-        found = repair_inertia(link.inertial)
-        if link.inertial.mass <= 0 or found.old[0] >= -1e-15:
+        repair = repair_inertia(link.inertial)
+        if link.inertial.mass <= 0 or repair.old[0] >= -1e-15:
             return link.inertial
-        moments = f"{format_moments(found.old)} become {format_moments(found.new)}"
+        moments = f"{format_moments(repair.old)} become {format_moments(repair.new)}"
         message = f"link {link.scoped!r}: SDF does not allow a negative moment of inertia; {moments}"
         self.diagnostics.warning("SK-WRITE-003", message, link.where)
-        return found.inertial
+        return repair.inertial
 
     def _without_world_link(self, model: SceneModel) -> SceneModel:
         """Replace a URDF link named `world` by the world itself."""
@@ -291,3 +289,56 @@ def _needs_lenience(nodes: Iterable[Params]) -> bool:
             return True
         stack += [c for c in node.children if c.name in ("model", "link", "joint")]
     return False
+
+
+# ------------------------------------------------------------------ settings of the world
+
+
+def _physics_element(world: SceneWorld) -> Params:
+    """Return `<physics>`."""
+    children = [
+        *field_elements(world.physics, "max_step_size", "real_time_factor"),
+        changed_element("simkit:contact_law", world.physics.contact_law, "simkit"),
+        *changed_elements(world.physics, "max_contacts"),
+    ]
+    return element("physics", children, name="default", type=world.physics.engine or "ode")
+
+
+def _scene_element(world: SceneWorld) -> Params:
+    """Return `<scene>`."""
+    around = world.surroundings
+    children = [
+        *field_elements(around, "ambient", "background", "shadows", "grid"),
+        element("sky") if around.sky else None,
+        None if around.fog is None else _fog(around.fog),
+        *changed_elements(world, "quality", "renderer"),
+    ]
+    return element("scene", children)
+
+
+def _fog(fog: Fog) -> Params:
+    return element("fog", [text_element("color", fog.colour), *field_elements(fog, "type", "start", "end", "density")])
+
+
+def _atmosphere_element(air: Atmosphere) -> Params:
+    """Return `<atmosphere>`."""
+    children = field_elements(air, "temperature", "temperature_gradient", "pressure")
+    return element("atmosphere", children, type="adiabatic")
+
+
+def _spherical_coordinates_element(place: SphericalCoordinates | None) -> Params | None:
+    """Return `<spherical_coordinates>`; None without coordinates."""
+    if place is None:
+        return None
+    custom = place.surface == "CUSTOM_SURFACE"
+    children = [
+        text_element("surface_model", place.surface),
+        text_element("surface_axis_equatorial", place.equatorial) if custom else None,
+        text_element("surface_axis_polar", place.polar) if custom else None,
+        text_element("world_frame_orientation", "ENU"),
+        text_element("latitude_deg", math.degrees(place.latitude)),
+        text_element("longitude_deg", math.degrees(place.longitude)),
+        *field_elements(place, "elevation"),
+        text_element("heading_deg", math.degrees(place.heading)),
+    ]
+    return element("spherical_coordinates", children)

@@ -252,7 +252,7 @@ def vendor(
         LoadError: the source has errors.
     """
     if target.exists() and (not target.is_dir() or any(target.iterdir())):
-        raise InputError(f"SK-CLI-016 {target} is not an empty folder; give a new or empty folder", "SK-CLI-016")
+        raise InputError("SK-CLI-016", f"{target} is not an empty folder; give a new or empty folder")
     options = {"resource_paths": resource_paths, "package_paths": package_paths, "base": base}
     before = describe(source, xacro_args=xacro_args, **options)
     diagnostics = Diagnostics()
@@ -260,7 +260,7 @@ def vendor(
     document, expanded = find_document(source, resolver, diagnostics, xacro_args)
     diagnostics.raise_if_errors()
     if document is None or document.path is None:
-        raise InputError(f"SK-LOAD-002 {source} is not a file", "SK-LOAD-002")
+        raise InputError("SK-LOAD-002", f"{source} is not a file")
     stage: Path | None = None
     try:
         stage = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.absolute().parent))
@@ -270,15 +270,13 @@ def vendor(
         after = describe(stage / main, base=base)
         differs = _difference(before, after) or _file_outside(after, stage)
         if differs:
-            raise InputError(
-                f"SK-CLI-019 the content of the folder would differ from {source}: {differs}", "SK-CLI-019"
-            )
+            raise InputError("SK-CLI-019", f"the content of the folder would differ from {source}: {differs}")
         if target.exists():
             target.rmdir()
         stage.chmod(0o755)
         stage.rename(target)
     except OSError as error:
-        raise InputError(f"SK-CLI-016 cannot write {target}: {error.strerror or error}", "SK-CLI-016") from None
+        raise InputError("SK-CLI-016", f"cannot write {target}: {error.strerror or error}") from None
     finally:
         if stage is not None:
             shutil.rmtree(stage, ignore_errors=True)
@@ -329,12 +327,12 @@ def _replace_in_tree(node: Params, changes: Mapping[str, str]) -> Params:
 
 def _root_of(path: Path) -> Path:
     """Return the outermost model or package of a file, else the folder above `meshes`, `materials` and so on."""
-    found = None
+    root = None
     for ancestor in (path, *list(path.parents)[:8]):
         if any((ancestor / name).is_file() for name in _MANIFESTS):
-            found = ancestor
-    if found is not None:
-        return found
+            root = ancestor
+    if root is not None:
+        return root
     folder = path if path.is_dir() else path.parent
     while folder.name.lower() in _PACKAGE_FOLDERS and folder.parent != folder:
         folder = folder.parent
@@ -374,4 +372,4 @@ def _difference(a: object, b: object, path: str = "") -> str:
         parts = ((f"{path}[{i}]", x, y) for i, (x, y) in enumerate(zip(a, b, strict=True)))
     else:
         return "" if a == b else f"{path.lstrip('.')} was {a!r}, is {b!r}"
-    return next((found for p, x, y in parts if (found := _difference(x, y, p))), "")
+    return next((difference for p, x, y in parts if (difference := _difference(x, y, p))), "")

@@ -127,10 +127,10 @@ def _escape(text: str) -> str:
 
 def _prefixes(node: Params) -> set[str]:
     stack: list[Params] = [node]
-    found: set[str] = set()
+    prefixes: set[str] = set()
     while stack:
         child = stack.pop()
         names: Sequence[str] = (child.name, *child.attributes)
-        found |= {n.partition(":")[0] for n in names if ":" in n and not n.startswith(("xml:", "xmlns:"))}
+        prefixes |= {n.partition(":")[0] for n in names if ":" in n and not n.startswith(("xml:", "xmlns:"))}
         stack += child.children
-    return {p for p in found if f"xmlns:{p}" not in node.attributes}
+    return {p for p in prefixes if f"xmlns:{p}" not in node.attributes}

@@ -8,7 +8,7 @@ import stat
 import struct
 import zipfile
 from collections.abc import Callable, Iterable
-from typing import IO, Any, BinaryIO, Final, Literal, cast
+from typing import IO, BinaryIO, Final, Literal, cast
 
 MAX_FILES: Final = 20_000
 """Limit for the files of an archive, and for its folders."""
@@ -81,7 +81,7 @@ class _BoundedIndex:
             raise RefusedArchiveError("large", f"has more than {MAX_FILES} files")
         return data
 
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> object:
         return getattr(self._file, name)
 
 

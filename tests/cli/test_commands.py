@@ -192,16 +192,6 @@ def test_an_interrupt_leaves_everything_readable(world: Path, number: signal.Sig
         assert reader.message_count > 100
 
 
-def test_a_viewer_without_a_display_is_reported(world: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    if not sys.platform.startswith("linux"):
-        pytest.skip("displays are told by a variable on Linux only")
-    monkeypatch.delenv("DISPLAY", raising=False)
-    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
-    result = simkit("run", world, "--duration", 1, "--view")
-    assert result.exit_code == 2
-    assert "SK-CLI-015" in result.stderr
-
-
 def test_a_run_with_a_picture_by_opengl_is_refused_without_it(world: Path) -> None:
     environment = {**os.environ, "MUJOCO_GL": "disable", "PYTHONPATH": os.pathsep.join(sys.path)}
     command = [sys.executable, "-m", "simkit", "run", str(world), "--duration", "0.1", "--picture", "out.png"]
@@ -302,6 +292,11 @@ def test_bench_sets_simkit_beside_the_bare_engine(world: Path) -> None:
     assert result.exit_code == 0
     for row in ("step, nothing due", "step, all plugins", "imu ball::body::imu", "memory"):
         assert re.search(rf"^{row}", result.stdout, re.MULTILINE)
+
+
+def test_bench_prints_no_table_before_an_error(world: Path) -> None:
+    result = simkit("bench", world, "--set", "nothing=1")
+    assert result.exit_code == 2 and result.stderr and not result.stdout
 
 
 def test_importing_simkit_loads_no_engine() -> None:

@@ -104,7 +104,9 @@ def test_files_are_completed_by_their_suffix_and_a_single_folder_by_its_content(
     assert completed("simkit run no/such/folder/") == []
 
 
-@pytest.mark.parametrize("line", ["run", "topic echo", "golden check", "plugin new", ""])
+@pytest.mark.parametrize(
+    "line", ["run", "topic echo", "golden check", pytest.param("plugin new", marks=pytest.mark.needs_packs), ""]
+)
 def test_h_is_the_same_as_help(line: str) -> None:
     short, long = (CliRunner().invoke(app, [*line.split(), option]) for option in ("-h", "--help"))
     assert short.exit_code == 0

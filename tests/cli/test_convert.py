@@ -385,7 +385,11 @@ def messages(path: str) -> dict[str, list[bytes]]:
     return heard
 
 
-@pytest.mark.parametrize("page", sorted((ROOT / "docs/sensors").glob("*.md")), ids=lambda p: p.name)
+@pytest.mark.parametrize(
+    "page",
+    [*sorted((ROOT / "docs/sensors").glob("*.md")), *sorted((ROOT / "packs/special_cameras/docs").glob("*.md"))],
+    ids=lambda p: p.name,
+)
 def test_a_page_gives_the_prefix_to_what_is_written_with_it(page: Path) -> None:
     named = set(re.findall(r"<simkit:(\w+)>", page.read_text(encoding="utf-8")))
     # what a solar sensor looks at is inside one of our own; its plugin has the same elements

@@ -7,14 +7,26 @@ import os
 import subprocess
 import sys
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 import pytest
 import typer
 
 from simkit.cli import COMMANDS, app
+from simkit.packs import shipped_packs
 
 HEAVY = ("mujoco", "numpy", "pydantic", "rich", "rosbags", "scipy", "trimesh", "yaml")
+PACKAGES = {
+    **dict.fromkeys(COMMANDS, "simkit.cli"),
+    **{
+        file.stem: f"{pack.package}.cli"
+        for pack in shipped_packs()
+        for file in sorted(Path(pack.folder, "cli").glob("[a-z]*.py"))
+    },
+}
+"""Package with the module of each command."""
+MODULES = [f"{package}.{name}" for name, package in PACKAGES.items()]
 SCRIPT = f"""
 import sys
 from simkit.cli import app
@@ -22,26 +34,29 @@ try:
     app(prog_name="simkit")
 finally:
     found = [name for name in {HEAVY} if name in sys.modules]
-    found += [name for name in {list(COMMANDS)} if f"simkit.cli.{{name}}" in sys.modules]
+    found += [name.rpartition(".")[2] for name in {MODULES} if name in sys.modules]
     sys.stderr.write(" ".join(found))
 """
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", PACKAGES)
 def test_the_line_beside_a_command_is_the_first_of_its_help(name: str) -> None:
-    found = getattr(import_module(f"simkit.cli.{name}"), name)
+    module = import_module(f"{PACKAGES[name]}.{name}")
+    found = getattr(module, name)
     written = found.info.help if isinstance(found, typer.Typer) else inspect.getdoc(found)
-    assert str(written).splitlines()[0] == COMMANDS[name]
+    assert str(written).splitlines()[0] == COMMANDS.get(name, str(module.__doc__).splitlines()[0])
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", PACKAGES)
 def test_a_command_is_the_one_of_its_module(name: str) -> None:
     root: Any = typer.main.get_command(app)
-    found: Any = getattr(import_module(f"simkit.cli.{name}"), name)
+    root.list_commands(typer.Context(root))  # adds the commands of packs
+    found: Any = getattr(import_module(f"{PACKAGES[name]}.{name}"), name)
     real = root.commands[name].real
     assert real.name == name
     if isinstance(found, typer.Typer):
-        assert [c.name or c.callback.__name__ for c in found.registered_commands if c.callback] == list(real.commands)
+        commands = [c.name or c.callback.__name__ for c in found.registered_commands if c.callback]
+        assert list(real.commands)[: len(commands)] == commands, "commands that other packs add come after them"
     else:
         assert [p.name for p in real.params if p.name != "help"] == list(inspect.signature(found).parameters)
 
@@ -67,7 +82,7 @@ def test_completion_reads_only_the_command_that_is_written(line: str, read: str)
 
 
 def test_a_client_that_lists_topics_imports_nothing_heavy(tmp_path: Any) -> None:
-    code = "import sys, simkit.live, simkit.cli.terminal.topic_sources, simkit.cli.topic\n"
+    code = "import sys, simkit.live, simkit_terminal.cli.topic\n"
     code += f"sys.stderr.write(' '.join(name for name in {HEAVY} if name in sys.modules))"
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=tmp_path)
     assert found.stderr == ""
@@ -75,8 +90,8 @@ def test_a_client_that_lists_topics_imports_nothing_heavy(tmp_path: Any) -> None
 
 UNUSED = """
 OpenGL PIL glfw.library lxml numpy.ma numpy.random pydantic rosbags scipy sqlite3 trimesh xacro yaml
-simkit.bridges.live.answering simkit.compiler.meshes.convex_decomposition simkit.compiler.meshes.mesh_reader
-simkit.loaders.xacro.expansion simkit.plugins.actors simkit.plugins.gz_python simkit.recording.bags.mcap_file
+simkit.bridges.live.answering simkit.compiler.meshes.convex_decomposition simkit.loaders.meshes.mesh_reader
+simkit.loaders.xacro.expansion simkit_actors simkit_gz_python simkit.recording.bags.mcap_file
 simkit.recording.films simkit.recording.pictures simkit.sensors.cameras.rendered_camera simkit.testing.conditions
 """
 """Modules that a run of an empty world does not need; some take 20 ms."""

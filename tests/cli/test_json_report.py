@@ -164,10 +164,10 @@ def test_bench_and_doctor_report_what_they_print(world: Path) -> None:
 
 
 def test_an_error_becomes_a_diagnostic_with_its_place_and_remedy() -> None:
-    (found,) = error_diagnostics(InputError("SK-CLI-011 drive.yaml:3: no list\n    help: write a list", "SK-CLI-011"))
+    (found,) = error_diagnostics(InputError("SK-CLI-011", "drive.yaml:3: no list", help="write a list"))
     assert (found.code, found.file, found.line, found.message) == ("SK-CLI-011", "drive.yaml", 3, "no list")
     assert found.hint == "write a list"
-    (found,) = error_diagnostics(InputError("drive.yaml:3: SK-CLI-011 no list", "SK-CLI-011"))
+    (found,) = error_diagnostics(InputError("SK-CLI-011", "drive.yaml:3: SK-CLI-011 no list", shows_code=False))
     assert (found.file, found.line, found.message) == ("drive.yaml", 3, "no list")
     (found,) = error_diagnostics(PluginError("p", "load", 0.0, "w.sdf:7", "oops"))
     assert (found.file, found.line) == ("w.sdf", 7)

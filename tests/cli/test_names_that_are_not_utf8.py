@@ -18,7 +18,6 @@ WORLD = """<sdf version="1.9"><world name="w"><model name="ground"><static>true<
 <collision name="d"><geometry><box><size>1 1 1</size></box></geometry></collision></link></model>
 <model name="b"><pose>0 0 1 0 0 0</pose><link name="l"><sensor name="imu" type="imu"><topic>imu</topic>
 <update_rate>50</update_rate></sensor></link></model></world></sdf>"""
-SWEEP = "world: w.sdf\nduration: 0.05\nparameters:\n  physics.max_step_size: [0.001, 0.002]\n"
 NAME = os.fsdecode(b"\xff")
 CODE = "SK-CLI-057"
 COMMANDS: dict[str, tuple[int, str]] = {
@@ -34,7 +33,6 @@ COMMANDS: dict[str, tuple[int, str]] = {
     f"certify w{NAME}.sdf --duration 0.02 --runs 2 -o o{NAME}.json": (0, ""),
     f"map w{NAME}.sdf -o o{NAME}": (2, CODE),
     f"graph w{NAME}.sdf -o o{NAME}.svg": (0, ""),
-    f"sweep run sweep.yaml -o o{NAME}": (2, CODE),
     f"interface show a/{NAME}": (2, "SK-CLI-032"),
 }
 
@@ -44,7 +42,6 @@ def test_a_command_ends_with_a_result_or_a_code(command: str, tmp_path: Path) ->
     (folder := tmp_path / f"d{NAME}").mkdir()
     (folder / f"w{NAME}.sdf").write_text(WORLD)
     (folder / "w.sdf").write_text(WORLD)
-    (folder / "sweep.yaml").write_text(SWEEP)
     before = {path.name for path in folder.iterdir()}
     arguments = [sys.executable, "-m", "simkit", *command.split(" ")]
     done = subprocess.run(arguments, cwd=folder, capture_output=True, timeout=120, check=False)

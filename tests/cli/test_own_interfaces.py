@@ -141,7 +141,9 @@ def commands(group: Any, name: str = "simkit") -> Iterator[tuple[str, Any]]:
 
 
 def test_every_command_has_the_option() -> None:
-    found = dict(commands(typer.main.get_command(app)))
+    root: Any = typer.main.get_command(app)
+    root.list_commands(typer.Context(root))  # adds the commands of packs
+    found = dict(commands(root))
     assert len(found) > 60
     for name, command in found.items():
         names = [each.name for each in command.get_params(command.context_class(command))]

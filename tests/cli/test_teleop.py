@@ -11,7 +11,7 @@ import pytest
 
 import simkit
 from simkit.bridges.teleop import Teleop, find_target
-from simkit.cli.run_keys import RunKeys
+from simkit.cli.run_parts.keyboard import RunKeys
 from simkit.cli.terminal.teleop_display import DriverLine
 from simkit.errors import InputError
 

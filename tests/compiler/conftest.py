@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -24,8 +23,6 @@ from simkit.scene import (
     SceneWorld,
     Surface,
 )
-
-sys.path.insert(0, str(Path(__file__).parent))  # the makers of mesh files
 
 
 @pytest.fixture(autouse=True)

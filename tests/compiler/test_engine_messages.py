@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import simkit
-from simkit.compiler.engine_messages import user_message
+from simkit.compiler.model_compilation import user_message
 from simkit.diagnostics import NOWHERE
 
 TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"

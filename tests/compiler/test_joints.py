@@ -312,7 +312,6 @@ def hinged(make, axis):
         (Axis(Z, Z, damping=math.inf), "SK-JOINT-003"),
         (Axis(Z, Z, lower=math.nan), "SK-JOINT-003"),
         (Axis(Z, Z, lower=1.0, upper=-1.0), "SK-JOINT-006"),
-        (Axis(Z, Z, lower=0.5, upper=1.0), "SK-JOINT-007"),
         (Axis(Z, Z, velocity=0.0), "SK-JOINT-008"),
         (Axis(Z, Z, friction=-1.0), "SK-JOINT-009"),
         (Axis(Z, Z, lower=-1.0, upper=1.0, limit_stiffness=10.0), "SK-JOINT-014"),

@@ -7,15 +7,15 @@ import math
 import mujoco
 import numpy as np
 import pytest
-from mesh_makers import QUAD, picture
 
 import simkit
 from simkit.compiler.assets import geom_colours
 from simkit.compiler.lights import spot_parameters
-from simkit.compiler.meshes.mesh_part import MeshPart
 from simkit.errors import SimkitError
+from simkit.loaders.meshes.mesh_part import MeshPart
 from simkit.pose import Pose
 from simkit.scene import Box, Material, SceneLight, SceneVisual
+from tests.loaders.meshes.mesh_makers import QUAD, picture
 
 RED = (1.0, 0.0, 0.0, 1.0)
 

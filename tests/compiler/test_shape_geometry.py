@@ -9,13 +9,12 @@ import mujoco
 import numpy as np
 import pytest
 import trimesh
-from mesh_makers import L_SHAPE, picture
 from PIL import Image
 
 from simkit.compiler import SpecBuilder, geom_groups
-from simkit.compiler.meshes.mesh_part import MeshFileError
 from simkit.compiler.shape_geometry import heightmap_rows, polyline_pieces, polyline_triangles, textured_triangles
 from simkit.diagnostics import Diagnostics
+from simkit.loaders.meshes.mesh_part import MeshFileError
 from simkit.pose import Pose
 from simkit.scene import (
     Box,
@@ -32,6 +31,7 @@ from simkit.scene import (
     Sphere,
     Surface,
 )
+from tests.loaders.meshes.mesh_makers import L_SHAPE, picture
 
 RAMP = np.linspace(0.0, 1.0, 65)
 SLOPE = 0.2  # 2 m over 10 m

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from simkit.compiler import SpecBuilder, world_geoms
+from simkit.compiler import SpecBuilder, geoms
 from simkit.diagnostics import Diagnostics
 from simkit.pose import Pose
 from simkit.scene import Box, Sphere
@@ -16,8 +16,8 @@ def world(make, monkeypatch):
     """Return the world of 7 static models with 3 geoms each and one moving model between them."""
 
     def build(direct, block):
-        monkeypatch.setattr(world_geoms, "DIRECT", direct)
-        monkeypatch.setattr(world_geoms, "BLOCK", block)
+        monkeypatch.setattr(geoms, "DIRECT", direct)
+        monkeypatch.setattr(geoms, "BLOCK", block)
         models = []
         for k in range(7):
             links = [

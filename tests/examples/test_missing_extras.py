@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-EXAMPLES = ROOT / "examples"
+FOLDERS = [ROOT / "examples", *sorted(ROOT.glob("packs/*/examples"))]
 OF_EXTRAS = ("matplotlib", "pvlib", "gymnasium", "stable_baselines3", "torch")
 CORE = {"simkit", "numpy", "cv2", "PIL", "scipy"}
 BY_ITS_WORLD = "solar_tracker/day.py"  # its world has simkit's plugin of the sun
@@ -29,11 +29,11 @@ def imports(script: Path) -> set[str]:
     return {name for name in names - sys.stdlib_module_names if not (script.parent / f"{name}.py").exists()}
 
 
-SCRIPTS = sorted(path.relative_to(EXAMPLES).as_posix() for path in EXAMPLES.glob("**/*.py"))
+SCRIPTS = {path.relative_to(folder).as_posix(): path for folder in FOLDERS for path in sorted(folder.glob("**/*.py"))}
 NEEDING = [
     name
-    for name in SCRIPTS
-    if imports(EXAMPLES / name) - CORE or (EXAMPLES / name).parent.name == "sensors" or name == BY_ITS_WORLD
+    for name, script in SCRIPTS.items()
+    if imports(script) - CORE or script.parent.name == "sensors" or name == BY_ITS_WORLD
 ]
 
 
@@ -48,7 +48,7 @@ def without_extras(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
 
 
 def test_the_list_of_packages_of_extras_is_whole() -> None:
-    assert set().union(*(imports(EXAMPLES / name) for name in SCRIPTS)) <= CORE | set(OF_EXTRAS)
+    assert set().union(*(imports(script) for script in SCRIPTS.values())) <= CORE | set(OF_EXTRAS)
 
 
 @pytest.mark.parametrize("name", NEEDING)
@@ -56,7 +56,7 @@ def test_an_example_names_the_extra_that_is_missing(
     name: str, without_extras: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The argument asks for a picture, where an example draws only a picture that is asked for."""
-    script = EXAMPLES / name
+    script = SCRIPTS[name]
     arguments = [] if name in (BY_ITS_WORLD, "train_turtlebot3.py") else ["out.png"]
     monkeypatch.setattr(sys, "argv", [str(script), *arguments])
     monkeypatch.syspath_prepend(str(script.parent))

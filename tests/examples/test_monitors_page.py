@@ -16,6 +16,7 @@ SAMPLES = re.findall(r"```xml\n(.*?)```", TEXT, flags=re.DOTALL)
 OF_THE_WORLD = ("TriggeredPublisher", "LogRecord")
 
 
+@pytest.mark.needs_packs
 def test_its_python_runs(capsys: pytest.CaptureFixture[str]) -> None:
     (text,) = re.findall(r"```python\n(.*?)```", TEXT, flags=re.DOTALL)
     exec(compile(text, str(PAGE), "exec"), {})
@@ -26,6 +27,7 @@ def test_its_python_runs(capsys: pytest.CaptureFixture[str]) -> None:
     assert any(line.endswith(" J") for line in lines)
 
 
+@pytest.mark.needs_packs
 @pytest.mark.parametrize("sample", SAMPLES, ids=lambda text: str(re.search(r"systems::(\w+)", text)[1]))  # type: ignore[index]
 def test_its_samples_load_and_run(sample: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
@@ -40,8 +42,8 @@ def test_its_samples_load_and_run(sample: str, tmp_path: Path, monkeypatch: pyte
 
 
 def test_every_element_of_its_tables_is_read_by_a_plugin() -> None:
-    folder = PAGE.parents[1] / "simkit" / "plugins"
-    files = [file for part in ("gz", "classic") for file in sorted((folder / part).glob("*.py"))]
+    folders = ("simkit/plugins/gz", "simkit/plugins/classic", "packs/gz_python/simkit_gz_python/plugins")
+    files = [file for folder in folders for file in sorted((PAGE.parents[1] / folder).glob("*.py"))]
     code = "".join(file.read_text(encoding="utf-8") for file in files)
     rows = [line.split("|")[1] for line in TEXT.splitlines() if line.startswith("| `<")]
     elements = {name for row in rows for name in re.findall(r"<(\w+)", row)}

@@ -11,9 +11,9 @@ import pytest
 from typer.testing import CliRunner
 
 from simkit.cli import app
-from simkit.testing.scenarios.exercise import read_exercise
 from simkit.testing.scenarios.scenario_file import read_scenario
 from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
+from simkit_verification.testing.grading.exercise import read_exercise
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "scenarios.md").read_text(encoding="utf-8")

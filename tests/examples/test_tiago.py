@@ -194,6 +194,7 @@ def carried(beside: Any) -> Any:
     return script("carry")["run"]()
 
 
+@pytest.mark.slow
 def test_it_lifts_the_bottle_by_0_3_m(carried: Any) -> None:
     before, after = carried.places["on the first table"], carried.places["lifted"]
     assert after[2] - before[2] == pytest.approx(0.31, abs=0.005)

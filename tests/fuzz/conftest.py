@@ -1,4 +1,4 @@
-"""Lets the tests of this folder import its other modules, and the makers of meshes and of wide SDF files."""
+"""Lets the tests of this folder import its other modules, and the makers of wide SDF files."""
 
 import faulthandler
 import sys
@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-for folder in ("fuzz", "compiler", "loaders"):
+for folder in ("fuzz", "loaders"):
     sys.path.insert(0, str(Path(__file__).parents[1] / folder))
 
 

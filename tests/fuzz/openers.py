@@ -269,13 +269,13 @@ def _run(scenario: Any) -> None:
 
 
 def _exercise(path: Path) -> None:
-    from simkit.testing.scenarios.exercise import read_exercise
+    from simkit_verification.testing.grading.exercise import read_exercise
 
     read_exercise(path)
 
 
 def _exercise_run(path: Path) -> None:
-    from simkit.testing.scenarios.exercise import read_exercise
+    from simkit_verification.testing.grading.exercise import read_exercise
 
     for run in read_exercise(path).runs[:2]:
         _run(run.scenario)
@@ -289,7 +289,7 @@ def _golden(path: Path) -> None:
 
 
 def _bundle(path: Path) -> None:
-    from simkit.testing.bundles import open_bundle
+    from simkit_verification.testing.bundles import open_bundle
 
     with open_bundle(path) as bundle:
         for entry in bundle.commands():

@@ -10,7 +10,10 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from mesh_makers import (
+from PIL import Image
+from wide_sdf import BOX, WORLD
+
+from tests.loaders.meshes.mesh_makers import (
     PLACED,
     QUAD,
     TETRAHEDRON,
@@ -20,8 +23,6 @@ from mesh_makers import (
     gltf,
     write_glb,
 )
-from PIL import Image
-from wide_sdf import BOX, WORLD
 
 
 @dataclass(frozen=True)

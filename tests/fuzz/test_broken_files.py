@@ -43,7 +43,7 @@ def library() -> tuple[bytes, ...]:
     """Texts with blocks that mutations put into other files: our own, and what our tests and pages have inline."""
     texts = [*real_files(SUFFIXES), *(p for name in ("tests", "packs") for p in (ROOT / name).rglob("test_*.py"))]
     texts += [page for name in ("docs", "packs") for page in (ROOT / name).rglob("*.md")]
-    return tuple(p.read_bytes() for p in sorted(texts))
+    return tuple(p.read_bytes() for p in sorted(texts) if "node_modules" not in p.parts)
 
 
 @cache

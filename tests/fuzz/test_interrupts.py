@@ -45,8 +45,8 @@ def leftovers(name: str, folder: Path, whole: frozenset[str]) -> Iterator[str]:
     """Yield what is wrong with what a command left in its folder; `whole` are the files that it writes undisturbed."""
     from simkit.errors import InputError
     from simkit.recording.bags.reader import open_bag_to_read
-    from simkit.testing.bundles import open_bundle
     from simkit.testing.golden.store import read_golden
+    from simkit_verification.testing.bundles import open_bundle
 
     left = {p.name for p in folder.iterdir()} - {*WORLD_FILES, "b.mcap", "tmp", "site", MARKER}
     yield from (f"left {n}" for n in left - {"new", "new.mcap", "new.zip", "new.xml", "new_assets", "new.xml_assets"})

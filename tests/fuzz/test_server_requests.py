@@ -23,7 +23,11 @@ import pytest
 
 from simkit.bridges.live.protocol import ANSWER, ASK, LARGEST_OUT, TELL, FrameReader, json_frame, read_json_frame
 
-pytestmark = [pytest.mark.fuzz, pytest.mark.skipif(sys.platform == "win32", reason="sockets of POSIX")]
+pytestmark = [
+    pytest.mark.fuzz,
+    pytest.mark.needs_packs,
+    pytest.mark.skipif(sys.platform == "win32", reason="sockets of POSIX"),
+]
 TIMEOUT = 60.0
 BOT = """<sdf version="1.9"><world name="yard"><plugin filename="desk.py" name="Desk"/>
 <model name="rover"><pose>0 0 0.1 0 0 0</pose><link name="base"><collision name="c"><geometry><box>

@@ -19,7 +19,11 @@ import pytest
 from targets import WORLD_FILES, environment
 from test_broken_files import SECONDS
 
-pytestmark = [pytest.mark.fuzz, pytest.mark.skipif(not Path("/proc/self/fd").is_dir(), reason="needs /proc")]
+pytestmark = [
+    pytest.mark.fuzz,
+    pytest.mark.needs_packs,
+    pytest.mark.skipif(not Path("/proc/self/fd").is_dir(), reason="needs /proc"),
+]
 HOUR = 3600.0  # [s] of simulated time
 LEAST, SHARE = 20.0, 4  # [s] of wall time at least; part of the time of all tests
 PERIOD = 0.25  # [s] between two samples

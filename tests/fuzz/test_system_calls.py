@@ -302,7 +302,7 @@ def _short_bag() -> bytes:
 
 @contextmanager
 def fuel_server() -> Iterator[str]:
-    from tests.writers.fuel.fuel_server import model, served
+    from packs.fuel.tests.fuel_server import model, served
 
     with served() as state:
         state.archives["o/models/box"] = [model()]

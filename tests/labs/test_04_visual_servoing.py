@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from simkit import Simulation, msgs
-from simkit.testing.scenarios.exercise import read_exercise
 from simkit.testing.scenarios.scenario_run import open_scenario
+from simkit_verification.testing.grading.exercise import read_exercise
 
 pytestmark = pytest.mark.labs
 LAB = Path(__file__).parents[2] / "labs" / "04_visual_servoing"

@@ -147,7 +147,7 @@ REPLACES_THE_GRADER = """
 import sys
 from dataclasses import replace
 
-import simkit.testing.scenarios.grading_process as grading_process
+import simkit_verification.testing.grading.grading_process as grading_process
 from simkit import ModelPlugin
 
 

@@ -106,7 +106,7 @@ def test_an_unknown_lab_and_a_folder_without_one_are_errors(tmp_path: Path) -> N
 
 
 def test_a_lab_names_the_packages_that_are_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("simkit.cli.lab._is_installed", lambda package: package != "pin")
+    monkeypatch.setattr("simkit_verification.cli.lab._is_installed", lambda package: package != "pin")
     started = lab("start", "08", tmp_path / "lab")
     assert started.exit_code == 0
     assert 'this lab needs pin: pip install "simkit-robotics[labs] @ git+https://' in started.output

@@ -78,6 +78,7 @@ def test_a_golden_run_of_an_older_version_stays_in_empty_space(folder: Path) -> 
     assert decode_scenario({"world": "robot.urdf"}, folder).model_world == "none"
 
 
+@pytest.mark.needs_packs
 @pytest.mark.parametrize("chosen", [(), ("--world", "lab.sdf"), ("--world", "none")])
 def test_a_bundle_repeats_a_model_in_its_world(folder: Path, chosen: tuple[str, ...]) -> None:
     runner = CliRunner()

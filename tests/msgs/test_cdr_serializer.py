@@ -48,6 +48,7 @@ def random_message(name: str, source: random.Random) -> Any:
     return store.types[name](*[random_value(node, source) for _, node in store.fielddefs[name][1]])
 
 
+@pytest.mark.slow
 def test_every_type_has_the_bytes_of_rosbags_for_random_values() -> None:
     source, store, names = random.Random(1), type_store(), message_type_names()
     for name in names:

@@ -12,8 +12,7 @@ from plugin_worlds import GROUND, rover, world
 
 import simkit
 from simkit.params import Params
-from simkit.plugins.discovery.find_plugin_class import find_plugin, plugin_kinds
-from simkit.plugins.discovery.unsupported_plugins import GAZEBO_PLUGINS
+from simkit.plugins.discovery.find_plugin_class import GAZEBO_PLUGINS, find_plugin, plugin_kinds
 from simkit.plugins.plugin_names import aliases, normalise
 from simkit.scene import ScenePlugin
 

@@ -78,6 +78,7 @@ def told(sim: Simulation) -> list[Any]:
     return list(found.TOLD if isinstance(found, ModuleType) else found.told)
 
 
+@pytest.mark.needs_packs
 @pytest.mark.parametrize("way", ["file", "named", "class", "giver", "functions", "alias"])
 def test_classes_and_modules_with_the_hooks_of_gz_are_found_like_other_plugins(tmp_path: Path, way: str) -> None:
     names = {
@@ -115,6 +116,7 @@ def test_a_file_alone_runs_no_code(tmp_path: Path) -> None:
         simkit.load(file)
 
 
+@pytest.mark.needs_packs
 @pytest.mark.parametrize("point", ["mypack:Counter", "mypack"])
 @pytest.mark.parametrize("filename", ["mypack:Counter", "libcounter.so"])
 def test_an_entry_point_is_found_by_its_name_and_by_its_value(
@@ -138,6 +140,7 @@ def test_an_entry_point_is_found_by_its_name_and_by_its_value(
         simkit.load(world(GROUND, f"<plugin name='c' filename='{filename}'/>"))
 
 
+@pytest.mark.needs_packs
 def test_a_plugin_from_python_may_be_a_class_an_object_or_a_module(tmp_path: Path) -> None:
     module = module_of(tmp_path, GIVER, "api_giver")
     functions = module_of(tmp_path, FUNCTIONS, "api_functions")
@@ -147,6 +150,7 @@ def test_a_plugin_from_python_may_be_a_class_an_object_or_a_module(tmp_path: Pat
             assert told(sim)[:2] == [("configure", ""), ("pre_update", 1)]
 
 
+@pytest.mark.needs_packs
 def test_the_attributes_of_a_gz_object_are_its_state(tmp_path: Path) -> None:
     module = module_of(tmp_path, HOOKS, "api_state")
     with simkit.load(world(GROUND), plugins=[module.Counter()]) as sim:
@@ -160,6 +164,7 @@ def test_the_attributes_of_a_gz_object_are_its_state(tmp_path: Path) -> None:
         assert system(sim).steps == 0 and told(sim)[-1][0] == "reset"
 
 
+@pytest.mark.needs_packs
 def test_a_gz_plugin_that_raises_may_be_disabled(tmp_path: Path) -> None:
     text = HOOKS.replace("        self.steps += 1", "        self.steps += 1\n        assert self.steps < 3, 'enough'")
     module = module_of(tmp_path, text, "api_raiser")
@@ -175,6 +180,7 @@ def test_a_gz_plugin_that_raises_may_be_disabled(tmp_path: Path) -> None:
         sim.step(5)
 
 
+@pytest.mark.needs_packs
 def test_an_object_that_is_not_a_plugin_is_an_error_that_lists_the_allowed_objects() -> None:
     with pytest.raises(simkit.LoadError, match="SK-PLUGIN-022.*pre_update"):
         simkit.load(world(GROUND), plugins=["counter", 3])

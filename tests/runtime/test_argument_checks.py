@@ -261,6 +261,7 @@ def test_a_diagnostic_of_xml_text_names_a_string() -> None:
         simkit.load(text, strict=True)
 
 
+@pytest.mark.needs_packs
 def test_the_state_hash_covers_actors() -> None:
     world = """<sdf version="1.9"><world name="w"><actor name="a"><script><trajectory id="0" type="walk">
     <waypoint><time>0</time><pose>0 0 1 0 0 0</pose></waypoint>

@@ -12,8 +12,6 @@ from typing import Any
 import pytest
 
 import simkit
-from simkit.experiments.sweeps.design import SweepRow
-from simkit.experiments.sweeps.row_runner import RowResult
 from simkit.runtime.engine.snapshot import state_hash
 
 BOX = """<sdf version="1.9"><model name="newcomer"><pose>0 0 1 0 0 0</pose><link name="l"><collision name="c">
@@ -162,11 +160,8 @@ def test_messages_of_all_kinds_of_types_can_be_pickled() -> None:
         assert simkit.msgs.serialize(pickle.loads(pickle.dumps(message))) == simkit.msgs.serialize(message)
 
 
-def test_a_run_specification_and_a_row_of_results_can_be_pickled() -> None:
-
+def test_a_run_specification_can_be_pickled() -> None:
     with simkit.load(BOX, seed=3, overrides={"newcomer::l.mass": 2}) as sim:
         spec = sim.run_spec
     content = pickle.dumps(spec)
     assert pickle.loads(content) == spec and len(content) < 2000
-    row = RowResult(SweepRow(3, 1, {"a.b": 0.5}), {"m": 1.0}, message="text", state_hash="0" * 64)
-    assert pickle.loads(pickle.dumps(row)) == row and len(pickle.dumps(row)) < 800

@@ -57,7 +57,7 @@ _PLAIN_CAMERA = "<camera><image><width>32</width><height>24</height></image></ca
 NOISELESS = {
     **dict.fromkeys(("segmentation_camera", "segmentation", "boundingbox_camera", "boundingbox"), _PLAIN_CAMERA),
 }
-"""Block of each kind without noise that needs little computation; a kind that is not listed has its example."""
+"""Block of each kind that ignores noise and needs little computation; a kind that is not listed has its example."""
 _LABEL = '<plugin filename="gz-sim-label-system" name="gz::sim::systems::Label"><label>{}</label></plugin>'
 
 _INERTIAL = "<inertial><mass>1</mass><inertia><ixx>0.01</ixx><iyy>0.02</iyy><izz>0.03</izz></inertia></inertial>"

@@ -34,7 +34,7 @@ PAGES = {
     "segmentation": "segmentation_camera",
     "boundingbox": "boundingbox_camera",
 }
-"""Page under `docs/sensors` of each kind whose page has another name."""
+"""Page of each kind whose page has another name: under `docs/sensors` of the core, or under `docs` of a pack."""
 
 
 KINDS = list(sensor_kinds())
@@ -130,6 +130,23 @@ def test_the_truth_has_no_noise(kind: str) -> None:
 
 
 @kinds
+def test_a_kind_that_reads_noise_has_a_noisy_example(kind: str) -> None:
+    """Without an entry in `NOISY`, all tests of noise here would pass without noise."""
+    with load(kind) as sim:
+        if has_noise_model(sensor_of(sim).options):
+            assert kind in worlds.NOISY or kind in worlds.NOISELESS, f"add {kind!r} to NOISY of contract_worlds.py"
+
+
+def has_noise_model(value: object) -> bool:
+    """Check whether options contain a noise model, also in a tuple or in further options."""
+    if isinstance(value, NoiseModel):
+        return True
+    if dataclasses.is_dataclass(value):
+        return any(has_noise_model(getattr(value, field.name)) for field in dataclasses.fields(value))
+    return isinstance(value, tuple) and any(map(has_noise_model, value))
+
+
+@kinds
 def test_samples_lie_on_the_grid_and_carry_its_times(kind: str) -> None:
     period = 1000 // worlds.RATE
     with load(kind) as sim:
@@ -160,9 +177,10 @@ def test_latency_shifts_the_arrival_and_not_the_content(kind: str) -> None:
 
 @pytest.mark.parametrize("kind", list(sensor_kinds()))
 def test_a_kind_has_a_page_that_names_it(kind: str) -> None:
-    page = ROOT / "docs" / "sensors" / f"{PAGES.get(kind, kind)}.md"
-    assert page.is_file()
-    assert re.search(rf"[`\"]{kind}[`\"]", page.read_text(encoding="utf-8"))
+    name = f"{PAGES.get(kind, kind)}.md"
+    pages = [page for page in (ROOT / "docs" / "sensors" / name, *ROOT.glob(f"packs/*/docs/{name}")) if page.is_file()]
+    assert len(pages) == 1
+    assert re.search(rf"[`\"]{kind}[`\"]", pages[0].read_text(encoding="utf-8"))
 
 
 def numeric(hint: Any) -> bool:

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from simkit.errors import InputError
-from simkit.testing.bundles import open_bundle
 from simkit.writers.zip_archive import MAX_FILES, MAX_INDEX_BYTES, RefusedArchiveError, open_archive
+from simkit_verification.testing.bundles import open_bundle
 from tests.limited_memory import run_limited
 
 ENTRY = struct.Struct("<4s4B4HL2L5H2L")

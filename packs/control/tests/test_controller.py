@@ -10,8 +10,8 @@ import pytest
 from control_robots import opened, reported_messages
 
 import simkit
+from simkit import Params
 from simkit.errors import ParameterError
-from simkit.params import Params
 from simkit_control.plugins.ros2_control.controller import Controller
 
 

@@ -287,6 +287,24 @@ def test_an_unknown_joint_stops_the_load_at_its_line_with_a_suggestion(tmp_path:
         opened(tmp_path, yaml=POSITIONS.replace("[j1, j2]", "[j1, j3]"))
 
 
+@pytest.mark.leaves_out
+@pytest.mark.parametrize(
+    ("joints", "code"),
+    [("joints: [j1, j3]", "SK-CONTROL-012"), ("rate: 1", "SK-PARAM-001")],
+    ids=["joint", "parameter"],
+)
+def test_a_controller_with_errors_is_left_out_and_the_others_run(tmp_path: Path, joints: str, code: str) -> None:
+    yaml = POSITIONS.replace("joints: [j1, j2]", joints)
+    with opened(tmp_path, yaml=yaml) as sim:
+        assert states(sim)["joint_state_broadcaster"] == "active"
+        assert states(sim)["arm_controller"] != "active"
+        assert code in [d.code for d in sim.diagnostics if d.severity == "warning"]
+        left_out = [d.message for d in sim.diagnostics if d.code in ("SK-LOAD-013", "SK-LOAD-014")]
+        assert len(left_out) == 1
+        assert "controller 'arm_controller'" in left_out[0]
+        sim.step(10)
+
+
 def test_a_missing_parameter_stops_the_load(tmp_path: Path) -> None:
     with pytest.raises(simkit.LoadError, match=r"arm.yaml:\d+: error SK-PARAM-001: <arm_controller> needs <joints>"):
         opened(tmp_path, yaml=POSITIONS.replace("joints: [j1, j2]", "rate: 1"))

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import simkit
+from simkit.extend import GoalHandle
 from simkit.msgs.goal_status import GoalStatus
-from simkit.runtime.communication.action_server import GoalHandle
 
 _INERTIAL = "<inertial><mass>{m}</mass><inertia><ixx>{i}</ixx><iyy>{i}</iyy><izz>{i}</izz></inertia></inertial>"
 _AXIS = "<axis><xyz>{axis}</xyz><limit><lower>{low}</lower><upper>{high}</upper><effort>500</effort></limit></axis>"

@@ -8,7 +8,7 @@ import pytest
 from control_robots import arm, command, files, opened, position, reported_messages, states
 
 import simkit
-from simkit.diagnostics import Diagnostics
+from simkit.extend import Diagnostics
 from simkit.loaders import Resolver, load_scene
 from simkit.writers.sdf_world import sdf_text
 

@@ -10,10 +10,9 @@ import numpy as np
 import pytest
 
 import simkit
-from simkit import msgs
+from simkit import Pose, msgs
 from simkit.errors import InputError
 from simkit.msgs.goal_status import GoalStatus
-from simkit.pose import Pose
 from simkit_control.plugins.ros2_control.head_pointing import HeadJoints, pixel_goal, pixel_ray
 
 ACTION = "/head_controller/point_head_action"

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from simkit.diagnostics import Diagnostics
-from simkit.params import Params
+from simkit import Params
+from simkit.extend import Diagnostics
 from simkit.plugins.ros_parameter_files import ParameterFiles, read_parameter_file
 from simkit_control.plugins.ros2_control.diff_drive_options import DriveOptions
 from simkit_control.plugins.ros2_control.trajectory_options import read_timeout

@@ -179,3 +179,13 @@ def test_more_errors_than_the_limit_in_a_parameter_file_are_errors_of_the_file(t
     path = saved(tmp_path, text.replace("TYPE", "position_controllers/JointTrajectoryController"))
     with pytest.raises(LoadError, match="SK-CONTROL-024"):
         simkit.load(robot_of_ros_1(), params_files=[path])
+
+
+def test_the_path_of_a_parameter_file_can_have_spaces(tmp_path: Path) -> None:
+    folder = tmp_path / "my robots"
+    folder.mkdir()
+    text = "controller_manager:\n  ros__parameters:\n    b: {type: joint_state_broadcaster/JointStateBroadcaster}\n"
+    saved(folder, text, "arm.yaml")
+    (tmp_path / "robot.urdf").write_text(arm(plugin="<parameters>my robots/arm.yaml</parameters>"))
+    with simkit.load(tmp_path / "robot.urdf") as sim:
+        assert states(sim) == {"b": "active"}

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from control_robots import POSITIONS, arm, command, interfaces, opened, reported_messages
 
-from simkit.diagnostics import Diagnostics
+from simkit.extend import Diagnostics
 from simkit.scene.actuation import Transmission, TransmissionEnd
 from simkit_control.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION, VELOCITY
 from simkit_control.plugins.ros2_control.transmissions import transmission_laws

@@ -8,7 +8,8 @@ from textwrap import dedent
 
 import pytest
 
-from simkit.diagnostics import NOWHERE, Diagnostics
+from simkit.diagnostics import NOWHERE
+from simkit.extend import Diagnostics
 from simkit_motion.plugins.play_motion.motion import Motion
 from simkit_motion.plugins.play_motion.motion_files import MotionFile, read_motions
 

@@ -12,8 +12,8 @@ import pytest
 from navigation_worlds import DRIVE, WALL, pose, run_until_done, world
 
 import simkit
+from simkit import Params
 from simkit.errors import LoadError
-from simkit.params import Params
 from simkit_navigation.plugins.navigation.cost_grid import INSCRIBED, CostGrid
 from simkit_navigation.plugins.navigation.footprint import round_footprint
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose

@@ -12,8 +12,8 @@ from navigation_worlds import pose, world
 from scipy.ndimage import distance_transform_edt
 
 import simkit
+from simkit import Params
 from simkit.errors import PluginError
-from simkit.params import Params
 from simkit_navigation.plugins.maps.map_server import MapServer
 from simkit_navigation.plugins.navigation.cost_grid import INSCRIBED, LETHAL, CostGrid
 from simkit_navigation.plugins.navigation.grid_planner import GridPlanner

@@ -89,6 +89,7 @@ def test_noise_has_its_standard_deviation_and_its_covariance() -> None:
     assert found[-1].angular_velocity_covariance[4] == pytest.approx(0.01)
 
 
+@pytest.mark.slow
 def test_a_drift_has_its_standard_deviation_and_correlation_time_at_any_rate() -> None:
     for rate in (100, 10):
         drift = f"<updateRate>{rate}</updateRate><rateDrift>0.2</rateDrift><rateDriftFrequency>2</rateDriftFrequency>"

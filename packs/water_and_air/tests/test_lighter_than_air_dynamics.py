@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import simkit
+from simkit import Params
+from simkit.extend import Inertial
 from simkit.loaders.sdf.inertial import read_fluid_added_mass
-from simkit.params import Params
-from simkit.scene import Inertial
 from simkit.writers import sdf_elements
 
 MASS, INERTIA, RHO, STEP = 5.0, (3.0, 6.0, 6.0), 1.225, 0.002

@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from simkit.scene import Box, Capsule, Cone, Cylinder, Ellipsoid, Geometry, Plane, Sphere
+from simkit.extend import Box, Cylinder, Sphere
+from simkit.scene import Capsule, Cone, Ellipsoid, Geometry, Plane
 from simkit_water_and_air.plugins.fluids.submerged_volume import Polyhedron, Solid, solid_of
 
 SHAPES: list[Geometry] = [

@@ -9,7 +9,7 @@ import pytest
 
 import simkit
 from simkit import msgs
-from simkit.plugins.base import NEVER
+from simkit.extend import NEVER
 from simkit_water_and_air.plugins.fluids.wind_effects import WindPluginBase
 
 _NOW = "<time_for_rise>1e-6</time_for_rise>"

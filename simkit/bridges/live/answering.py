@@ -10,7 +10,7 @@ from simkit.bridges.live.bridge_requests import BRIDGE_REQUESTS
 from simkit.bridges.live.connection import ClientConnection
 from simkit.bridges.live.endpoint_requests import ENDPOINT_REQUESTS, LATER
 from simkit.bridges.live.protocol import ANSWER, BadFrame, JsonObject, read_json_frame
-from simkit.bridges.live.request_fields import CODE, RequestRefused, client_text
+from simkit.bridges.live.request_fields import CODE, client_text, find_handler
 from simkit.bridges.live.requests import REQUESTS, Request, RequestHost, Response, define_types
 from simkit.bridges.live.type_exchange import LARGEST_IN, detach
 from simkit.errors import PluginError, SimkitError, SimulationDiverged, SubscriberError
@@ -32,17 +32,16 @@ def answer_request(server: RequestHost, peer: ClientConnection, body: bytes) -> 
         raise BadFrame("a request needs an id and a name")
     raised: Exception | None = None
     answer: JsonObject = {"id": number}
-    found = b""
+    content = b""
     try:
         if interfaces:
             define_types(server, interfaces)
-        if request_name not in _HANDLERS:
-            raise RequestRefused(f"unknown request {request_name!r}")
-        result = _HANDLERS[request_name](Request(server, peer, args, data, partial(peer.answer_later, number)))
+        handler = find_handler(_HANDLERS, request_name)
+        result = handler(Request(server, peer, args, data, partial(peer.answer_later, number)))
         if result is LATER:
             return
         if isinstance(result, Response):
-            answer["type"], found = msgs.type_name(result.message), msgs.serialize(result.message)
+            answer["type"], content = msgs.type_name(result.message), msgs.serialize(result.message)
         else:
             answer["ok"] = result
     except SimkitError as error:
@@ -51,7 +50,7 @@ def answer_request(server: RequestHost, peer: ClientConnection, body: bytes) -> 
             raised = error  # the error ends the run, as it would for a caller in the process
     except Exception as error:  # noqa: BLE001 - a value that no check expected must not end the run
         answer |= {"error": client_text(error), "code": getattr(error, "code", CODE)}
-    peer.send_json(ANSWER, answer, found)
+    peer.send_json(ANSWER, answer, content)
     if raised is not None:
         peer.write()
         raise raised

@@ -7,7 +7,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
-from simkit.bridges.live.introspection import topic_list
+from simkit.bridges.live.introspection import node_list, topic_list
 from simkit.bridges.live.request_fields import RequestRefused, client_text
 from simkit.bridges.live.requests import Request, RequestHandler, Response
 from simkit.errors import MessageError
@@ -15,7 +15,7 @@ from simkit.msgs.derived_types import derived_type
 from simkit.msgs.message_builder import builder_of
 from simkit.msgs.message_types import full_name, type_of
 from simkit.msgs.type_hashes import rihs
-from simkit.runtime.communication.service_call import Service
+from simkit.runtime.communication.service_server import Service
 from simkit.scene.geometry import Mesh
 from simkit.scene.urdf_text import urdf_text
 from simkit.trusted_folders import OutsideError, TrustedFolders, join_below
@@ -24,7 +24,7 @@ _TEXTURES: Final = (".bmp", ".gif", ".jpeg", ".jpg", ".mtl", ".png", ".tga", ".t
 
 
 def graph(request: Request) -> object:
-    """Return topics, heard topics, services, actions and URDF robots, with type hashes and the simulated time.
+    """Return topics, heard topics, services, actions, nodes and URDF robots, with type hashes and simulated time.
 
     `bridged` has the services of bridges, which are not part of the simulation.
 
@@ -33,11 +33,12 @@ def graph(request: Request) -> object:
     sim = request.sim
     services, actions = sim.communication.services.names(), sim.communication.actions.names()
     robots = [name for name, model in sim.models.items() if model.scene.urdf is not None]
-    content = tuple(services.items()), tuple(actions.items()), robots, [p.node for p in request.server.peers.values()]
+    peers = [(p.node, *p.nodes, *p.subscriptions, *p.endpoints) for p in request.server.peers.values()]
+    content = tuple(services.items()), tuple(actions.items()), robots, peers
     revision = f"{sim.communication.bus.revision} {content!r}".__hash__()
-    found = {"revision": revision, "time_ns": sim.time_ns}
+    stamp = {"revision": revision, "time_ns": sim.time_ns}
     if request.args.get("revision") == revision:
-        return found
+        return stamp
     topics = topic_list(sim, request.server.peers.values())
     types = {t for row in topics for t in row["types"]} | {
         t for row in topics for s in row["subscribers"] for t in s["types"]
@@ -47,12 +48,13 @@ def graph(request: Request) -> object:
         names += [f"{action}_SendGoal", f"{action}_GetResult", f"{action}_FeedbackMessage"]
     heard = sorted({subscription.topic for subscription in sim.communication.bus.subscriptions()})
     return {
-        **found,
+        **stamp,
         "topics": topics,
         "heard": heard,
         "services": services,
         "bridged": _bridged(request),
         "actions": actions,
+        "nodes": list(node_list(sim, request.server.peers.values())),
         "robots": robots,
         "hashes": _hashes(names),
     }
@@ -67,13 +69,13 @@ def _bridged(request: Request) -> list[str]:
 
 def _hashes(names: Collection[str]) -> dict[str, str]:
     """Return the type hashes by name; types without a hash are left out."""
-    found = {}
+    hashes = {}
     for name in dict.fromkeys(names):
         try:
-            found[name] = rihs(name)
+            hashes[name] = rihs(name)
         except (MessageError, KeyError, ValueError):
             continue
-    return found
+    return hashes
 
 
 def goal_result(request: Request) -> object:
@@ -105,7 +107,7 @@ def asset(request: Request) -> object:
     folder, _, name = uri.rpartition("/")
     links = (link for model in request.sim.models.values() for link in model.scene.all_links())
     shapes = ([*(v.geometry for v in link.visuals), *(c.geometry for c in link.collisions)] for link in links)
-    for mesh in (shape for found in shapes for shape in found if isinstance(shape, Mesh) and not shape.missing):
+    for mesh in (shape for group in shapes for shape in group if isinstance(shape, Mesh) and not shape.missing):
         for known in (mesh.uri, mesh.file.as_uri()):
             if uri == known:
                 return str(mesh.file)

@@ -75,8 +75,8 @@ class Client(ClientGraph):
 
     def state(self) -> JsonObject:
         """Return `time_ns`, `tick`, `paused`, `rtf` (the highest allowed, None for no limit) and `measured_rtf`."""
-        found: JsonObject = self.ask("state")
-        return found
+        state: JsonObject = self.ask("state")
+        return state
 
     def control(self, action: str, value: float | None = None) -> JsonObject:
         """Pause, resume or step the simulation, or limit its real-time factor.
@@ -88,8 +88,8 @@ class Client(ClientGraph):
         Returns:
             State after the action, in the form that `state` returns.
         """
-        found: JsonObject = self.ask("control", action=action, value=value)
-        return found
+        state: JsonObject = self.ask("control", action=action, value=value)
+        return state
 
     def topics(self) -> list[JsonObject]:
         """List the topics.
@@ -97,13 +97,13 @@ class Client(ClientGraph):
         Returns:
             Rows with `name`, `types`, `publishers` (`node`, `type`, `latched`) and `subscribers` (`node`, `types`).
         """
-        found: list[JsonObject] = self.ask("topics")
-        return found
+        topics: list[JsonObject] = self.ask("topics")
+        return topics
 
     def models(self) -> list[str]:
         """Return the names of the models in the world."""
-        found: list[str] = self.ask("models")
-        return found
+        names: list[str] = self.ask("models")
+        return names
 
     def model(self, name: str) -> JsonObject:
         """Return the state of a model: `static`, `pose`, `links`, `joints` and `models`.
@@ -111,13 +111,13 @@ class Client(ClientGraph):
         A pose is `{"position": [x, y, z], "quaternion": [w, x, y, z], "rpy": [roll, pitch, yaw]}` in the world frame
         [m, rad]. A joint is `{"type", "position", "velocity", "effort"}` [rad, rad/s, N m or m, m/s, N].
         """
-        found: JsonObject = self.ask("model", name=name)
-        return found
+        state: JsonObject = self.ask("model", name=name)
+        return state
 
     def interfaces(self) -> list[str]:
         """Return the names of the user's messages, services and actions in the simulation, and define them here."""
-        found: list[str] = self.ask("interfaces")
-        return found
+        names: list[str] = self.ask("interfaces")
+        return names
 
     # ------------------------------------------------------------------ topics
 
@@ -180,8 +180,8 @@ class Client(ClientGraph):
             LiveError: the topic has another type, or the type is unknown.
         """
         number = self.next_number()
-        found = self.ask("advertise", number=number, topic=topic, type=type_name, latched=latched)
-        return LivePublisher(self, number, found["topic"], found["type"])
+        answer = self.ask("advertise", number=number, topic=topic, type=type_name, latched=latched)
+        return LivePublisher(self, number, answer["topic"], answer["type"])
 
     @cached_property
     def tf(self) -> LiveTransforms:
@@ -194,8 +194,8 @@ class Client(ClientGraph):
 
     def services(self) -> dict[str, str]:
         """Return the services: name -> type."""
-        found: dict[str, str] = self.ask("services")
-        return found
+        type_by_service: dict[str, str] = self.ask("services")
+        return type_by_service
 
     def call(self, name: str, request: object = None, timeout: float | None = None) -> Message:
         """Call a service and return its response. The service has finished when this method returns.
@@ -216,13 +216,13 @@ class Client(ClientGraph):
                 raise
             wait = self.timeout if timeout is None else timeout
             message = f"service {absolute(name)!r} gave no response within {wait:g} s"
-            raise LiveError(f"{message}; it is slow, or its process or the simulation is stopped", NO_ANSWER) from None
+            raise LiveError(NO_ANSWER, f"{message}; it is slow, or its process or the simulation is stopped") from None
         return msgs.deserialize(data, type_name)
 
     def actions(self) -> dict[str, str]:
         """Return the actions: name -> type."""
-        found: dict[str, str] = self.ask("actions")
-        return found
+        type_by_action: dict[str, str] = self.ask("actions")
+        return type_by_action
 
     def send_goal(
         self, name: str, goal: object = None, on_feedback: Callable[[Message], None] | None = None

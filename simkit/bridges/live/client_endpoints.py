@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from simkit.runtime.communication.action_server import Action, GoalHandle
     from simkit.runtime.communication.parameter import Parameter
     from simkit.runtime.communication.publisher import Listener
-    from simkit.runtime.communication.service_call import Service, ServiceCall
+    from simkit.runtime.communication.service_server import Service, ServiceCall
     from simkit.runtime.simulation import Simulation
 
 Respond = Callable[[Message, str], None]
@@ -60,7 +60,7 @@ class ClientEndpoint:
         number: number that the client chose for the endpoint.
 
     Attributes:
-        node: name of the client.
+        node: node of the endpoint.
         opened: endpoint in the simulation.
     """
 
@@ -68,7 +68,7 @@ class ClientEndpoint:
 
     def __init__(self, host: EndpointHost, peer: ClientConnection, number: int) -> None:
         self._host, self.sim, self.peer, self._number = host, host.sim, peer, number
-        self.node = peer.node
+        self.node = peer.node_of(number)
 
     def send_due(self) -> None:
         """Send the client what the simulation has queued since the last call."""
@@ -93,7 +93,7 @@ class ClientEndpoint:
 
 
 class ClientService(ClientEndpoint):
-    """Service that a client answers; see `simkit.runtime.communication.service_call.RemoteServer`."""
+    """Service that a client answers; see `simkit.runtime.communication.service_server.RemoteServer`."""
 
     def __init__(self, host: EndpointHost, peer: ClientConnection, number: int, name: str, type_name: str) -> None:
         super().__init__(host, peer, number)
@@ -112,9 +112,10 @@ class ClientService(ClientEndpoint):
         """Queue a call of the simulation."""
         self._queued.append(call)
 
-    def wait(self, seconds: float) -> None:
+    def wait(self, seconds: float) -> bool:
         """Exchange data with all clients for up to some wall time [s]."""
         self._host.poll(min(seconds, 0.05))
+        return True
 
     def send_due(self) -> None:
         """Send the queued calls of the simulation."""
@@ -148,7 +149,7 @@ class ClientService(ClientEndpoint):
         """
         respond = self._waiting.pop(number, None)
         if respond is None:
-            raise LiveError(f"no request {number} waits for a response of {self.opened.name!r}", "SK-LIVE-008")
+            raise LiveError("SK-LIVE-008", f"no request {number} waits for a response of {self.opened.name!r}")
         try:
             checked = None if error else self.opened.response(response)
         except MessageError as problem:
@@ -196,10 +197,12 @@ class ClientAction(ClientEndpoint):
             if goal.is_done or not self.opened.knows(goal):
                 continue
             if tell == "goal_cancel":
-                for number in [number for number, one in self._goals.items() if one is goal]:
+                for number in [number for number, other in self._goals.items() if other is goal]:
                     self._tell(tell, {"goal": number})
                 continue
-            self._goals = {n: one for n, one in self._goals.items() if not one.is_done and self.opened.knows(one)}
+            self._goals = {
+                n: other for n, other in self._goals.items() if not other.is_done and self.opened.knows(other)
+            }
             refusal = self._refusal(len(self._goals))
             if refusal:
                 goal.reject(refusal)
@@ -223,9 +226,9 @@ class ClientAction(ClientEndpoint):
         """
         goal = self._goals.get(number)
         if goal is None:
-            raise LiveError(f"no goal {number} of {self.opened.name!r} is active", "SK-LIVE-008")
+            raise LiveError("SK-LIVE-008", f"no goal {number} of {self.opened.name!r} is active")
         if change not in ("accept", "continue", "feedback", *_FINAL):
-            raise LiveError(f"unknown change {change!r:.80} of a goal", "SK-LIVE-008")
+            raise LiveError("SK-LIVE-008", f"unknown change {change!r:.80} of a goal")
         if change == "REJECTED":
             goal.reject(reason)
         elif self.opened.knows(goal):

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import logging
+import sys
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from functools import cached_property
 from pathlib import Path
+from typing import Final
 
 from simkit import msgs
 from simkit.bridges.live.client_handles import LivePublisher
-from simkit.bridges.live.client_log import LiveLogger
 from simkit.bridges.live.client_servers import (
     LiveAction,
     LiveEndpoint,
@@ -24,6 +27,40 @@ from simkit.msgs.message_types import Message
 
 DEFAULT_DEPTH = 1000
 """Default number of messages that a subscription queues at most, in the client and in the simulation."""
+_LABELS: Final = {logging.WARNING: "WARN", logging.CRITICAL: "FATAL"}
+
+
+class LiveLogger(logging.Logger):
+    """Logger of a client that prints as a ROS node does, and whose messages also go to `/rosout` of the simulation.
+
+    `setLevel("DEBUG")` also prints and publishes messages of the level DEBUG.
+
+    Args:
+        link: connection to the simulation.
+        number: number of the publisher of `/rosout` on the connection.
+        node: name of the client.
+    """
+
+    def __init__(self, link: ServerLink, number: int, node: str) -> None:
+        super().__init__(node.strip("/").replace("/", "."), logging.INFO)
+        self._link, self._number = link, number
+
+    def isEnabledFor(self, level: int) -> bool:  # noqa: N802 - overrides logging.Logger, whose cache `setLevel` keeps
+        """Check whether a message of this level is printed and published."""
+        return not self.disabled and level >= self.level
+
+    def handle(self, record: logging.LogRecord) -> None:
+        """Print a message on standard error, and send it to the simulation."""
+        text = record.getMessage()
+        if record.exc_info:
+            text = f"{text}\n{logging.Formatter().formatException(record.exc_info)}"
+        label = _LABELS.get(record.levelno, record.levelname)
+        sys.stderr.write(f"[{label}] [{record.created:.9f}] [{self.name}]: {text}\n")
+        if not self._link.is_closed:
+            place = {"file": record.pathname, "function": record.funcName or "", "line": record.lineno}
+            words = {"number": self._number, "level": record.levelno, "text": text, **place}
+            with suppress(LiveError):  # the simulation has ended
+                self._link.post("log", words)
 
 
 def absolute(name: str) -> str:
@@ -69,8 +106,8 @@ class ClientGraph(ServerLink):
             LiveError: the topic has another type, or the type is unknown.
         """
         number = self.next_number()
-        found = self.request("advertise", {"number": number, "topic": topic, "type": type_name, "latched": latched})[0]
-        return LivePublisher(self, number, found["topic"], found["type"])
+        answer = self.request("advertise", {"number": number, "topic": topic, "type": type_name, "latched": latched})[0]
+        return LivePublisher(self, number, answer["topic"], answer["type"])
 
     def publish(self, topic: str, message: object) -> None:
         """Publish a message. A message object on an unknown topic opens the topic.
@@ -199,8 +236,8 @@ class ClientGraph(ServerLink):
 
     def parameters(self) -> dict[str, JsonObject]:
         """Return the parameters: node -> name -> `value`, `type`, `minimum`, `maximum`, `choices`, `allowed`, …."""
-        found: dict[str, JsonObject] = self.request("parameters", {})[0]
-        return found
+        parameters: dict[str, JsonObject] = self.request("parameters", {})[0]
+        return parameters
 
     def set_parameter(self, node: str, name: str, value: object) -> None:
         """Set a live parameter of a node.
@@ -241,6 +278,6 @@ class ClientGraph(ServerLink):
             check_callback(on_change, "on_change")
         opened = LiveParameter(self, self.next_number(), name, str(node), value, on_change)
         options = {"minimum": minimum, "maximum": maximum, "choices": list(choices), "description": description}
-        found = self._open_endpoint(opened, "declare", {"name": name, "value": value, "node": node, **options})
-        opened.node = found["node"]
+        answer = self._open_endpoint(opened, "declare", {"name": name, "value": value, "node": node, **options})
+        opened.node = answer["node"]
         return opened

@@ -76,12 +76,12 @@ class LiveSubscription:
 
     def __next__(self) -> Received:
         try:
-            found = self.get()
+            message = self.get()
         except LiveClosed:
-            found = None
-        if found is None:
+            message = None
+        if message is None:
             raise StopIteration
-        return found
+        return message
 
     def close(self) -> None:
         """Stop receiving messages."""
@@ -113,7 +113,7 @@ class LiveSubscription:
                 if self.waiting:
                     self._link.callbacks.append(self._call)
                 name = callback_name(self._callback)
-                raise LiveError(f"subscriber {name} of {self.topic!r} raised: {error!r}", "SK-TOPIC-002") from error
+                raise LiveError("SK-TOPIC-002", f"subscriber {name} of {self.topic!r} raised: {error!r}") from error
 
 
 class LivePublisher:

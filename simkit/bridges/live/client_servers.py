@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from typing import Any
 
@@ -9,6 +10,7 @@ from simkit import msgs
 from simkit.bridges.live.client_handles import LiveSubscription
 from simkit.bridges.live.protocol import JsonObject, JsonValue, LiveClosed, LiveError
 from simkit.bridges.live.server_link import ServerLink
+from simkit.deferred_response import DeferredResponse
 from simkit.errors import callback_name
 from simkit.msgs.message_arguments import checked_message
 from simkit.msgs.message_types import Message
@@ -22,7 +24,7 @@ def raised(callback: object, kind: str, name: str, error: Exception) -> LiveErro
     if isinstance(error, LiveClosed):
         raise error
     reason = str(error) if isinstance(error, LiveError) else repr(error)
-    return LiveError(f"callback {callback_name(callback)} of {kind} {name!r} raised: {reason}", CALLBACK_ERROR)
+    return LiveError(CALLBACK_ERROR, f"callback {callback_name(callback)} of {kind} {name!r} raised: {reason}")
 
 
 class LiveEndpoint:
@@ -50,7 +52,9 @@ class LiveEndpoint:
 class LiveService(LiveEndpoint):
     """Service that this client answers while it receives."""
 
-    def __init__(self, link: ServerLink, number: int, name: str, type_name: str, handler: Callable[[Any], Any]) -> None:
+    def __init__(
+        self, link: ServerLink, number: int, name: str, type_name: str, handler: Callable[[Message], object]
+    ) -> None:
         super().__init__(link, number, name, type_name)
         self._handler = handler
 
@@ -61,16 +65,27 @@ class LiveService(LiveEndpoint):
     def _answer(self, number: int, data: bytes) -> None:
         words: JsonObject = {"number": self.number, "call": number}
         try:
-            found = self._handler(msgs.deserialize(data, f"{self.type_name}_Request"))
-            types = (f"{self.type_name}_Response",)
-            response = checked_message(found, types, f"response of {self.name!r}", none_is_default=True)
-            content = msgs.serialize(response)
+            answer = self._handler(msgs.deserialize(data, f"{self.type_name}_Request"))
+            if isinstance(answer, DeferredResponse):
+                answer.connect(functools.partial(self._respond, words))
+                return
+            self._respond(words, answer, "")
         except Exception as error:
             problem = raised(self._handler, "service", self.name, error)
             if not self._link.is_closed:
                 self._link.post("respond", {**words, "error": str(problem)})
             raise problem from error
-        self._link.post("respond", {**words, "type": msgs.type_name(response)}, content)
+
+    def _respond(self, words: JsonObject, answer: object, error: str) -> None:
+        """Send a response, or the text of an error; without effect after the end of the connection."""
+        if self._link.is_closed:
+            return
+        if error:
+            self._link.post("respond", {**words, "error": error})
+            return
+        types = (f"{self.type_name}_Response",)
+        response = checked_message(answer, types, f"response of {self.name!r}", none_is_default=True)
+        self._link.post("respond", {**words, "type": msgs.type_name(response)}, msgs.serialize(response))
 
 
 class LiveServerGoal:
@@ -151,7 +166,7 @@ class LiveAction(LiveEndpoint):
         number: int,
         name: str,
         type_name: str,
-        on_goal: Callable[[LiveServerGoal], Any],
+        on_goal: Callable[[LiveServerGoal], object],
         on_cancel: Callable[[LiveServerGoal], bool | None] | None,
     ) -> None:
         super().__init__(link, number, name, type_name)
@@ -235,7 +250,7 @@ class LiveParameter(LiveEndpoint):
         value = words["value"]
         self.value = tuple(value) if isinstance(value, list) else value
         if self._on_change is not None:
-            self._link.callbacks.append(lambda found=self.value: self._change(found))  # type: ignore[misc]
+            self._link.callbacks.append(lambda value=self.value: self._change(value))  # type: ignore[misc]
 
     def _change(self, value: JsonValue) -> None:
         assert self._on_change is not None

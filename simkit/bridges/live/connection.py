@@ -27,7 +27,7 @@ from simkit.bridges.live.protocol import (
 )
 from simkit.bridges.live.type_exchange import SentTypes
 from simkit.msgs.message_types import Message
-from simkit.runtime.communication.service_call import NO_ANSWER
+from simkit.runtime.communication.service_server import NO_ANSWER
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.action_server import GoalHandle
@@ -63,10 +63,12 @@ class ClientConnection:
         node: name of the client in node lists.
         subscriptions, publishers, goals: open handles of the client, by the client's numbers.
         endpoints: services, actions, command inputs and parameters of the client, by the client's numbers.
+        nodes: names of the nodes that the client has opened, in addition to its own name.
+        node_by_number: node of each handle that belongs to another node than the client's own.
         is_held: True while reading from the client is paused, because further commands would be dropped.
         is_bridge: True for a bridge, which passes on messages of others: its invalid messages are dropped with a
-            notification, and it does not receive its own messages. Any other client is disconnected for an invalid
-            message.
+            notification. Any other client is disconnected for an invalid message.
+        skips_own: True if the client does not receive its own messages.
         why: reason for disconnecting the client, after the client was informed; None for a connection in use.
     """
 
@@ -76,8 +78,10 @@ class ClientConnection:
         self.publishers: dict[int, Publisher] = {}
         self.goals: dict[int, tuple[GoalHandle, int]] = {}
         self.endpoints: dict[int, ClientEndpoint] = {}
+        self.nodes: list[str] = []
+        self.node_by_number: dict[int, str] = {}
         self.is_held = False
-        self.is_bridge = False
+        self.is_bridge = self.skips_own = False
         self.why: str | None = None
         self.is_gone = False
         self.reader = FrameReader(LARGEST_IN, (ASK, MESSAGE))
@@ -88,6 +92,15 @@ class ClientConnection:
         self._types_sent = SentTypes()
         self._pieces: deque[memoryview] = deque()  # bytes to send next
         self._sent = time.monotonic()
+
+    def node_of(self, number: int) -> str:
+        """Return the node of the handle with a number of the client."""
+        return self.node_by_number.get(number, self.node)
+
+    @property
+    def all_nodes(self) -> list[str]:
+        """Names for node lists: the nodes that the client has opened, else its own name."""
+        return self.nodes or [self.node]
 
     # ------------------------------------------------------------------ from the client
 
@@ -194,37 +207,37 @@ class ClientConnection:
 
     def _fill(self) -> bool:
         """Prepare the next bytes to send: answers first, then messages; return False if there are none."""
-        found: list[bytes] = []
+        frames: list[bytes] = []
         size = 0
         while self._answers and size < _PIECE:
             frame = self._answers.popleft()
             self._answer_bytes -= len(frame)
-            found.append(frame)
+            frames.append(frame)
             size += len(frame)
-        if size < _PIECE and self._fill_messages(found, size):
+        if size < _PIECE and self._fill_messages(frames, size):
             return True
-        if found:
-            self._pieces.append(memoryview(b"".join(found)))
-        return bool(found)
+        if frames:
+            self._pieces.append(memoryview(b"".join(frames)))
+        return bool(frames)
 
-    def _fill_messages(self, found: list[bytes], size: int) -> bool:
-        """Add messages up to the size of a piece; return True if `found` and a large message were queued separately."""
+    def _fill_messages(self, frames: list[bytes], size: int) -> bool:
+        """Add messages up to the size of a piece; return True if it queued `frames` and a large message apart."""
         types, lost, pack = self._types, dict[ClientSubscription, int](), MESSAGE_FRAME_HEAD.pack
         while size < _PIECE and (item := self._queue.next()) is not None:
             _, subscribed, (_, time_ns, type_name, data, _) = item
             type_number, length = types.get(type_name), len(data)
             if type_number is None:
-                found.append(self._type_frame(type_name))
+                frames.append(self._type_frame(type_name))
                 type_number = types[type_name]
             if subscribed not in lost:
                 lost[subscribed] = subscribed.lost
             head = MESSAGE_HEAD.size + length, MESSAGE, subscribed.number, type_number, time_ns, lost[subscribed]
-            found.append(pack(*head))
+            frames.append(pack(*head))
             size += length + MESSAGE_FRAME_HEAD.size
             if length >= _PIECE:  # large data are not copied
-                self._pieces += memoryview(b"".join(found)), memoryview(data)
+                self._pieces += memoryview(b"".join(frames)), memoryview(data)
                 return True
-            found.append(data)
+            frames.append(data)
         return False
 
     def _type_frame(self, type_name: str) -> bytes:

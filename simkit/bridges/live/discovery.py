@@ -44,14 +44,14 @@ def simulations() -> list[RunningSim]:
             callers[path], token = connect(path, _GREETING_TIMEOUT)
             readers[callers[path]] = FrameReader(LARGEST_OUT, (TELL,), token)
     greetings = _read_greetings(callers, readers)
-    found = []
+    running = []
     for path, caller in callers.items():
         pid, world = greetings.get(path, (0, ""))
         with suppress(OSError):
             pid = process_number(path, caller) or pid
-        found.append(RunningSim(path.stem, path, pid, world))
+        running.append(RunningSim(path.stem, path, pid, world))
         caller.close()
-    return found
+    return running
 
 
 def _read_greetings(
@@ -59,7 +59,7 @@ def _read_greetings(
 ) -> dict[Path, tuple[int, str]]:
     """Read process number and world from the greeting of each simulation; greetings that arrive late are left out."""
     paths = {caller: path for path, caller in callers.items()}
-    found: dict[Path, tuple[int, str]] = {}
+    greetings: dict[Path, tuple[int, str]] = {}
     waiting, end = set(readers), time.monotonic() + _GREETING_TIMEOUT
     while waiting and (left := end - time.monotonic()) > 0:
         for caller in select.select(list(waiting), [], [], left)[0]:
@@ -69,12 +69,12 @@ def _read_greetings(
                 frame = readers[caller].next()
                 if frame is not None:
                     words = read_json_frame(frame[1])[0]
-                    found[paths[caller]] = int(words.get("pid", 0)), str(words.get("world", ""))
+                    greetings[paths[caller]] = int(words.get("pid", 0)), str(words.get("world", ""))
                 if frame is not None or not data:
                     waiting.discard(caller)
             except (OSError, BadFrame, ValueError):
                 waiting.discard(caller)
-    return found
+    return greetings
 
 
 def find_socket(name: str | None = None) -> Path:
@@ -92,15 +92,15 @@ def find_socket(name: str | None = None) -> Path:
         if len(living) == 1:
             return living[0]
         if living:
-            raise LiveError(f"{len(living)} simulations run ({listed}); choose one with --sim NAME", "SK-LIVE-002")
-        raise LiveError("no simulation runs; start one with `simkit run WORLD` in another terminal", "SK-LIVE-001")
+            raise LiveError("SK-LIVE-002", f"{len(living)} simulations run ({listed}); choose one with --sim NAME")
+        raise LiveError("SK-LIVE-001", "no simulation runs; start one with `simkit run WORLD` in another terminal")
     for stem in (requested_name, file_name(requested_name)):  # a server replaces characters that files cannot have
         for path in living:
             if path.stem == stem:
                 return path
     if not names:
-        raise LiveError(f"no simulation {requested_name!r} runs; start one with `simkit run WORLD`", "SK-LIVE-001")
+        raise LiveError("SK-LIVE-001", f"no simulation {requested_name!r} runs; start one with `simkit run WORLD`")
     raise LiveError(
-        f"no simulation {requested_name!r} runs; {did_you_mean(requested_name, names) or 'running: ' + listed}",
         "SK-LIVE-003",
+        f"no simulation {requested_name!r} runs; {did_you_mean(requested_name, names) or 'running: ' + listed}",
     )

@@ -32,36 +32,43 @@ LATER: Final = object()
 
 def _name(request: Request, argument: str = "name") -> str:
     """Return the absolute name of a new endpoint."""
-    found = absolute_name(request.arg(argument, str))
-    if not _NAME.fullmatch(found) or len(found) > _LONGEST_NAME:
-        raise RequestRefused(f"{found!r:.80} is not a name; expected letters, digits and _ between slashes")
-    return found
+    name = absolute_name(request.arg(argument, str))
+    if not _NAME.fullmatch(name) or len(name) > _LONGEST_NAME:
+        raise RequestRefused(f"{name!r:.80} is not a name; expected letters, digits and _ between slashes")
+    return name
 
 
 def _endpoint(request: Request, kind: type[E]) -> E:
     """Return the client's endpoint with the requested number."""
-    found = request.peer.endpoints.get(request.arg("number", int))
-    if not isinstance(found, kind):
+    endpoint = request.peer.endpoints.get(request.arg("number", int))
+    if not isinstance(endpoint, kind):
         raise RequestRefused("there is no such endpoint")
-    return found
+    return endpoint
 
 
 def call(request: Request) -> object:
-    """Call a service. The answer of a service of another client comes later."""
+    """Call a service. The answer of a service of another client or of a program may come later."""
     services = request.sim.communication.services
     service = services.get(absolute_name(request.arg("name", str)))
-    if not isinstance(service.remote, ClientService):
-        return Response(services.call(service.name, request.message()))
-    service.remote.forward(services.checked(service, request.message()), request.respond)
-    return LATER
+    if isinstance(service.remote, ClientService):
+        service.remote.forward(services.checked(service, request.message()), request.respond)
+        return LATER
+    call = services.request(service.name, request.message())
+    if not call.is_done:
+        call.on_done = lambda call: request.respond(call.response, str(call.error or ""))
+        return LATER
+    if call.error is not None:
+        raise call.error
+    return Response(call.response)
 
 
 def offer(request: Request) -> object:
     """Open a service that the client answers."""
     number = request.new_number(request.peer.endpoints)
-    found = ClientService(request.server, request.peer, number, _name(request), request.arg("type", str))
-    request.peer.endpoints[number] = found
-    return found.opened.name
+    request.note_node(number)
+    service = ClientService(request.server, request.peer, number, _name(request), request.arg("type", str))
+    request.peer.endpoints[number] = service
+    return service.opened.name
 
 
 def respond(request: Request) -> object:
@@ -82,10 +89,11 @@ def respond(request: Request) -> object:
 def act(request: Request) -> object:
     """Open an action whose goals the client executes."""
     number = request.new_number(request.peer.endpoints)
+    request.note_node(number)
     name, type_name, cancels = _name(request), request.arg("type", str), request.arg("cancels", bool)
-    found = ClientAction(request.server, request.peer, number, name, type_name, cancels)
-    request.peer.endpoints[number] = found
-    return found.opened.name
+    action = ClientAction(request.server, request.peer, number, name, type_name, cancels)
+    request.peer.endpoints[number] = action
+    return action.opened.name
 
 
 def update_goal(request: Request) -> object:
@@ -102,9 +110,9 @@ def listen(request: Request) -> object:
     topic, types = request.topic(), read_items(request.args, "types", str)
     if not request.sim.communication.bus.types_of(topic):
         count_new_topic(request, topic)
-    found = ClientInput(request.server, request.peer, number, topic, types, request.arg("depth", int))
-    request.peer.endpoints[number] = found
-    return {"topic": topic, "types": list(found.opened.types)}
+    client_input = ClientInput(request.server, request.peer, number, topic, types, request.arg("depth", int))
+    request.peer.endpoints[number] = client_input
+    return {"topic": topic, "types": list(client_input.opened.types)}
 
 
 def declare(request: Request) -> object:
@@ -123,6 +131,7 @@ def close_endpoint(request: Request) -> object:
     """Close an endpoint of the client."""
     _endpoint(request, ClientEndpoint).close()
     del request.peer.endpoints[request.arg("number", int)]
+    request.peer.node_by_number.pop(request.arg("number", int), None)
     return None
 
 

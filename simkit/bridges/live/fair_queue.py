@@ -38,7 +38,7 @@ class FairQueue:
     def remove(self, reader: ClientSubscription) -> None:
         """Remove a subscription with its messages."""
         self._active.pop(reader, None)
-        if any(found is reader for _, found, _ in self._round):
+        if any(waiting is reader for _, waiting, _ in self._round):
             self._round = deque(item for item in self._round if item[1] is not reader)
 
     def clear(self) -> None:
@@ -56,7 +56,7 @@ class FairQueue:
 
     def _begin_round(self) -> None:
         """Take the messages of a round. If no subscription can pay for its message, skip the rounds until one can."""
-        found: list[Item] = []
+        waiting: list[Item] = []
         missing: list[int] = []
         size = 0
         for reader in list(self._active):
@@ -71,14 +71,14 @@ class FairQueue:
                     break
                 credit -= cost
                 size += cost
-                found.append((entry[0], reader, entry))
+                waiting.append((entry[0], reader, entry))
             else:
                 reader.rest()
             if size > _LARGEST_ROUND:
                 break
-        if missing and not found:
+        if missing and not waiting:
             skipped = (min(missing) - 1) // _SHARE * _SHARE
             for reader in self._active:
                 reader.credit += skipped
-        found.sort(key=itemgetter(0))
-        self._round.extend(found)
+        waiting.sort(key=itemgetter(0))
+        self._round.extend(waiting)

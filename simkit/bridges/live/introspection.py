@@ -19,26 +19,32 @@ if TYPE_CHECKING:
 def topic_list(sim: Simulation, clients: Collection[ClientConnection]) -> list[JsonObject]:
     """List every topic with its publishers and subscribers, including clients, sorted by name."""
     names = NodeNames(sim, clients)
-    found: dict[str, JsonObject] = {
+    rows: dict[str, JsonObject] = {
         topic: {"name": topic, "types": [], "publishers": [], "subscribers": []}
         for topic in sim.communication.bus.topics()
     }
     for topic, endpoint, types, role in sim.communication.bus.endpoints():
-        if topic not in found or not endpoint.active:
+        if topic not in rows or not endpoint.active:
             continue
-        row, node = found[topic], names.endpoint_node(endpoint)
+        row, node = rows[topic], names.endpoint_node(endpoint)
         row["types"] += [t for t in types[:1] if t not in row["types"]]
         if role == "publishes":
             latched = bool(getattr(endpoint, "latched", False))
             row["publishers"].append({"node": node, "type": types[0], "latched": latched})
         else:
             row["subscribers"].append({"node": node, "types": list(types), "kind": "input"})
+    for reader in sim.communication.bus.subscriptions():
+        if reader.node:
+            fresh: JsonObject = {"name": reader.topic, "types": [reader.type_name], "publishers": [], "subscribers": []}
+            row = rows.setdefault(reader.topic, fresh)
+            row["subscribers"].append({"node": reader.node, "types": [reader.type_name], "kind": "program"})
     for peer in clients:
-        for subscribed in peer.subscriptions.values():
-            row = found.get(subscribed.topic, {})
+        for number, subscribed in peer.subscriptions.items():
+            row = rows.get(subscribed.topic, {})
             if row:
-                row["subscribers"].append({"node": peer.node, "types": row["types"][:1], "kind": "client"})
-    return list(found.values())
+                node = peer.node_of(number)
+                row["subscribers"].append({"node": node, "types": row["types"][:1], "kind": "client"})
+    return [rows[topic] for topic in sorted(rows)]
 
 
 def node_list(sim: Simulation, clients: Collection[ClientConnection]) -> dict[str, JsonObject]:
@@ -48,11 +54,11 @@ def node_list(sim: Simulation, clients: Collection[ClientConnection]) -> dict[st
         Node -> `publishers`, `subscribers`, `services`, `actions` (each name -> types) and `parameters` (names).
     """
     names = NodeNames(sim, clients)
-    found: dict[str, JsonObject] = {}
+    nodes: dict[str, JsonObject] = {}
 
     def entry(node: str) -> JsonObject:
         fresh: JsonObject = {"publishers": {}, "subscribers": {}, "services": {}, "actions": {}, "parameters": []}
-        return found.setdefault(node, fresh)
+        return nodes.setdefault(node, fresh)
 
     for row in topic_list(sim, clients):
         for end in row["publishers"]:
@@ -60,18 +66,19 @@ def node_list(sim: Simulation, clients: Collection[ClientConnection]) -> dict[st
         for end in row["subscribers"]:
             entry(end["node"])["subscribers"][row["name"]] = list(end["types"])
     for name in sim.communication.services.names():
-        service = sim.communication.services._find(name)
+        service = sim.communication.services.find(name)
         if service is not None:
             entry(names.endpoint_node(service))["services"][name] = [service.type_name]
     for name in sim.communication.actions.names():
-        action = sim.communication.actions._find(name)
+        action = sim.communication.actions.find(name)
         if action is not None:
             entry(names.endpoint_node(action))["actions"][name] = [action.type_name]
     for node, parameters in sim.communication.parameters.items():
         entry(node)["parameters"] = list(parameters)
     for peer in clients:
-        entry(peer.node)
-    return dict(sorted(found.items()))
+        for node in peer.all_nodes:
+            entry(node)
+    return dict(sorted(nodes.items()))
 
 
 def parameter_list(sim: Simulation) -> dict[str, JsonObject]:
@@ -91,9 +98,9 @@ def parameter_list(sim: Simulation) -> dict[str, JsonObject]:
                 "allowed": p.allowed,
                 "description": p.description,
             }
-            for name, p in found.items()
+            for name, p in of_node.items()
         }
-        for node, found in sim.communication.parameters.items()
+        for node, of_node in sim.communication.parameters.items()
     }
 
 
@@ -134,14 +141,18 @@ class NodeNames:
     def __init__(self, sim: Simulation, clients: Iterable[ClientConnection]) -> None:
         self._world = "/" + name_part(sim.world.name)
         self._nodes: dict[int, list[str]] = {}
-        for node, found in sim.communication.parameters.items():
-            for owner in {id(p.owner): p.owner for p in found.values() if p.owner is not None}:
+        for node, of_node in sim.communication.parameters.items():
+            for owner in {id(p.owner): p.owner for p in of_node.values() if p.owner is not None}:
                 self._nodes.setdefault(owner, []).append(node)
-        self._clients = {id(end): peer.node for peer in clients for end in peer.publishers.values()}
-        self._clients |= {id(e.opened): peer.node for peer in clients for e in peer.endpoints.values()}
+        self._clients = {id(end): peer.node_of(n) for peer in clients for n, end in peer.publishers.items()}
+        self._clients |= {id(e.opened): peer.node_of(n) for peer in clients for n, e in peer.endpoints.items()}
 
     def endpoint_node(self, end: Any) -> str:
         """Return the node of a publisher, a subscriber, a service or an action."""
+        remote = getattr(end, "remote", None)
+        program = getattr(end, "node", "") if remote is None else remote.node
+        if program:
+            return str(program)
         name = str(getattr(end, "topic", None) or end.name)
         nodes = self._nodes.get(id(end.owner), ()) if end.owner is not None else ()
         below = [node for node in nodes if name.startswith(f"{node}/")]  # a controller manager has several nodes

@@ -219,9 +219,9 @@ def read_token_file(path: Path) -> TokenFile:
     finally:
         os.close(handle)
     try:
-        found = json.loads(content)
-        tokens = bytes.fromhex(found["caller_token"]), bytes.fromhex(found["server_token"])
-        port, pid = int(found["port"]), int(found["pid"])
+        fields = json.loads(content)
+        tokens = bytes.fromhex(fields["caller_token"]), bytes.fromhex(fields["server_token"])
+        port, pid = int(fields["port"]), int(fields["pid"])
     except (ValueError, KeyError, TypeError):
         tokens, port, pid = (b"", b""), 0, 0
     if not 0 < port < 1 << 16 or {len(token) for token in tokens} != {TOKEN_BYTES}:
@@ -235,18 +235,18 @@ def _open(path: Path) -> int:
     return os.open(path, os.O_RDWR | sum(flags))  # some systems lock only files that are open for writing
 
 
-def _privacy_fault(found: os.stat_result) -> str:
+def _privacy_fault(status: os.stat_result) -> str:
     """Return the reason not to trust a token file; empty for a file of this user alone.
 
     On Windows, a file has the access rights of its folder, which is in the user's own folder for data of programs.
     """
-    if not stat.S_ISREG(found.st_mode):
+    if not stat.S_ISREG(status.st_mode):
         return "is not a regular file"
     if hasattr(os, "getuid"):
-        if found.st_uid != os.getuid():
+        if status.st_uid != os.getuid():
             return "belongs to another user"
-        if found.st_mode & 0o077:
-            return f"is open to others (mode {stat.S_IMODE(found.st_mode):o}; expected 600)"
+        if status.st_mode & 0o077:
+            return f"is open to others (mode {stat.S_IMODE(status.st_mode):o}; expected 600)"
     return ""
 
 

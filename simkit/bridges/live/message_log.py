@@ -204,9 +204,9 @@ class ClientSubscription:
             return
         self._skip_dropped()
         while self.position < log.end:
-            found = log.entries[self.position]
-            if found[4] is not peer:
-                yield found
+            entry = log.entries[self.position]
+            if entry[4] is not peer:
+                yield entry
             self.position += 1
 
     def rest(self) -> None:

@@ -17,15 +17,15 @@ class LiveError(InputError):
         code: code of the simulation's error (such as `SK-SERVICE-001`), else one of `SK-LIVE-001` to 009.
     """
 
-    def __init__(self, message: str, code: str) -> None:
-        super().__init__(message if code in message else f"{code} {message}", code)
+    def __init__(self, code: str, message: str | None = None) -> None:
+        super().__init__(code, message, shows_code=code not in (message or ""))  # an answer may have the code
 
 
 class LiveClosed(LiveError):
     """Error for a simulation that has ended or has closed the connection; the message has the reason if it is known."""
 
-    def __init__(self, message: str, code: str = "SK-LIVE-005") -> None:
-        super().__init__(message, code)
+    code = "SK-LIVE-005"
+    _shows_class_code = True
 
 
 class BadFrame(Exception):

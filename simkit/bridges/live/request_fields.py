@@ -17,6 +17,7 @@ from simkit.argument_checks import shown
 from simkit.errors import InputError
 
 T = TypeVar("T")
+H = TypeVar("H")
 CODE: Final = "SK-LIVE-008"
 FAULT: Final = "SK-LIVE-010"
 _KINDS: Final[Mapping[type, str]] = MappingProxyType(
@@ -41,7 +42,23 @@ class RequestRefused(InputError):
     code = CODE
 
 
-def read_field(fields: Mapping[str, Any], name: str, kind: type[T], default: object = _REQUIRED) -> T:
+def find_handler(handlers: Mapping[str, H], name: str, kind: str = "request") -> H:
+    """Return the handler of a request from the table of a server.
+
+    Args:
+        handlers: handlers by the name that clients send.
+        name: name in the request.
+        kind: word of the server's protocol for a request.
+
+    Raises:
+        RequestRefused: no request has this name.
+    """
+    if name not in handlers:
+        raise RequestRefused(f"unknown {kind} {name!r:.80}; expected {', '.join(handlers)}")
+    return handlers[name]
+
+
+def read_field(fields: Mapping[str, object], name: str, kind: type[T], default: object = _REQUIRED) -> T:
     """Return a field of a request.
 
     Args:
@@ -53,7 +70,7 @@ def read_field(fields: Mapping[str, Any], name: str, kind: type[T], default: obj
     Raises:
         RequestRefused: the field is missing or has a value of another kind.
     """
-    value: Any = fields.get(name)
+    value = fields.get(name)
     if value is None and default is not _REQUIRED:
         return default  # type: ignore[return-value]  # the caller chooses a value of the kind
     if name not in fields:
@@ -61,21 +78,21 @@ def read_field(fields: Mapping[str, Any], name: str, kind: type[T], default: obj
     return checked_value(value, f"{name!r}", kind)
 
 
-def checked_value(value: Any, name: str, kind: type[T]) -> T:
+def checked_value(value: object, name: str, kind: type[T]) -> T:
     """Return a value of a request if it has a kind; see `read_field`.
 
     Raises:
         RequestRefused: the value has another kind.
     """
-    found: Any = value
-    if kind is float and type(found) is int and abs(found) <= sys.float_info.max:
-        found = float(found)  # JSON has integers that no float can hold
-    if type(found) is not kind or (kind is float and not abs(cast("float", found)) <= sys.float_info.max):
+    checked: Any = value
+    if kind is float and type(checked) is int and abs(checked) <= sys.float_info.max:
+        checked = float(checked)  # JSON has integers that no float can hold
+    if type(checked) is not kind or (kind is float and not abs(cast("float", checked)) <= sys.float_info.max):
         raise RequestRefused(f"{name} must be {_KINDS[kind]}, got {shown(value)}")
-    return found
+    return checked
 
 
-def read_items(fields: Mapping[str, Any], name: str, kind: type[T]) -> list[T]:
+def read_items(fields: Mapping[str, object], name: str, kind: type[T]) -> list[T]:
     """Return a field that is a list of values of one kind.
 
     Raises:
@@ -84,18 +101,22 @@ def read_items(fields: Mapping[str, Any], name: str, kind: type[T]) -> list[T]:
     return [checked_value(item, f"an item of {name!r}", kind) for item in read_field(fields, name, list)]
 
 
-def read_identifier(fields: Mapping[str, Any], name: str = "id") -> str | int | float | None:
+def read_identifier(fields: Mapping[str, object], name: str = "id") -> str | int | float | None:
     """Return the name or number that a client has given to a request; None without one.
 
     Raises:
         RequestRefused: it is neither a text nor a finite number.
     """
-    found = fields.get(name)
-    if found is None or isinstance(found, str):
-        return found
-    if isinstance(found, bool) or not isinstance(found, (int, float)) or not abs(found) <= sys.float_info.max:
-        raise RequestRefused(f"{name!r} must be a text or a number, got {shown(found)}")
-    return found
+    identifier = fields.get(name)
+    if identifier is None or isinstance(identifier, str):
+        return identifier
+    if (
+        isinstance(identifier, bool)
+        or not isinstance(identifier, (int, float))
+        or not abs(identifier) <= sys.float_info.max
+    ):
+        raise RequestRefused(f"{name!r} must be a text or a number, got {shown(identifier)}")
+    return identifier
 
 
 def read_json(data: str | bytes) -> Any:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Final, Protocol, TypeVar
+from typing import TYPE_CHECKING, Final, Protocol, TypeVar, cast
 
 from simkit import msgs
 from simkit.bridges.live.connection import MOST_OPEN, ClientConnection
@@ -55,6 +56,25 @@ class RequestHost(Protocol):
         ...
 
 
+class SimulationRequest(Protocol):
+    """Protocol of a request that only needs the simulation, whichever server receives it.
+
+    Attributes:
+        sim: simulation.
+        args: arguments by name.
+    """
+
+    @property
+    def sim(self) -> Simulation: ...
+
+    @property
+    def args(self) -> JsonObject: ...
+
+    def arg(self, name: str, kind: type[T]) -> T:
+        """Return the argument of that name and type."""
+        ...
+
+
 @dataclass(frozen=True)
 class Request:
     """Request of a client: its arguments, and the message (CDR) that follows them.
@@ -83,11 +103,11 @@ class Request:
 
     def topic(self) -> str:
         """Return the absolute name of the requested topic."""
-        found = self.arg("topic", str)
-        found = found if found.startswith("/") else "/" + found
-        if not _TOPIC.fullmatch(found):
-            raise RequestRefused(f"{found!r:.80} is not a topic name")
-        return found
+        topic = self.arg("topic", str)
+        topic = topic if topic.startswith("/") else "/" + topic
+        if not _TOPIC.fullmatch(topic):
+            raise RequestRefused(f"{topic!r:.80} is not a topic name")
+        return topic
 
     def new_number(self, table: Mapping[int, object]) -> int:
         """Return the number that the client chose for a new handle."""
@@ -97,8 +117,13 @@ class Request:
         if number in table:
             raise RequestRefused(f"the number {number} is in use")
         if len(table) >= MOST_OPEN:
-            raise RequestRefused(f"a client may open at most {MOST_OPEN} of these", "SK-LIVE-007")
+            raise RequestRefused("SK-LIVE-007", f"a client may open at most {MOST_OPEN} of these", shows_code=False)
         return number
+
+    def note_node(self, number: int) -> None:
+        """Store the node of a new handle, if the request names another node than the client's own."""
+        if self.args.get("node") is not None:
+            self.peer.node_by_number[number] = node_name(self.arg("node", str))
 
     def message(self) -> object:
         """Return the message of the request, from its fields or from CDR with the name of its type."""
@@ -123,23 +148,72 @@ class Response:
 RequestHandler = Callable[[Request], object]
 
 
+def node_name(name: str) -> str:
+    """Return the absolute name of a node, with `_` for characters that names cannot have."""
+    return "/" + (re.sub(r"[^A-Za-z0-9_/]+", "_", name)[:100].strip("/") or "client")
+
+
 def node(request: Request) -> object:
     """Set the client's node name: the requested name, or the first free of `name_2`, `name_3`, …."""
-    node_name = "/" + (re.sub(r"[^A-Za-z0-9_/]+", "_", request.arg("name", str))[:100].strip("/") or "client")
+    name = node_name(request.arg("name", str))
     request.peer.is_bridge = bool(request.args.get("is_bridge"))
+    request.peer.skips_own = request.peer.is_bridge or bool(request.args.get("skips_own"))
     names_in_use = {p.node for p in request.server.peers.values() if p is not request.peer}
-    request.peer.node, number = node_name, 1
+    request.peer.node, number = name, 1
     while request.peer.node in names_in_use:
         number += 1
-        request.peer.node = f"{node_name}_{number}"
+        request.peer.node = f"{name}_{number}"
     return request.peer.node
+
+
+def open_node(request: Request) -> object:
+    """Add a node to those of the client; requests for handles may name it with `node`."""
+    if len(request.peer.nodes) >= MOST_OPEN:
+        raise RequestRefused("SK-LIVE-007", f"a client may open at most {MOST_OPEN} nodes", shows_code=False)
+    request.peer.nodes.append(node_name(request.arg("name", str)))
+    return request.peer.nodes[-1]
+
+
+def close_node(request: Request) -> object:
+    """Remove a node from those of the client."""
+    name = node_name(request.arg("name", str))
+    if name not in request.peer.nodes:
+        raise RequestRefused("there is no such node")
+    request.peer.nodes.remove(name)
+    return None
 
 
 def state(request: Request) -> object:
     """Return the simulated time, the tick, and the current and allowed real-time factors."""
     sim = request.sim
-    found = {"time_ns": sim.time_ns, "tick": sim.tick, "timestep": sim.timestep, "paused": sim.paused}
-    return {**found, "rtf": sim.control.pausing.pace, "measured_rtf": request.server.measured_rtf()}
+    clock = {"time_ns": sim.time_ns, "tick": sim.tick, "timestep": sim.timestep, "paused": sim.paused}
+    return {**clock, "rtf": sim.control.pausing.pace, "measured_rtf": request.server.measured_rtf()}
+
+
+def make_steps(sim: Simulation, count: object) -> None:
+    """Pause the simulation after some steps.
+
+    Raises:
+        RequestRefused: the number is not a whole number of at least 1.
+    """
+    steps = int(count) if isinstance(count, float) and count.is_integer() else count
+    if type(steps) is not int or not 0 < steps < 1 << 40:
+        raise RequestRefused(f"step: found {count!r:.80}; expected a whole number of steps of at least 1")
+    sim.control.pausing.step(steps)
+
+
+def set_pace(sim: Simulation, pace: object) -> None:
+    """Set the highest real-time factor; None for no limit.
+
+    Raises:
+        RequestRefused: the factor is not a number above 0.
+    """
+    if pace is None:
+        sim.control.pausing.pace = None
+    elif type(pace) in (int, float) and 0 < cast("float", pace) <= sys.float_info.max:
+        sim.control.pausing.pace = float(cast("float", pace))
+    else:
+        raise RequestRefused(f"rtf: found {pace!r:.80}; expected a number above 0, or nothing for no limit")
 
 
 def control(request: Request) -> object:
@@ -151,16 +225,9 @@ def control(request: Request) -> object:
     elif action == "resume":
         pausing.resume()
     elif action == "step":
-        count = 1 if value is None else value
-        if type(count) is float and count.is_integer():
-            count = int(count)
-        if type(count) is not int or not 0 < count < 1 << 40:
-            raise RequestRefused(f"step: found {value!r:.80}; expected a whole number of steps of at least 1")
-        pausing.step(count)
+        make_steps(request.sim, 1 if value is None else value)
     elif action == "rtf":
-        if value is not None and not (type(value) in (int, float) and 0 < value < float("inf")):
-            raise RequestRefused(f"rtf: found {value!r:.80}; expected a number above 0, or nothing for no limit")
-        pausing.pace = None if value is None else float(value)
+        set_pace(request.sim, value)
     else:
         raise RequestRefused(f"control: found {action!r:.80}; expected pause, resume, step or rtf")
     return state(request)
@@ -170,11 +237,12 @@ def control(request: Request) -> object:
 
 
 def subscribe(request: Request) -> object:
-    """Open a subscription of the client."""
+    """Open a subscription of the client; with `skips_latched`, it receives only messages that are published later."""
     number, topic = request.new_number(request.peer.subscriptions), request.topic()
     subscribed = ClientSubscription(request.peer, number, topic, request.arg("depth", int))
-    request.server.feeds.add(subscribed)
+    request.server.feeds.add(subscribed, takes_latched=request.args.get("skips_latched") is not True)
     request.peer.subscriptions[number] = subscribed
+    request.note_node(number)
     types = (types[0] for _, end, types, _ in request.sim.communication.bus.endpoints(topic) if end.active)
     return {"topic": topic, "type": next(types, None)}
 
@@ -184,6 +252,7 @@ def unsubscribe(request: Request) -> object:
     subscribed = request.peer.subscriptions.pop(request.arg("number", int), None)
     if subscribed is None:
         raise RequestRefused("there is no such subscription")
+    request.peer.node_by_number.pop(subscribed.number, None)
     request.server.feeds.remove(subscribed)
     request.peer.drop_waiting(subscribed)
     return {"lost": subscribed.lost}
@@ -198,11 +267,12 @@ def advertise(request: Request) -> object:
     type_name = msgs.full_name(types_in_use[0] if request.args.get("type") is None else request.arg("type", str))
     if types_in_use and type_name not in types_in_use:
         allowed = " or ".join(dict.fromkeys(types_in_use))
-        raise RequestRefused(f"topic {topic!r} has type {allowed}, got {type_name}", "SK-MSG-001")
+        raise RequestRefused("SK-MSG-001", f"topic {topic!r} has type {allowed}, got {type_name}", shows_code=False)
     msgs.type_of(type_name)
     if not types_in_use:
         count_new_topic(request, topic)
     request.peer.publishers[number] = bus.advertise(topic, type_name, latched=request.args.get("latched") is True)
+    request.note_node(number)
     return {"topic": topic, "type": type_name}
 
 
@@ -210,7 +280,7 @@ def define_types(server: RequestHost, texts: Mapping[str, str]) -> None:
     """Define the types that a client sent. Their number is limited, because they are kept until the process ends."""
     if len(server.client_types.union(texts)) > MOST_OPEN:
         message = f"clients of this run have already defined {MOST_OPEN} types; no more can be defined"
-        raise RequestRefused(message, "SK-LIVE-007")
+        raise RequestRefused("SK-LIVE-007", message, shows_code=False)
     own_interfaces.add_received(texts)
     server.client_types.update(texts)
 
@@ -222,15 +292,17 @@ def count_new_topic(request: Request, topic: str) -> None:
     names = request.server.client_topics
     if topic not in names and len(names) >= MOST_OPEN:
         message = f"clients of this run have already created {MOST_OPEN} topics; no more can be created"
-        raise RequestRefused(message, "SK-LIVE-007")
+        raise RequestRefused("SK-LIVE-007", message, shows_code=False)
     names.add(topic)
 
 
 def unadvertise(request: Request) -> object:
     """Close a publisher of the client."""
-    publisher = request.peer.publishers.pop(request.arg("number", int), None)
+    number = request.arg("number", int)
+    publisher = request.peer.publishers.pop(number, None)
     if publisher is None:
         raise RequestRefused("there is no such publisher")
+    request.peer.node_by_number.pop(number, None)
     request.sim.communication.bus.close(publisher)
     return None
 
@@ -249,22 +321,22 @@ def goal(request: Request) -> object:
 
     sent = request.sim.send_goal(request.arg("name", str), request.message(), on_feedback)
     request.peer.goals[number] = sent, int(sent.status)
-    return [sent._action.name, sent.id]
+    return [sent.action.name, sent.id]
 
 
 def cancel(request: Request) -> object:
     """Request the cancellation of a goal; return False if the goal has ended."""
-    found = request.peer.goals.get(request.arg("number", int))
-    if found is not None:  # None: the goal has ended
-        found[0].cancel()
-    return found is not None
+    goal = request.peer.goals.get(request.arg("number", int))
+    if goal is not None:  # None: the goal has ended
+        goal[0].cancel()
+    return goal is not None
 
 
-def set_parameter(request: Request) -> object:
+def set_parameter(request: SimulationRequest) -> object:
     """Set a parameter of a node."""
     value = request.args.get("value")
-    found = tuple(value) if isinstance(value, list) else value
-    request.sim.set_parameter(request.arg("node", str), request.arg("name", str), found)
+    checked = tuple(value) if isinstance(value, list) else value
+    request.sim.set_parameter(request.arg("node", str), request.arg("name", str), checked)
     return None
 
 
@@ -280,6 +352,8 @@ REQUESTS: Final[Mapping[str, RequestHandler]] = MappingProxyType(
         "ping": lambda _: "pong",
         "interfaces": lambda _: own_interfaces.known_names(),
         "node": node,
+        "open_node": open_node,
+        "close_node": close_node,
         "state": state,
         "control": control,
         "topics": lambda request: topic_list(request.sim, request.server.peers.values()),

@@ -137,8 +137,8 @@ class Server:
 
     def fileno(self) -> int:
         """Return a file descriptor for `select`, except on Windows; it is readable when `poll` has work to do."""
-        found: int = self._selector.fileno()
-        return found
+        descriptor: int = self._selector.fileno()
+        return descriptor
 
     def measured_rtf(self) -> float:
         """Return the real-time factor over about the last second of wall time."""
@@ -219,7 +219,7 @@ class Server:
                 peer.send_json(TELL, {"tell": "invalid", "topic": publisher.topic, "type": publisher.type_name})
                 return
             raise BadFrame(f"the data on {publisher.topic!r} is not a valid {publisher.type_name}") from error
-        self.feeds.memory.publishing = peer if peer.is_bridge else None
+        self.feeds.memory.publishing = peer if peer.skips_own else None
         try:
             publisher.publish(message)
         finally:

@@ -101,14 +101,14 @@ class ServerLink:
             raise self._no_answer() from None
         except OSError as error:
             text = f"simulation {self.path.stem!r} cannot be reached: {error.strerror}"
-            raise LiveError(text, "SK-LIVE-003") from None
+            raise LiveError("SK-LIVE-003", text) from None
 
     def _open(self, node: str | None) -> None:
         name = self.path.stem
         self._wait_for_answer(lambda: bool(self.info))
         if self.info.pop("protocol", None) != PROTOCOL:
-            found = self.info.get("version")
-            raise LiveError(f"simulation {name!r} runs simkit {found}, with another protocol version", "SK-LIVE-006")
+            version = self.info.get("version")
+            raise LiveError("SK-LIVE-006", f"simulation {name!r} runs simkit {version}, with another protocol version")
         self.info["node"] = self.request("node", {"name": node or f"simkit_{os.getpid()}"})[0]
 
     def request(
@@ -138,7 +138,7 @@ class ServerLink:
         try:
             frame = json_frame(ASK, self._types_sent.attach({"id": number, "ask": question, **args}), data)
         except (TypeError, ValueError) as error:
-            raise LiveError(f"the arguments of {question!r} cannot be sent: {error}", "SK-LIVE-008") from None
+            raise LiveError("SK-LIVE-008", f"the arguments of {question!r} cannot be sent: {error}") from None
         self.send(frame)
         return number
 
@@ -150,10 +150,10 @@ class ServerLink:
             if self._answers.pop(number, None) is None:
                 self._abandoned.add(number)
             raise
-        words, found = self._answers.pop(number)
+        words, data = self._answers.pop(number)
         if "error" in words:
-            raise LiveError(str(words["error"]), str(words.get("code", "SK-LIVE-008")))
-        return words.get("ok"), found, str(words.get("type", ""))
+            raise LiveError(str(words.get("code", "SK-LIVE-008")), str(words["error"]))
+        return words.get("ok"), data, str(words.get("type", ""))
 
     def has_answer(self, number: int) -> bool:
         """Check whether the answer with that number has arrived, so that `answer` returns at once."""
@@ -213,7 +213,7 @@ class ServerLink:
             raise self._closed
         if len(frame) > LARGEST_IN:
             text = f"a message of {len(frame)} bytes is too large to send; the limit is {LARGEST_IN}"
-            raise LiveError(text, "SK-LIVE-008")
+            raise LiveError("SK-LIVE-008", text)
         try:
             self._socket.sendall(frame)
         except TimeoutError:
@@ -253,7 +253,7 @@ class ServerLink:
             while (frame := self._reader.next()) is not None:
                 self._dispatch(*frame)
         except (BadFrame, ValueError, KeyError, TypeError, struct.error) as error:
-            self._fail(LiveClosed(f"simulation {self.path.stem!r} sent an invalid frame: {error}", "SK-LIVE-006"))
+            self._fail(LiveClosed("SK-LIVE-006", f"simulation {self.path.stem!r} sent an invalid frame: {error}"))
 
     def _dispatch(self, kind: int, body: bytes) -> None:
         if kind == MESSAGE:
@@ -284,7 +284,7 @@ class ServerLink:
         elif words["tell"] == "invalid":
             self.invalid(words)
         elif words["tell"] == "bye":
-            self._closed = LiveClosed(str(words["why"]), str(words.get("code", "SK-LIVE-005")))
+            self._closed = LiveClosed(str(words.get("code", "SK-LIVE-005")), str(words["why"]))
             self._socket.close()
 
     def invalid(self, words: JsonObject) -> None:
@@ -301,7 +301,7 @@ class ServerLink:
 
     def _no_answer(self) -> LiveError:
         return LiveError(
-            f"simulation {self.path.stem!r} does not answer (waited {self.timeout:g} s); is it stopped?", "SK-LIVE-004"
+            "SK-LIVE-004", f"simulation {self.path.stem!r} does not answer (waited {self.timeout:g} s); is it stopped?"
         )
 
     @property

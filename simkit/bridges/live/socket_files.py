@@ -53,32 +53,32 @@ def _suffix_of_new_sockets() -> str:
 def socket_folders() -> list[Path]:
     """Return the folders that sockets may be in, the preferred folder first."""
     if not hasattr(os, "getuid"):
-        own = os.environ.get("LOCALAPPDATA")
-        return [Path(own) / "simkit-running"] if own and Path(own).is_absolute() else []
-    found = []
+        local_data = os.environ.get("LOCALAPPDATA")
+        return [Path(local_data) / "simkit-running"] if local_data and Path(local_data).is_absolute() else []
+    folders = []
     with suppress(FileNotFoundError):  # there is no folder for temporary files, for example because the disk is full
-        found.append(Path(tempfile.gettempdir()) / f"simkit-{os.getuid()}")
+        folders.append(Path(tempfile.gettempdir()) / f"simkit-{os.getuid()}")
     runtime = os.environ.get("XDG_RUNTIME_DIR")
     if runtime and Path(runtime).is_absolute():
-        found.insert(0, Path(runtime) / "simkit")
-    return found
+        folders.insert(0, Path(runtime) / "simkit")
+    return folders
 
 
 def folder_fault(folder: Path) -> str:
     """Return the reason not to trust the sockets in a folder; empty for a trusted folder."""
     try:
-        found = os.lstat(folder)
+        status = os.lstat(folder)
     except OSError as error:
         return f"{folder}: {error.strerror}"
-    if not stat.S_ISDIR(found.st_mode):
+    if not stat.S_ISDIR(status.st_mode):
         return f"{folder} is not a folder"
     if not hasattr(os, "getuid"):  # Windows: access rights are those of the parent folder
-        is_link = getattr(found, "st_file_attributes", 0) & stat.FILE_ATTRIBUTE_REPARSE_POINT
+        is_link = getattr(status, "st_file_attributes", 0) & stat.FILE_ATTRIBUTE_REPARSE_POINT
         return f"{folder} is a link" if is_link else ""
-    if found.st_uid != os.getuid():
+    if status.st_uid != os.getuid():
         return f"{folder} belongs to another user"
-    if found.st_mode & 0o077:
-        return f"{folder} is open to others (mode {stat.S_IMODE(found.st_mode):o}; expected 700)"
+    if status.st_mode & 0o077:
+        return f"{folder} is open to others (mode {stat.S_IMODE(status.st_mode):o}; expected 700)"
     return ""
 
 
@@ -185,9 +185,9 @@ def _files_in(folder: Path) -> list[Path]:
 
 def sockets() -> list[Path]:
     """Return the sockets in trusted folders, including those of processes that have ended."""
-    found: dict[str, Path] = {}
+    path_by_name: dict[str, Path] = {}
     for folder in socket_folders():
         if not folder_fault(folder):
             for path in _files_in(folder):
-                found.setdefault(path.stem, path)
-    return [found[name] for name in sorted(found)]
+                path_by_name.setdefault(path.stem, path)
+    return [path_by_name[name] for name in sorted(path_by_name)]

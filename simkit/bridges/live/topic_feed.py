@@ -38,17 +38,27 @@ class TopicFeed:
         self._tap: Subscription | None = None
         self._is_rendered = False  # True for images, whose rendering costs much more than anything else here
 
-    def add(self, reader: ClientSubscription) -> None:
-        """Add a subscription. Only the new subscription receives the last messages of a latched topic."""
+    def add(self, reader: ClientSubscription, *, takes_latched: bool = True) -> None:
+        """Add a subscription.
+
+        Args:
+            reader: subscription.
+            takes_latched: True if this subscription, and no other one, receives the last messages of a latched topic.
+        """
         bus = self._sim.communication.bus
         if not self.has_readers:
             bus.check_available(self.topic)
-            self.log.add(reader)
+            if takes_latched:
+                self.log.add(reader)
             self._open_tap()
-            return
-        if self.topic in bus.latched():
+            if not takes_latched:
+                self._common.deliver_ready()
+                self.deliver_ready()
+                self.log.drop_to(0)
+        elif takes_latched and self.topic in bus.latched():
             self._add_latched(reader)
-        self.log.add(reader)
+        if reader.log is None:
+            self.log.add(reader)
 
     def _open_tap(self) -> None:
         settle = self._common.deliver_ready
@@ -142,12 +152,12 @@ class TopicFeeds:
         self._common: MessageQueue[TopicFeed] = MessageQueue(_deliver, _serialise_valid)
         self._reviewed = 0.0
 
-    def add(self, reader: ClientSubscription) -> None:
-        """Add a subscription to a topic."""
+    def add(self, reader: ClientSubscription, *, takes_latched: bool = True) -> None:
+        """Add a subscription to a topic; see `TopicFeed.add`."""
         feed = self._feeds.get(reader.topic)
         if feed is None:
             feed = TopicFeed(self._sim, reader.topic, self.memory, self._common)
-        feed.add(reader)
+        feed.add(reader, takes_latched=takes_latched)
         self._feeds[reader.topic] = feed
 
     def remove(self, reader: ClientSubscription) -> None:

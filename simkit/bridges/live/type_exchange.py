@@ -29,9 +29,9 @@ class SentTypes:
         if not own_interfaces.has_any():
             return content
         named = set(_texts(content, _DEEPEST)) - self._sent
-        found = {name: text for name, text in own_interfaces.texts_used_by(named).items() if name not in self._sent}
-        self._sent.update(found)
-        return {**content, _KEY: found} if found else content
+        texts = {name: text for name, text in own_interfaces.texts_used_by(named).items() if name not in self._sent}
+        self._sent.update(texts)
+        return {**content, _KEY: texts} if texts else content
 
 
 def detach(content: JsonObject, most: int | None = None) -> dict[str, str]:
@@ -44,12 +44,12 @@ def detach(content: JsonObject, most: int | None = None) -> dict[str, str]:
     Raises:
         BadFrame: the definitions are not texts, or are too long.
     """
-    found = content.pop(_KEY, None) or {}
-    if not isinstance(found, dict) or not all(isinstance(text, str) for text in found.values()):
+    texts = content.pop(_KEY, None) or {}
+    if not isinstance(texts, dict) or not all(isinstance(text, str) for text in texts.values()):
         raise BadFrame("the definitions of types in a frame are not texts")
-    if most is not None and sum(map(len, found.values())) > most:
+    if most is not None and sum(map(len, texts.values())) > most:
         raise BadFrame(f"the definitions of types in a frame have more than {most} characters")
-    return found
+    return texts
 
 
 def _texts(value: JsonValue, depth: int) -> Iterator[str]:

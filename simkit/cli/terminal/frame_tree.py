@@ -1,4 +1,4 @@
-"""Transforms on `/tf` and `/tf_static` of a simulation or a bag, and the text of their tree."""
+"""Transforms on `/tf` and `/tf_static` of a simulation or a bag."""
 
 from __future__ import annotations
 
@@ -15,24 +15,6 @@ if TYPE_CHECKING:
 
 _TOPICS = ("/tf", "/tf_static")
 _TYPE = "tf2_msgs/msg/TFMessage"
-
-
-def tree_lines(tree: TransformTree) -> list[str]:
-    """Return the trees of frames as text, one frame per line, indented by depth."""
-    parents = tree.frames()
-    children: dict[str, list[str]] = {}
-    for child, parent in parents.items():
-        children.setdefault(parent, []).append(child)
-    found: list[str] = []
-
-    def add(name: str, depth: int, seen: frozenset[str]) -> None:
-        found.append("  " * depth + name + (" (static)" if tree.is_static(name) else ""))
-        for child in children.get(name, ()) if name not in seen else ():
-            add(child, depth + 1, seen | {name})
-
-    for root in children.get("", ()) or list(parents)[:1]:  # frames in a circle have no root
-        add(root, 0, frozenset())
-    return found
 
 
 def receive_transforms(
@@ -60,8 +42,8 @@ def receive_transforms(
                 return
             message = source.decode(received)
             if not hasattr(message, "transforms"):
-                text = f"SK-CLI-032 {received.topic} has type {received.type_name}; expected {_TYPE}"
-                raise InputError(text, "SK-CLI-032")
+                text = f"{received.topic} has type {received.type_name}; expected {_TYPE}"
+                raise InputError("SK-CLI-032", text)
             frames.advance(received.topic, received.time_ns)
             frames.take(message, is_static=received.topic in static)
             yield received

@@ -169,9 +169,9 @@ def _ignore_signals() -> None:
         signal.signal(number, signal.SIG_IGN)
 
 
-def _hide_lost_interrupt(found: sys.UnraisableHookArgs) -> None:
-    if not isinstance(found.exc_value, Interrupted):
-        sys.__unraisablehook__(found)
+def _hide_lost_interrupt(unraisable: sys.UnraisableHookArgs) -> None:
+    if not isinstance(unraisable.exc_value, Interrupted):
+        sys.__unraisablehook__(unraisable)
 
 
 def _is_unwinding() -> bool:

@@ -72,9 +72,9 @@ class JsonReport:
             return
         self._is_printed = True
         self._restore_descriptor()
-        found = [one.as_dict() for one in self.diagnostics]
+        diagnostics = [diagnostic.as_dict() for diagnostic in self.diagnostics]
         with redirect_stdout(self._output):
-            print_json({**self.values, "diagnostics": found, "exit_code": exit_code})
+            print_json({**self.values, "diagnostics": diagnostics, "exit_code": exit_code})
 
 
 _running: JsonReport | None = None
@@ -86,10 +86,10 @@ def add_to_report(**values: object) -> None:
         _running.values.update(values)
 
 
-def add_diagnostics(found: Iterable[Diagnostic]) -> None:
+def add_diagnostics(diagnostics: Iterable[Diagnostic]) -> None:
     """Add diagnostics to the report of the running command, if it has one."""
     if _running is not None:
-        _running.diagnostics.update(dict.fromkeys(found))
+        _running.diagnostics.update(dict.fromkeys(diagnostics))
 
 
 def print_report_now(exit_code: int) -> None:
@@ -180,5 +180,5 @@ def print_usage_error(error: Exception, words: Iterable[str]) -> None:
         and "--json" in words
         and hasattr(getattr(command, "callback", None), _WANTS_REPORT)
     ):
-        found = [one.as_dict() for one in error_diagnostics(error)]
-        print_json({"diagnostics": found, "exit_code": InputError.exit_code})
+        diagnostics = [diagnostic.as_dict() for diagnostic in error_diagnostics(error)]
+        print_json({"diagnostics": diagnostics, "exit_code": InputError.exit_code})

@@ -75,11 +75,11 @@ def windows_keys(characters: str) -> list[str]:
     An arrow is two characters; the first is NUL or 0xE0.
     """
     keys: list[str] = []
-    found = iter(characters)
-    for character in found:
+    remaining = iter(characters)
+    for character in remaining:
         if character not in "\x00\xe0":
             keys.append(character)
-        elif (name := _WINDOWS_ARROWS.get(next(found, ""))) is not None:
+        elif (name := _WINDOWS_ARROWS.get(next(remaining, ""))) is not None:
             keys.append(name)
     return keys
 

@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+import re
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
-from typer import Argument, Option, Typer
-from typer.core import TyperCommand
+from typer import Argument, Option
 from typer.models import ArgumentInfo, OptionInfo
 
 from simkit.cli.terminal import completion
-from simkit.cli.terminal.output import P, report_errors_quietly
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 
 
 def option(
     help: str,
-    metavar: str,
+    metavar: str | None = None,
     *names: str,
     min: float | None = None,
     max: float | None = None,
@@ -26,12 +25,12 @@ def option(
     complete: completion.Completer | None = None,
     parser: Callable[[str], float] | None = None,
 ) -> OptionInfo:
-    """Declare an option with a value.
+    """Declare an option with a value, or a flag of type `bool`: `option("Show the run.", None, "--view")`.
 
     Args:
         help: help text.
-        metavar: placeholder of the value in the help.
-        names: names of the option; default: the parameter's name.
+        metavar: placeholder of the value in the help; None for a flag.
+        names: names of the option; default: the parameter's name. A flag without a name gets a second one, `--no-NAME`.
         min: lowest allowed number.
         max: highest allowed number.
         show_default: True to show the default in the help.
@@ -107,6 +106,13 @@ Against = Annotated[str | None, option("Field for the x axis instead of time.", 
 Start = Annotated[float | None, option("Start time.", "S", "--start")]
 End = Annotated[float | None, option("End time.", "S", "--end")]
 Title = Annotated[str, option("Title of the chart.", "TEXT", show_default=False)]
+Resolution = Annotated[
+    str | None, option("Size of --gif and --video; default: 1280x720, 640x360 for a GIF alone.", "WxH", "--resolution")
+]
+Fps = Annotated[float | None, option("Frames per simulated second; default: 25, 10 for a GIF alone.", "N", "--fps")]
+FilmCamera = Annotated[
+    str, option("Camera of --gif and --video; auto: fixed in a room, else following.", "auto|fixed|follow", "--camera")
+]
 
 
 def validate_word(name: str, word: str, allowed: Sequence[str]) -> str:
@@ -117,47 +123,18 @@ def validate_word(name: str, word: str, allowed: Sequence[str]) -> str:
     """
     if word not in allowed:
         hint = did_you_mean(word, allowed)
-        text = f"SK-CLI-018 {name}: found {word!r}; expected {', '.join(allowed)}"
-        raise InputError(text + (f"; {hint}" if hint else ""), "SK-CLI-018")
+        text = f"{name}: found {word!r}; expected {', '.join(allowed)}"
+        raise InputError("SK-CLI-018", text + (f"; {hint}" if hint else ""))
     return word
 
 
-_FLAGS = frozenset({"--no-daemon", "--use-sim-time"})
-_QOS = ("profile", "reliability", "durability", "history", "depth", "liveliness", "liveliness-lease-duration-seconds")
-_WITH_VALUE = frozenset({"--spin-time", "--node-name", *(f"--qos-{name}" for name in _QOS)})
+def compile_pattern(text: str | None, option: str) -> re.Pattern[str] | None:
+    """Compile the regular expression of an option; None if the option is missing.
 
-
-class Ros2Command(TyperCommand):
-    """Command that accepts and ignores the network and daemon options of `ros2`: simkit has neither."""
-
-    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Remove the ignored options and parse the rest."""
-        return super().parse_args(ctx, list(_remove_ros2_flags(args)))
-
-
-def _remove_ros2_flags(args: list[str]) -> Iterator[str]:
-    words = iter(args)
-    for word in words:
-        if word == "--":
-            yield word
-            yield from words
-        elif word in _WITH_VALUE:
-            next(words, None)
-        elif word not in _FLAGS and word.partition("=")[0] not in _WITH_VALUE:
-            yield word
-
-
-def live_command(group: Typer, name: str | None = None) -> Callable[[Callable[P, int | None]], Callable[P, None]]:
-    """Add a command for a running simulation to a group, in the style of `ros2`.
-
-    The command ignores the network and daemon options of `ros2`. Ctrl-C ends it without a message.
-
-    Args:
-        group: group of commands.
-        name: name of the command; default: the function's name.
+    Raises:
+        InputError: SK-CLI-031 the text is not a regular expression.
     """
-
-    def add(command: Callable[P, int | None]) -> Callable[P, None]:
-        return group.command(name, cls=Ros2Command)(report_errors_quietly(command))
-
-    return add
+    try:
+        return None if text is None else re.compile(text)
+    except re.error as error:
+        raise InputError("SK-CLI-031", f"{option}: {text!r} is not a regular expression: {error}") from None

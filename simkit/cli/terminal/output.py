@@ -23,9 +23,10 @@ from simkit.cli.terminal.interruption import running_command
 from simkit.cli.terminal.plain_console import PlainConsole, is_plain_stream
 from simkit.cli.terminal.task_display import displayed_tasks
 from simkit.diagnostics import did_you_mean
-from simkit.errors import InputError, LoadError, PluginError, SimkitError
+from simkit.errors import InputError, LoadError, PackError, PluginError, SimkitError
 from simkit.hidden_text import hidden_in_command, is_hiding
 from simkit.memory_error import OutOfMemory, find_memory_error
+from simkit.packs import fault_text, foreign_pack_of
 
 if TYPE_CHECKING:
     from rich.console import Console, ConsoleOptions, RenderableType
@@ -227,14 +228,14 @@ def report_errors(command: Callable[P, int | None]) -> Callable[P, None]:
                 raise typer.Exit(output_failure_exit_code(error)) from None
             # a file that no other check expected to fail, for example because there are too many open files
             place = os.fsdecode(error.filename) if isinstance(error.filename, (str, bytes)) else "a file"
-            print_error(InputError(f"SK-CLI-016 cannot read or write {place}: {error.strerror}", "SK-CLI-016"))
+            print_error(InputError("SK-CLI-016", f"cannot read or write {place}: {error.strerror}"))
             raise typer.Exit(2) from None
         except Exception as error:
-            found = known_error(error)
-            if found is None:
+            simkit_error = known_error(error)
+            if simkit_error is None:
                 raise
-            print_error(found)
-            raise typer.Exit(found.exit_code) from None
+            print_error(simkit_error)
+            raise typer.Exit(simkit_error.exit_code) from None
         if code:
             raise typer.Exit(int(code))
 
@@ -244,14 +245,20 @@ def report_errors(command: Callable[P, int | None]) -> Callable[P, None]:
 def known_error(error: Exception) -> SimkitError | None:
     """Return the error for the user behind an exception that may come from anywhere; None if it is a fault of simkit.
 
-    These are too little memory, and a name that is not valid UTF-8 where a file format needs text.
+    These are too little memory, a name that is not valid UTF-8 where a file format needs text, and a fault in the code
+    of a pack of another distribution.
     """
     word = _NOT_UTF8.search(error.object) if isinstance(error, UnicodeEncodeError) else None
     if word is not None:
         name = ascii(word[0] if len(word[0]) <= _LONGEST_NAME else word[0][:_LONGEST_NAME] + "...")
-        text = f"SK-CLI-057 {name} is not valid UTF-8, but the file or program that gets it needs text"
-        return InputError(f"{text}\n    help: rename the file or folder", "SK-CLI-057")
-    return find_memory_error(error)
+        text = f"{name} is not valid UTF-8, but the file or program that gets it needs text"
+        return InputError("SK-CLI-057", text, help="rename the file or folder")
+    memory_error = find_memory_error(error)
+    is_of_typer = isinstance(error, (typer.Abort, typer.Exit)) or hasattr(error, "exit_code")  # and usage errors
+    if memory_error is not None or is_of_typer or sys.flags.dev_mode:
+        return memory_error
+    pack = foreign_pack_of(error)
+    return None if pack is None else PackError(pack.package, fault_text(error, pack.folder))
 
 
 def _is_output_failure(error: OSError) -> bool:
@@ -350,24 +357,6 @@ def report_errors_quietly(command: Callable[P, int | None]) -> Callable[P, None]
     return report_errors(run)
 
 
-def print_names(names: Sequence[str], *, count: bool = False, json_: bool) -> None:
-    """Print names, one per line, or their number."""
-    if json_:
-        print_json(len(names) if count else list(names))
-    else:
-        for text in [str(len(names))] if count else names:
-            print_name(text)
-
-
-def print_names_and_types(types: Mapping[str, str], *, show_types: bool, count: bool, json_: bool) -> None:
-    """Print names, one per line, optionally with their types, or their number."""
-    if json_ and not count:
-        print_json([{"name": name, "types": [type_name]} for name, type_name in types.items()])
-    else:
-        names = [f"{n} [{t}]" for n, t in types.items()] if show_types else list(types)
-        print_names(names, count=count, json_=json_)
-
-
 def not_found_error(
     noun: str, name: str, known: Sequence[str] | Mapping[str, object], code: str, where: str
 ) -> InputError:
@@ -375,7 +364,7 @@ def not_found_error(
     names = list(known)
     listed = ", ".join(names[:20]) + (f" and {len(names) - 20} more" if len(names) > 20 else "")
     hint = did_you_mean(name, names) or ("known: " + listed if names else "there are none")
-    return InputError(f"{code} no {noun} {name!r} in {where}; {hint}", code)
+    return InputError(code, f"no {noun} {name!r} in {where}; {hint}")
 
 
 def absolute_name(name: str) -> str:

@@ -44,7 +44,7 @@ class PlainConsole:
         """Present stream."""
         return sys.stderr if self.stderr else sys.stdout
 
-    def print(self, *objects: Any, **options: Any) -> None:
+    def print(self, *objects: object, **options: Any) -> None:
         """Print a text as a line; the style has no effect."""
         if len(objects) != 1 or type(objects[0]) is not str or "\t" in objects[0] or options.keys() - {"style"}:
             self._rich.print(*objects, **options)

@@ -136,9 +136,9 @@ def task_text(task: Task) -> str:
 
 def time_text(seconds: float) -> str:
     """Format a duration: "8 s", "3 min 40 s" or "2 h 5 min"."""
-    whole = round(seconds)
-    if whole < 60:
-        return f"{whole} s"
-    if whole < 3600:
-        return f"{whole // 60} min {whole % 60} s"
-    return f"{whole // 3600} h {whole % 3600 // 60} min"
+    full_seconds = round(seconds)
+    if full_seconds < 60:
+        return f"{full_seconds} s"
+    if full_seconds < 3600:
+        return f"{full_seconds // 60} min {full_seconds % 60} s"
+    return f"{full_seconds // 3600} h {full_seconds % 3600 // 60} min"

@@ -74,14 +74,14 @@ class DriverLine:
 
     def _obstacle_text(self, model: Model, base: Pose) -> str:
         """Return distance and direction of the nearest obstacle in the robot's lidar scans; empty without a lidar."""
-        found = [
+        readings = [
             near
             for sensor in self._sim.contents.sensors.values()
             if sensor.scoped.startswith(f"{model.scoped}::") and (near := nearest_reading(sensor)) is not None
         ]
-        if not found:
+        if not readings:
             return ""
-        distance, direction, pose, least = min(found, key=lambda reading: reading[0])
+        distance, direction, pose, least = min(readings, key=lambda reading: reading[0])
         if distance == math.inf:
             return "nothing near"
         reach = least if distance == -math.inf else distance

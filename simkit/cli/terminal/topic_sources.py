@@ -5,16 +5,15 @@ from __future__ import annotations
 import os
 import time
 from collections import deque
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from simkit.cli.terminal.output import absolute_name, not_found_error, print_note
+from simkit.cli.terminal.output import print_note
 from simkit.errors import InputError, MessageError
 from simkit.msgs.message_types import Message
-from simkit.msgs.topic_names import is_hidden
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -22,10 +21,6 @@ if TYPE_CHECKING:
     from simkit.live import Client
     from simkit.recording.bags.reader import BagReader, BagTopic
 
-LIST_PARAMETERS = "/list_parameters"
-GET_STATE = "/get_state"
-_STATE_TYPE = "lifecycle_msgs/srv/GetState"
-"""Suffix after the node's name in the name of the service that lists its parameters."""
 LONGEST_WAIT = 1e6  # [s] of wall time, longest sleep of a command
 _POLL_PERIOD = 0.05  # [s] of wall time, longest time between two reads of the simulation's clock
 _SLOWEST = 1e-3  # real-time factor below which the simulation counts as stopped
@@ -119,14 +114,14 @@ class LiveSource:
 
     def topics(self) -> dict[str, TopicEntry]:
         """Return the topics by name, sorted."""
-        found = {}
+        topic_entries = {}
         for row in sorted(self.client.topics(), key=lambda r: str(r["name"])):
             publishers = tuple(
                 TopicEndpoint(p["node"], (p["type"],), bool(p.get("latched"))) for p in row["publishers"]
             )
             subscribers = tuple(TopicEndpoint(s["node"], tuple(s["types"])) for s in row["subscribers"])
-            found[row["name"]] = TopicEntry(row["name"], tuple(row["types"]), publishers, subscribers)
-        return found
+            topic_entries[row["name"]] = TopicEntry(row["name"], tuple(row["types"]), publishers, subscribers)
+        return topic_entries
 
     def feed(self, topics: Sequence[str], depth: int = _DEPTH) -> LiveFeed:
         """Subscribe to topics from now on."""
@@ -197,14 +192,14 @@ class LiveFeed:
         return self._ready.popleft()
 
     def _drain(self) -> None:
-        found: list[ReceivedMessage] = []
+        messages: list[ReceivedMessage] = []
         for topic, subscription in self._subscriptions.items():
             while subscription.waiting:
                 time_ns, type_name, data = subscription.waiting.popleft()
-                found.append(ReceivedMessage(time_ns, topic, type_name, data))
+                messages.append(ReceivedMessage(time_ns, topic, type_name, data))
         if len(self._subscriptions) > 1:
-            found.sort(key=lambda r: r.time_ns)
-        self._ready.extend(found)
+            messages.sort(key=lambda r: r.time_ns)
+        self._ready.extend(messages)
 
     def close(self) -> None:
         """Close the subscriptions."""
@@ -236,10 +231,10 @@ class BagSource:
         return {
             name: TopicEntry(
                 name,
-                tuple(dict.fromkeys(t.type_name for t in found)),
-                tuple(TopicEndpoint("", (t.type_name,), t.latched) for t in found),
+                tuple(dict.fromkeys(t.type_name for t in topic_entries)),
+                tuple(TopicEndpoint("", (t.type_name,), t.latched) for t in topic_entries),
             )
-            for name, found in rows.items()
+            for name, topic_entries in rows.items()
         }
 
     def feed(self, topics: Sequence[str], depth: int = _DEPTH) -> BagFeed:
@@ -269,9 +264,9 @@ class BagFeed:
 
     def take(self, timeout: float | None = None) -> ReceivedMessage | None:
         """Return the next message; None after the last one."""
-        found = next(self._messages, None)
-        self.is_over = found is None
-        return None if found is None else ReceivedMessage(*found)
+        message = next(self._messages, None)
+        self.is_over = message is None
+        return None if message is None else ReceivedMessage(*message)
 
     def close(self) -> None:
         """Stop reading."""
@@ -291,7 +286,7 @@ def open_source(sim: str | None, bag: Path | None) -> Iterator[Source]:
     """
     if bag is not None:
         if sim is not None and sim != os.environ.get("SIMKIT_SIM"):  # the environment variable is not a conflict
-            raise InputError("SK-CLI-018 --sim and --bag: found both; expected one of them", "SK-CLI-018")
+            raise InputError("SK-CLI-018", "--sim and --bag: found both; expected one of them")
         from simkit.recording.bags.reader import open_bag_to_read
 
         with open_bag_to_read(bag) as reader:
@@ -319,73 +314,3 @@ def connect_to_simulation(sim: str | None) -> Iterator[Client]:
 def connection_name(client: Client) -> str:
     """Describe the simulation of a client."""
     return f"the simulation {client.info.get('name', '')!r}"
-
-
-def interface_type(client: Client, what: str, types: Mapping[str, str], name: str) -> str:
-    """Return the type of a service or an action.
-
-    Args:
-        client: connection to the simulation.
-        what: `service` or `action`.
-        types: types of all services or actions, by name.
-        name: name, with or without its leading slash.
-
-    Raises:
-        InputError: SK-CLI-037 the name is unknown; the message suggests the closest name.
-    """
-    full_name = absolute_name(name)
-    if full_name not in types:
-        raise not_found_error(what, full_name, types, "SK-CLI-037", connection_name(client))
-    return str(types[full_name])
-
-
-def wait_for_topic(source: Source, name: str, until: float | None = None) -> TopicEntry:
-    """Return a topic; if the simulation does not have it yet, wait for it.
-
-    Args:
-        source: running simulation or bag.
-        name: name of the topic.
-        until: end of the wait [s of `time.monotonic`]; None for never.
-
-    Raises:
-        InputError: SK-CLI-030 a bag has no such topic, or the topic did not appear in time.
-    """
-    full_name, was_reported = absolute_name(name), False
-    while source.is_live and (until is None or time.monotonic() < until):
-        found = source.topics().get(full_name)
-        if found is not None:
-            return found
-        if not was_reported:
-            print_note(f"WARNING: topic [{name}] does not appear to be published yet")
-            was_reported = True
-        time.sleep(0.1)
-    return find_topic(source, name)
-
-
-def find_topic(source: Source, name: str) -> TopicEntry:
-    """Return a topic by its name, including hidden topics.
-
-    Raises:
-        InputError: SK-CLI-030 the topic does not exist; the message suggests the closest name.
-    """
-    topics = source.topics()
-    full_name = absolute_name(name)
-    if full_name not in topics:
-        visible = [t for t in topics if not is_hidden(t)]
-        raise not_found_error("topic", full_name, visible, "SK-CLI-030", source.where)
-    return topics[full_name]
-
-
-def node_names(client: Client, *, hidden: bool = False) -> list[str]:
-    """Return the names of the nodes, sorted."""
-    return sorted(name for name in client.ask("nodes") if hidden or not is_hidden(name))
-
-
-def lifecycle_node_names(client: Client) -> list[str]:
-    """Return the lifecycle nodes, sorted."""
-    return sorted(name.removesuffix(GET_STATE) for name, kind in client.services().items() if kind == _STATE_TYPE)
-
-
-def parameter_nodes(client: Client) -> list[str]:
-    """Return the nodes that have parameters, sorted."""
-    return sorted(name.removesuffix(LIST_PARAMETERS) for name in client.services() if name.endswith(LIST_PARAMETERS))

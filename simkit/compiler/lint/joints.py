@@ -128,14 +128,14 @@ def _item_or_last(values: list[float], i: int) -> float:
 
 
 def _numbers(params: Params, name: str) -> list[float]:
-    found = []
+    values = []
     for child in params.children:
         if child.name == name:
             try:
-                found.append(float(child.value))
+                values.append(float(child.value))
             except ValueError:
                 continue
-    return found
+    return values
 
 
 def _find_joint(compiled: Compiled, model: str, name: str) -> JointBinding | None:

@@ -146,13 +146,13 @@ def _corners(model: mujoco.MjModel, data: mujoco.MjData, geoms: Iterable[int]) -
         Corners in the world frame, shape (8 n, 3).
     """
     signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
-    found = []
+    corners = []
     for g in geoms:
         if _is_unbounded(model, g):
             continue
         box = model.geom_aabb[g]
-        found.append(data.geom_xpos[g] + matmul(box[:3] + signs * box[3:], data.geom_xmat[g].reshape(3, 3).T))
-    return np.concatenate(found) if found else None
+        corners.append(data.geom_xpos[g] + matmul(box[:3] + signs * box[3:], data.geom_xmat[g].reshape(3, 3).T))
+    return np.concatenate(corners) if corners else None
 
 
 def _is_unbounded(model: mujoco.MjModel, geom: int) -> bool:

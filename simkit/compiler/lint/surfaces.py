@@ -42,9 +42,9 @@ def check_surfaces(world: SceneWorld, compiled: Compiled, diagnostics: Diagnosti
 
 def _without_turning_friction(model: mujoco.MjModel, geom: int) -> npt.NDArray[np.intp]:
     """Return the geoms that may touch a geom and whose surface switches off its spinning or rolling friction."""
-    found = (model.geom_priority > model.geom_priority[geom]) & (model.geom_condim < model.geom_condim[geom])
-    found &= model.body_weldid[model.geom_bodyid] != model.body_weldid[model.geom_bodyid[geom]]
-    one, other = model.geom_contype[geom], model.geom_conaffinity[geom]
-    found &= ((model.geom_contype & other) | (model.geom_conaffinity & one)) != 0
-    geoms: npt.NDArray[np.intp] = found.nonzero()[0]
+    overruling = (model.geom_priority > model.geom_priority[geom]) & (model.geom_condim < model.geom_condim[geom])
+    overruling &= model.body_weldid[model.geom_bodyid] != model.body_weldid[model.geom_bodyid[geom]]
+    kinds, other = model.geom_contype[geom], model.geom_conaffinity[geom]
+    overruling &= ((model.geom_contype & other) | (model.geom_conaffinity & kinds)) != 0
+    geoms: npt.NDArray[np.intp] = overruling.nonzero()[0]
     return geoms

@@ -1,5 +1,4 @@
-"""Mesh files: reading triangles, making convex collision bodies, and caching both.
+"""Convex collision bodies of meshes: hulls, pieces, height fields and boxes, with a cache of the results.
 
-The input is a mesh file with its companion files; the output is `MeshPart`s in metres and convex bodies. Files may be
-hostile, so sizes, nesting depths and references are limited. This package does not use MuJoCo.
+The input is the triangles of `MeshPart`s, from files that may be hostile. This package does not use MuJoCo.
 """

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from simkit.compiler.meshes.mesh_part import Floats, Indices
+from simkit.loaders.meshes.mesh_part import Floats, Indices
 
 _WIDE: Final = 64
 """Number of cubes from which a triangle is compared with all boxes."""
@@ -67,8 +67,8 @@ def overlaps(low: Floats, high: Floats, others_low: Floats, others_high: Floats)
         return pairs[0]
     for k in range(0, len(wide), _WIDE_BLOCK):
         block = wide[k : k + _WIDE_BLOCK]
-        found = (low[:, None] <= others_high[block]).all(axis=2) & (high[:, None] >= others_low[block]).all(axis=2)
-        box, other = np.nonzero(found)
+        overlap = (low[:, None] <= others_high[block]).all(axis=2) & (high[:, None] >= others_low[block]).all(axis=2)
+        box, other = np.nonzero(overlap)
         pairs.append((box, block[other]))
     box, other = (np.concatenate([pair[k] for pair in pairs]) for k in (0, 1))
     order = np.argsort(box, kind="stable")

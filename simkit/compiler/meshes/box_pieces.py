@@ -6,8 +6,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from simkit.compiler.meshes.mesh_part import Floats, Indices
 from simkit.linear_algebra import det, matmul
+from simkit.loaders.meshes.mesh_part import Floats, Indices
 
 _ROUNDING: Final = 1e-5
 """Largest distance of a corner from that of a box, relative to the largest coordinate: the rounding of a file."""

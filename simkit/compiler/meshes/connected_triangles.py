@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from simkit.compiler.meshes.mesh_part import Indices, Ints
+from simkit.loaders.meshes.mesh_part import Indices, Ints
 
 Corners = Ints | Indices
 """Numbers of the corners of triangles, shape (m, 3)."""

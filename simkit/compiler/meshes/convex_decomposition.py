@@ -37,12 +37,13 @@ from simkit.compiler.meshes.convex_pieces import (
     surface_prisms,
 )
 from simkit.compiler.meshes.height_tiles import HeightTile
-from simkit.compiler.meshes.mesh_cache import FORMAT, load_arrays, store_arrays
-from simkit.compiler.meshes.mesh_part import Floats, Ints
 from simkit.compiler.meshes.surface_patches import LEAST_TOLERANCE, TRIANGLES_FROM, is_large, large_surface_pieces
+from simkit.diagnostics import Severity
 from simkit.float_sum import float_sum
 from simkit.install_command import install_command
 from simkit.linear_algebra import matmul, norm
+from simkit.loaders.meshes.mesh_cache import FORMAT, load_arrays, store_arrays
+from simkit.loaders.meshes.mesh_part import Floats, Ints
 
 THRESHOLD: Final = 0.05
 """Concavity of CoACD, relative to the size of the mesh, below which a piece counts as convex."""
@@ -117,10 +118,10 @@ def _run(source: Path, target: Path, triangles: int, most: int) -> None:
 def _read_progress(line: str, task: progress.Task) -> None:
     """Read the progress from a line of CoACD's log: "iter 2 ---- waiting pool: 4" or "Processing [25.0%]"."""
     assert task.total is not None
-    if found := _ROUND.search(line):
-        task.done = float(found[1])
-    elif found := _SHARE.search(line):
-        task.done = math.floor(task.done) + min(0.99, float(found[1]) / 100.0)
+    if match := _ROUND.search(line):
+        task.done = float(match[1])
+    elif match := _SHARE.search(line):
+        task.done = math.floor(task.done) + min(0.99, float(match[1]) / 100.0)
     task.total = max(task.total, math.ceil(task.done))
 
 
@@ -140,7 +141,7 @@ _DECOMPOSE: Final = 'give the collision simple shapes, or <mesh optimization="co
 _KEPT: Final = 128
 _memory: OrderedDict[str, ConvexBodies] = OrderedDict()
 
-CollisionFinding = tuple[str, str, str, str]
+CollisionFinding = tuple[Severity, str, str, str]
 """Severity, code, text without the mesh's name, and hint."""
 
 
@@ -192,8 +193,8 @@ def _compute_bodies(vertices: Floats, faces: Ints, fixed: bool, optimization: st
         return ConvexBodies(
             (), True, (("warning", "SK-MESH-003", "has no triangle with an area; it never collides", ""),)
         )
-    whole = hull_volume(vertices)
-    if whole <= 1e-9 * float(np.ptp(vertices, axis=0).max()) ** 3:
+    volume = hull_volume(vertices)
+    if volume <= 1e-9 * float(np.ptp(vertices, axis=0).max()) ** 3:
         return _surface_plates(vertices, faces)
     if is_convex(vertices, faces) and not (fixed and is_inside_out(vertices, faces)):
         return ConvexBodies(_hulls([vertices]), is_own_hull(vertices, faces))
@@ -207,27 +208,27 @@ def _compute_bodies(vertices: Floats, faces: Ints, fixed: bool, optimization: st
             return ConvexBodies(pieces, False, (_decompose_mesh(vertices, faces, pieces),))
         except DecompositionError as problem:
             rest = _surface(vertices, faces) if fixed else _by_pieces(vertices, faces)
-            finding = ("warning", "SK-MESH-014", f"is not decomposed: {problem}", problem.hint)
+            finding: CollisionFinding = ("warning", "SK-MESH-014", f"is not decomposed: {problem}", problem.hint)
             return ConvexBodies(rest.shapes, rest.is_exact, (finding, *rest.findings))
     return _surface(vertices, faces) if fixed else _by_pieces(vertices, faces)
 
 
 def _decompose_mesh(vertices: Floats, faces: Ints, pieces: tuple[tuple[Floats, Ints], ...]) -> CollisionFinding:
-    own = mesh_volume(vertices, faces)
+    volume = mesh_volume(vertices, faces)
     total = float_sum(hull_volume(points) for points, _ in pieces)
-    share = f"together {total / own:.2f} times its volume" if own else "the mesh is not closed"
+    share = f"together {total / volume:.2f} times its volume" if volume else "the mesh is not closed"
     return "note", "SK-MESH-004", f"collides as {len(pieces)} convex pieces ({share})", ""
 
 
 def _by_pieces(vertices: Floats, faces: Ints) -> ConvexBodies:
     pieces = moving_pieces(vertices, faces)
     sets = [points for points, _ in pieces if hull_volume(points) > 0.0] or [vertices]
-    own = mesh_volume(vertices, faces)
-    whole = float_sum(hull_volume(points) for points in sets)
+    mesh_size = mesh_volume(vertices, faces)
+    hulls_size = float_sum(hull_volume(points) for points in sets)
     hulls = "its convex hull" if len(sets) == 1 else f"the convex hulls of its {len(sets)} pieces"
-    if own:
-        ratio = whole / own
-        severity = "warning" if ratio > LARGEST_RATIO else "note"
+    if mesh_size:
+        ratio = hulls_size / mesh_size
+        severity: Severity = "warning" if ratio > LARGEST_RATIO else "note"
         share = f"{ratio:.2f} times the mesh's volume"
     else:
         ratio = filled_ratio(vertices, faces, sets)
@@ -235,7 +236,7 @@ def _by_pieces(vertices: Floats, faces: Ints) -> ConvexBodies:
         share = f"about {ratio:.1f} times the volume that the mesh encloses (it is not closed)"
     text = f"collides as {hulls}, {share}"
     finding = severity, "SK-MESH-004", text, _DECOMPOSE if severity == "warning" else ""
-    findings = (finding,) if not own or whole > 1.005 * own else ()
+    findings = (finding,) if not mesh_size or hulls_size > 1.005 * mesh_size else ()
     is_exact = all(is_convex(*piece) and is_own_hull(*piece) for piece in pieces)
     return ConvexBodies(_hulls(sets), is_exact, findings)
 
@@ -270,17 +271,17 @@ def _shapes_and_boxes(
     pieces: list[Floats], copies: list[tuple[int, Floats]]
 ) -> tuple[tuple[tuple[Floats, Ints], ...], list[BoxPiece], list[tuple[int, Floats]]]:
     """Return the pieces that are no boxes, the boxes at all places, and the copies of the pieces that are no boxes."""
-    found = box_pieces(pieces)
-    is_shape = np.array([box is None for box in found], bool)
+    fitted = box_pieces(pieces)
+    is_shape = np.array([box is None for box in fitted], bool)
     numbers = np.cumsum(is_shape) - 1
-    boxes = [box for box in found if box is not None]
-    boxes += [box._replace(centre=box.centre + at) for number, at in copies if (box := found[number]) is not None]
+    boxes = [box for box in fitted if box is not None]
+    boxes += [box._replace(centre=box.centre + at) for number, at in copies if (box := fitted[number]) is not None]
     shapes = tuple((pieces[number], np.zeros((0, 3), np.int32)) for number in np.flatnonzero(is_shape).tolist())
     return shapes, boxes, [(int(numbers[number]), at) for number, at in copies if is_shape[number]]
 
 
 def _surface_plates(vertices: Floats, faces: Ints) -> ConvexBodies:
-    finding = "note", "SK-MESH-007", "is flat: it collides as a thin plate", ""
+    finding: CollisionFinding = ("note", "SK-MESH-007", "is flat: it collides as a thin plate", "")
     return ConvexBodies(_hulls(surface_prisms(vertices, faces)), False, (finding,))
 
 
@@ -343,7 +344,7 @@ def _load(key: str) -> ConvexBodies | None:
         cuts = [np.cumsum(arrays[name])[:-1] for name in ("vertex_counts", "face_counts")]
         vertices, faces = np.split(arrays["vertices"], cuts[0]), np.split(arrays["faces"], cuts[1])
         shapes = tuple(zip(vertices, faces, strict=True)) if len(arrays["vertex_counts"]) else ()
-        findings = tuple((str(a), str(b), str(c), str(d)) for a, b, c, d in header["findings"])
+        findings = tuple((severity, str(b), str(c), str(d)) for severity, b, c, d in header["findings"])
         cuts = [np.cumsum(arrays["tile_sizes"].prod(axis=1))[:-1]]
         heights = np.split(arrays["tile_heights"], cuts[0]) if len(arrays["tile_sizes"]) else []
         tiles = tuple(

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.compiler.meshes.connected_triangles import is_closed, members_of, part_numbers
-from simkit.compiler.meshes.mesh_part import Floats, Indices, Ints
 from simkit.linear_algebra import matmul, norm
+from simkit.loaders.meshes.mesh_part import Floats, Indices, Ints
 
 HULLS_MOST: Final = 64
 THICKNESS: Final = 0.05
@@ -314,14 +314,14 @@ def filled_ratio(vertices: Floats, faces: Ints, sets: list[Floats]) -> float:
 
     low = vertices.min(axis=0)
     size = np.maximum(np.ptp(vertices, axis=0), 1e-12) / _CELLS
-    own = _enclosed_cells(vertices[faces], low, size)
-    whole = np.zeros_like(own)
+    inside = _enclosed_cells(vertices[faces], low, size)
+    covered = np.zeros_like(inside)
     for points in sets:
         try:
-            whole |= _enclosed_cells(points[ConvexHull(points).simplices], low, size)
+            covered |= _enclosed_cells(points[ConvexHull(points).simplices], low, size)
         except (QhullError, ValueError):
             continue
-    return max(1.0, float(whole.sum()) / max(1.0, float((own & whole).sum())))
+    return max(1.0, float(covered.sum()) / max(1.0, float((inside & covered).sum())))
 
 
 def _enclosed_cells(corners: Floats, low: Floats, size: Floats) -> npt.NDArray[np.bool_]:

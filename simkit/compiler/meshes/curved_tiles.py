@@ -16,9 +16,9 @@ import numpy as np
 from simkit.compiler.meshes.box_overlaps import all_of_three, overlaps
 from simkit.compiler.meshes.connected_triangles import part_numbers
 from simkit.compiler.meshes.height_tiles import HeightTile, Mask
-from simkit.compiler.meshes.mesh_part import Floats, Indices, Ints
 from simkit.compiler.meshes.sampled_fields import SampledFields, heights_above, sampled_heights, surface_points
 from simkit.linear_algebra import matmul
+from simkit.loaders.meshes.mesh_part import Floats, Indices, Ints
 from simkit.matrix_decompositions import eigh
 
 _CELLS: Final = 25

@@ -8,9 +8,9 @@ from typing import Final
 import numpy as np
 
 from simkit.compiler.meshes.connected_triangles import members_of, part_numbers
-from simkit.compiler.meshes.mesh_part import Floats, Indices
 from simkit.float_sum import float_sum
 from simkit.linear_algebra import matmul, norm
+from simkit.loaders.meshes.mesh_part import Floats, Indices
 
 _LEAST_AREA: Final = 8.0
 """Area relative to the median triangle from which triangles in one plane are divided along their own outline."""
@@ -124,8 +124,8 @@ def _outline_lines(flat: Floats, size: float) -> list[tuple[Floats, float]]:
     lines = _numbers(np.column_stack([np.rint(along / 1e-3), np.rint(offsets / (1e-3 * size))]))
     totals = np.bincount(lines, lengths)
     longest = np.argsort(-totals, kind="stable")[:_LINES]
-    found = [int(np.flatnonzero(lines == line)[0]) for line in longest]
-    return [(along[k], float(offsets[k])) for k in found]
+    first_edges = [int(np.flatnonzero(lines == line)[0]) for line in longest]
+    return [(along[k], float(offsets[k])) for k in first_edges]
 
 
 def _hull_area(flat: Floats) -> float:

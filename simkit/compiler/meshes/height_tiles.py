@@ -15,8 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.compiler.meshes.convex_pieces import layer_depths
-from simkit.compiler.meshes.mesh_part import Floats, Ints
 from simkit.linear_algebra import matmul
+from simkit.loaders.meshes.mesh_part import Floats, Ints
 
 _TRIANGLES_FROM: Final = 2000
 """Number of triangles on one side of a mesh from which a grid is searched for."""
@@ -186,9 +186,9 @@ def _blocks(grid: _Grid, is_turned: bool, relief: float, tolerance: float) -> li
     """
     h = grid.heights
     twist = 0.5 * np.abs(h[:-1, :-1] + h[1:, 1:] - h[1:, :-1] - h[:-1, 1:])
-    own, other = (grid.has_other, grid.has_main) if is_turned else (grid.has_main, grid.has_other)
-    fits = grid.is_free & (own | (other & (twist <= tolerance)))
-    found = []
+    main, other = (grid.has_other, grid.has_main) if is_turned else (grid.has_main, grid.has_other)
+    fits = grid.is_free & (main | (other & (twist <= tolerance)))
+    blocks = []
     for i in range(0, fits.shape[0], _CELLS):
         for j in range(0, fits.shape[1], _CELLS):
             block = slice(i, i + _CELLS), slice(j, j + _CELLS)
@@ -197,8 +197,8 @@ def _blocks(grid: _Grid, is_turned: bool, relief: float, tolerance: float) -> li
             m, n = fits[block].shape
             height = float(np.ptp(h[i : i + m + 1, j : j + n + 1]))
             if height <= relief and height + float(grid.depths[block].min()) <= float(grid.rooms[block].min()):
-                found.append((i, j, m, n))
-    return found
+                blocks.append((i, j, m, n))
+    return blocks
 
 
 def _is_flat(grid: _Grid, block: _Block, tolerance: float) -> bool:

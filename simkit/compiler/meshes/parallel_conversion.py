@@ -17,10 +17,10 @@ from typing import Final
 
 from simkit import progress
 from simkit.child_process import ChildProcesses, exit_with_parent
-from simkit.compiler.meshes.mesh_cache import cache_directory, load_converted, mesh_key
-from simkit.compiler.meshes.mesh_part import LARGEST_FILE, join_parts
 from simkit.diagnostics import Diagnostics, Where
 from simkit.input_file import read_input
+from simkit.loaders.meshes.mesh_cache import cache_directory, load_converted, mesh_key
+from simkit.loaders.meshes.mesh_part import LARGEST_FILE, join_parts
 from simkit.scene import Mesh, SceneModel
 
 LEAST_BYTES: Final = 3 << 20
@@ -66,7 +66,7 @@ def _core_count() -> int:
 
 def _uses_by_file(models: Iterable[SceneModel]) -> dict[Path, MeshUses]:
     """Return the shapes of each mesh file."""
-    found: dict[Path, MeshUses] = {}
+    uses: dict[Path, MeshUses] = {}
     for top in models:
         for model in top.all_models():
             for link in model.links if model.mjcf is None else ():
@@ -75,8 +75,8 @@ def _uses_by_file(models: Iterable[SceneModel]) -> dict[Path, MeshUses]:
                     *((collision.geometry, (model.static,)) for collision in link.collisions),
                 ):
                     if isinstance(shape, Mesh) and not shape.missing and not shape.bone:
-                        found.setdefault(shape.file, {}).setdefault(shape, set()).update(kinds)
-    return found
+                        uses.setdefault(shape.file, {}).setdefault(shape, set()).update(kinds)
+    return uses
 
 
 def _run_processes(shares: list[MeshUses]) -> None:
@@ -93,8 +93,8 @@ def _run_processes(shares: list[MeshUses]) -> None:
                 job = Path(folder) / f"{number}.pickle"
                 job.write_bytes(pickle.dumps(share))
                 running.append(pool.submit(processes.run, __name__, [str(job)]))
-            for one in running:
-                one.result()
+            for future in running:
+                future.result()
                 task.advance()
         finally:
             processes.end()
@@ -124,7 +124,7 @@ def _is_writable(folder: Path) -> bool:
 def _convert(uses: Mapping[Mesh, set[bool]]) -> None:
     """Convert shapes and their collision bodies, which the cache then has. The builder reports all problems."""
     from simkit.compiler.meshes.convex_decomposition import convex_bodies  # 10 ms, which only these processes need
-    from simkit.compiler.meshes.mesh_reader import load_mesh
+    from simkit.loaders.meshes.mesh_reader import load_mesh
 
     for shape, kinds in uses.items():
         parts = load_mesh(shape, Diagnostics(), Where(str(shape.file)))

@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from simkit.compiler.meshes.mesh_part import Floats
 from simkit.linear_algebra import matmul
+from simkit.loaders.meshes.mesh_part import Floats
 from simkit.matrix_decompositions import eigh
 
 _FEW_TRIANGLES: Final = 6

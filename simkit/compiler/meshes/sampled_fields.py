@@ -9,8 +9,8 @@ import numpy as np
 
 from simkit.compiler.meshes.box_overlaps import ragged
 from simkit.compiler.meshes.height_tiles import HeightTile, Mask
-from simkit.compiler.meshes.mesh_part import Floats, Indices
 from simkit.linear_algebra import matmul
+from simkit.loaders.meshes.mesh_part import Floats, Indices
 
 _INSIDE: Final = 1e-6
 """Rounding of barycentric coordinates."""

@@ -8,17 +8,17 @@ surface needs several height fields. A part is left to other methods as soon as 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from simkit.compiler.meshes.connected_triangles import is_closed
 from simkit.compiler.meshes.convex_pieces import hull_volume
 from simkit.compiler.meshes.flat_areas import connected_areas
-from simkit.compiler.meshes.mesh_part import Floats, Indices, Ints
 from simkit.compiler.meshes.patch_division import Patch, area_vectors, divide
 from simkit.float_sum import float_sum
 from simkit.linear_algebra import dot, matmul, norm
+from simkit.loaders.meshes.mesh_part import Floats, Indices, Ints
 from simkit.matrix_decompositions import eigh
 
 TRIANGLES_PER_PIECE: Final = 12
@@ -103,8 +103,8 @@ def solid_parts(vertices: Floats, faces: Ints, parts: list[Indices], tolerance: 
             continue
         corners = vertices[faces[part]]
         same = known.setdefault(len(part), [])
-        found = next((item for item in same if _is_equal(item[0], corners, rounding)), None)
-        if found is None:
+        same_shape = next((item for item in same if _is_equal(item[0], corners, rounding)), None)
+        if same_shape is None:
             if failures >= _FAILURES_MOST:
                 continue
             solid = solid_pieces(corners, tolerance)
@@ -113,19 +113,19 @@ def solid_parts(vertices: Floats, faces: Ints, parts: list[Indices], tolerance: 
             if solid is not None:
                 result = result._replace(error=max(result.error, solid.error + rounding))
                 result.pieces.extend(solid.pieces)
-            found = corners, range(first, len(result.pieces))
-            same.append(found)
+            same_shape = corners, range(first, len(result.pieces))
+            same.append(same_shape)
         else:
-            offset = corners.mean(axis=(0, 1)) - found[0].mean(axis=(0, 1))
-            result.copies.extend((number, offset) for number in found[1])
-        if found[1]:
+            offset = corners.mean(axis=(0, 1)) - same_shape[0].mean(axis=(0, 1))
+            result.copies.extend((number, offset) for number in same_shape[1])
+        if same_shape[1]:
             result.faces.append(part)
     return result
 
 
-def _is_equal(one: Floats, other: Floats, rounding: float) -> bool:
+def _is_equal(values: Floats, other: Floats, rounding: float) -> bool:
     """Check whether two parts have the same triangles at different places."""
-    shift = other - one
+    shift = other - values
     return bool(np.abs(shift - shift[0, 0]).max() <= 4.0 * rounding)
 
 
@@ -216,7 +216,7 @@ class _RayTarget:
         import trimesh
 
         faces = np.arange(3 * len(corners)).reshape(-1, 3)
-        self._mesh: Any = trimesh.Trimesh(corners.reshape(-1, 3), faces, process=False)
+        self._mesh = trimesh.Trimesh(corners.reshape(-1, 3), faces, process=False)
 
     def add_gaps(self, cells: list[_Cell], least: float, limit: float) -> bool:
         """Increase the errors of cells to the distances from their hulls to the surface.
@@ -328,9 +328,9 @@ def _best_plane(cell: _Cell) -> tuple[Floats, float]:
     if lows[first] + margin < deepest < highs[first] - margin:
         planes.append((axes[first], deepest))
     volumes = np.array([float_sum(map(hull_volume, _side_points(triangles, *plane))) for plane in planes])
-    whole = hull_volume(points)
-    gains = whole - volumes
-    if gains.max() <= _LEAST_GAIN * whole:
+    volume = hull_volume(points)
+    gains = volume - volumes
+    if gains.max() <= _LEAST_GAIN * volume:
         return planes[0]
     return planes[int(np.argmax(gains >= _GAIN * gains.max()))]
 

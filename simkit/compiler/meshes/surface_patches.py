@@ -16,7 +16,6 @@ from simkit.compiler.meshes.convex_pieces import ConvexPiece, closed_convex_part
 from simkit.compiler.meshes.curved_tiles import curved_tiles
 from simkit.compiler.meshes.flat_areas import connected_areas, dividing_line, flat_areas
 from simkit.compiler.meshes.height_tiles import HeightTile, Mask, height_tiles
-from simkit.compiler.meshes.mesh_part import Floats, Indices, Ints
 from simkit.compiler.meshes.patch_division import (
     Patch,
     area_vectors,
@@ -27,6 +26,7 @@ from simkit.compiler.meshes.patch_division import (
 )
 from simkit.compiler.meshes.solid_pieces import solid_parts
 from simkit.linear_algebra import matmul
+from simkit.loaders.meshes.mesh_part import Floats, Indices, Ints
 
 TRIANGLES_FROM: Final = 4000
 """Number of triangles up to which a static mesh is divided into prisms, which are exact, instead of patches."""

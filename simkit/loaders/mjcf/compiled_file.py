@@ -92,8 +92,8 @@ class CompiledFile:
     def where(self, kind: str, name: str) -> Where:
         """Return file and line of a named element; `kind` is MuJoCo's element type (`body`, `geom`, ...)."""
         element = getattr(self.spec, kind)(name)
-        found = _LINE.search(element.info) if element is not None else None
-        return self.source.where(int(found[1])) if found is not None else self.source.root.where
+        match = _LINE.search(element.info) if element is not None else None
+        return self.source.where(int(match[1])) if match is not None else self.source.root.where
 
     def link_name(self, body: int, placed: ModelPlacement) -> str:
         """Return the name of a body's link within its model."""
@@ -106,20 +106,20 @@ class CompiledFile:
 
 def _ids_by_owner(owners: npt.NDArray[np.int32]) -> dict[int, list[int]]:
     """Group element ids by the id of the body or joint that each element belongs to."""
-    found: dict[int, list[int]] = {}
+    ids: dict[int, list[int]] = {}
     for number, owner in enumerate(owners.tolist()):
-        found.setdefault(owner, []).append(number)
-    return found
+        ids.setdefault(owner, []).append(number)
+    return ids
 
 
 def _engine_settings(source: MjcfText) -> dict[str, Where]:
     """Return file and line of each engine setting, by its name: options, flags and other global elements."""
-    found: dict[str, Where] = {}
+    settings: dict[str, Where] = {}
     for element in source.root.children:
         if element.name == "option":
-            found.update(dict.fromkeys(element.attributes, element.where))
+            settings.update(dict.fromkeys(element.attributes, element.where))
             for flag in element.children:
-                found.update({f"flag {name}": flag.where for name in flag.attributes})
+                settings.update({f"flag {name}": flag.where for name in flag.attributes})
         elif element.name in ("size", "visual", "statistic", "keyframe"):
-            found.setdefault(f"<{element.name}>", element.where)
-    return found
+            settings.setdefault(f"<{element.name}>", element.where)
+    return settings

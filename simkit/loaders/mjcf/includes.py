@@ -64,14 +64,14 @@ class _FileGatherer:
         self.strips = False
 
     def bundle(self, root: Params) -> MjcfText:
-        whole = self._with_includes(root, self.folder, 0)
-        self._settings(whole)
-        self._assets(whole)
+        complete = self._with_includes(root, self.folder, 0)
+        self._settings(complete)
+        self._assets(complete)
         first = len(self.shared.lines)
         text: list[str] = []
-        self._write(whole, text)
+        self._write(complete, text)
         return MjcfText(
-            root=whole,
+            root=complete,
             text="\n" * first + "".join(text),
             models=self.shared.models,
             assets=self.shared.assets,
@@ -118,14 +118,14 @@ class _FileGatherer:
         document = parse_file(path, diagnostics)
         if document is None:
             return []
-        whole = self._with_includes(document.root, path.parent, depth + 1)
+        complete = self._with_includes(document.root, path.parent, depth + 1)
         model = document.root.attribute("model") if document.root.name == "mujoco" else ""
-        if not whole.children:
+        if not complete.children:
             diagnostics.error("SK-MJCF-006", f"the included file {name} is empty", include.where)
-        for section in whole.children if model else ():
+        for section in complete.children if model else ():
             if section.name == "worldbody":
                 self._note_origins(section, model)
-        return whole.children
+        return complete.children
 
     def _note_origins(self, section: Params, model: str) -> None:
         for child in section.children:
@@ -156,8 +156,8 @@ class _FileGatherer:
                 continue
             both = element.attributes.pop("assetdir", None)
             for name in self.folders:
-                own = element.attributes.pop(name, None)
-                self.folders[name] = own if own is not None else both if both is not None else self.folders[name]
+                folder = element.attributes.pop(name, None)
+                self.folders[name] = folder if folder is not None else both if both is not None else self.folders[name]
             strips = element.attributes.pop("strippath", None)
             self.strips = self.strips if strips is None else strips == "true"
 

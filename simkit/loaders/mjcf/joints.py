@@ -17,18 +17,18 @@ _TYPES: Final = {_BALL: "ball", _SLIDE: "prismatic"}
 
 
 def read_joints(
-    file: CompiledFile, body: int, placed: ModelPlacement, file_pose: Pose, found: MjcfElements
+    file: CompiledFile, body: int, placed: ModelPlacement, file_pose: Pose, elements: MjcfElements
 ) -> list[SceneJoint]:
     """Return the joints between a body and its parent.
 
-    A body without joints gets a fixed joint. A free joint is not returned: `found.free` receives its name.
+    A body without joints gets a fixed joint. A free joint is not returned: `elements.free` receives its name.
 
     Args:
         file: the compiled file.
         body: id of the body.
         placed: the model that the body belongs to.
         file_pose: pose of the file's world in the world.
-        found: receives the names of the joints.
+        elements: receives the names of the joints.
     """
     model = file.model
     child, parent = file.scoped_link(body, placed), file.scoped_link(int(model.body_parentid[body]), placed)
@@ -38,10 +38,10 @@ def read_joints(
     is_free = bool(numbers) and int(model.jnt_type[numbers[0]]) == _FREE
     pose, where = file_pose @ file.pose(body), file.where("body", file.name("BODY", body))
     if is_free and placed.base != "fixed":
-        found.free[child] = file.name("JOINT", numbers[0])
+        elements.free[child] = file.name("JOINT", numbers[0])
         return []
     if not numbers and parent == "world" and placed.base == "floating":
-        found.free[child] = f"{file.name('BODY', body)}_free"
+        elements.free[child] = f"{file.name('BODY', body)}_free"
         return []
     if is_free or not numbers:
         if int(model.body_mocapid[body]) >= 0:
@@ -50,18 +50,18 @@ def read_joints(
         while file.spec.joint(name) is not None:
             name += "_"
         scoped = f"{placed.scoped}::{name}"
-        found.joints[scoped] = ""
+        elements.joints[scoped] = ""
         return [SceneJoint(name, scoped, "fixed", parent, child, pose, where=where)]
-    return [_joint(file, j, placed, pose, parent, child, found) for j in numbers]
+    return [_joint(file, j, placed, pose, parent, child, elements) for j in numbers]
 
 
 def _joint(
-    file: CompiledFile, j: int, placed: ModelPlacement, body: Pose, parent: str, child: str, found: MjcfElements
+    file: CompiledFile, j: int, placed: ModelPlacement, body: Pose, parent: str, child: str, elements: MjcfElements
 ) -> SceneJoint:
     model, full = file.model, file.name("JOINT", j)
     name = full.removeprefix(placed.strip)
     scoped = f"{placed.scoped}::{name}"
-    found.joints[scoped] = full
+    elements.joints[scoped] = full
     kind = int(model.jnt_type[j])
     return SceneJoint(
         name=name,

@@ -15,7 +15,7 @@ from simkit.scene.mjcf_source import MjcfElements
 _TYPES: Final = {0: "spot", 1: "directional"}
 
 
-def read_lights(file: CompiledFile, body: int, link: str, pose: Pose, found: MjcfElements) -> tuple[SceneLight, ...]:
+def read_lights(file: CompiledFile, body: int, link: str, pose: Pose, elements: MjcfElements) -> tuple[SceneLight, ...]:
     """Return the lights of a body.
 
     Args:
@@ -23,17 +23,17 @@ def read_lights(file: CompiledFile, body: int, link: str, pose: Pose, found: Mjc
         body: id of the body.
         link: scoped name of its link; empty for the lights of the world.
         pose: pose of the body in the world.
-        found: receives the names of the lights.
+        elements: receives the names of the lights.
     """
-    return tuple(_light(file, i, link, pose, found) for i in file.lights_of.get(body, ()))
+    return tuple(_light(file, i, link, pose, elements) for i in file.lights_of.get(body, ()))
 
 
-def _light(file: CompiledFile, i: int, link: str, body: Pose, found: MjcfElements) -> SceneLight:
+def _light(file: CompiledFile, i: int, link: str, body: Pose, elements: MjcfElements) -> SceneLight:
     model, name = file.model, file.name("LIGHT", i)
     pose = body @ Pose(model.light_pos[i])
     direction = vec3(model.light_dir[i])
     scoped = f"{link}::{name}" if link else name
-    found.lights[scoped] = (name, link)
+    elements.lights[scoped] = (name, link)
     constant, linear, quadratic = (float(v) for v in model.light_attenuation[i])
     return SceneLight(
         name=name,

@@ -131,13 +131,13 @@ def _open_mjcf(
 
     With `as_model`, the file becomes one model, even if it could also be a world.
     """
-    found = Diagnostics()
+    problems = Diagnostics()
     root, path = document.root, document.path
-    gathered = gather_files(root, path, resolver, found)
+    gathered = gather_files(root, path, resolver, problems)
     check_bounds(gathered.root)
     check_names(gathered.root, parser.schema_text())
-    compiled = None if found.has_errors else parser.compile(gathered, found)
-    diagnostics.extend(found)
+    compiled = None if problems.has_errors else parser.compile(gathered, problems)
+    diagnostics.extend(problems)
     if compiled is None:
         return None
     content = CompiledFile(gathered, compiled)
@@ -210,9 +210,9 @@ def _world_models(file: MjcfFile) -> list[SceneModel]:
     content, origins = file.content, file.content.source.origins
     groups: dict[tuple[str, str], list[int]] = {}
     for body in content.roots:
-        own = content.name("BODY", body)
-        first, colons, _ = own.partition("::")
-        name = first if colons else origins.get(own, own).replace("::", "_")
+        body_name = content.name("BODY", body)
+        first, colons, _ = body_name.partition("::")
+        name = first if colons else origins.get(body_name, body_name).replace("::", "_")
         groups.setdefault((name, f"{first}::" if colons else ""), []).append(body)
     models: list[SceneModel] = []
     used_names: set[str] = set()
@@ -230,11 +230,11 @@ def _world_models(file: MjcfFile) -> list[SceneModel]:
 
 
 def _free_name(name: str, used_names: set[str]) -> str:
-    found, k = name, 1
-    while found in used_names:
+    free_name, k = name, 1
+    while free_name in used_names:
         k += 1
-        found = f"{name}_{k}"
-    return found
+        free_name = f"{name}_{k}"
+    return free_name
 
 
 def _report_base(model: SceneModel, request: LoadRequest) -> None:

@@ -47,10 +47,10 @@ class ModelReader:
         """Return the model with its links, joints and frames."""
         file, placed = self._file, self._placed
         bodies = sorted(b for root in placed.roots for b in file.bodies_of[root])
-        own = [*((0,) if placed.has_world else ()), *bodies]
-        links = [self._link(b) for b in own]
+        own_bodies = [*((0,) if placed.has_world else ()), *bodies]
+        links = [self._link(b) for b in own_bodies]
         joints = [j for b in bodies for j in read_joints(file, b, placed, self._place, self._source)]
-        frames = [f for b in own for f in self._frames(b)]
+        frames = [f for b in own_bodies for f in self._frames(b)]
         canonical = file.scoped_link(placed.roots[0], placed) if placed.roots else links[0].scoped if links else ""
         model = SceneModel(
             name=placed.name,
@@ -72,20 +72,20 @@ class ModelReader:
         return model
 
     def _link(self, body: int) -> SceneLink:
-        file, model, found = self._file, self._model, self._source
+        file, model, source = self._file, self._model, self._source
         name = file.link_name(body, self._placed)
         scoped = f"{self._placed.scoped}::{name}"
-        found.bodies[scoped] = file.name("BODY", body)
+        source.bodies[scoped] = file.name("BODY", body)
         if body:
             arrays = (model.body_ipos, model.body_iquat, model.body_inertia)
             centre, axes, moments = (tuple(array[body].tolist()) for array in arrays)
-            found.masses[file.name("BODY", body)] = (float(model.body_mass[body]), centre, axes, moments)
+            source.masses[file.name("BODY", body)] = (float(model.body_mass[body]), centre, axes, moments)
         pose = self._place @ file.pose(body)
         collisions: list[SceneCollision] = []
         visuals: list[SceneVisual] = []
         for g in range(model.body_geomadr[body], model.body_geomadr[body] + model.body_geomnum[body]):
             self._geom(g, scoped, collisions, visuals)
-        lights = read_lights(file, body, scoped, pose, found) if body else ()
+        lights = read_lights(file, body, scoped, pose, source) if body else ()
         return SceneLink(
             name=name,
             scoped=scoped,
@@ -146,10 +146,10 @@ class ModelReader:
         a, b, c = (float(s) for s in model.geom_size[g])
         kind, number = int(model.geom_type[g]), int(model.geom_dataid[g])
         if kind in (_MESH, _SDF):
-            own = Pose(model.mesh_pos[number], model.mesh_quat[number])
+            engine_pose = Pose(model.mesh_pos[number], model.mesh_quat[number])
             file, uri = self._asset("mesh", self._file.name("MESH", number))
             scale = vec3(model.mesh_scale[number])
-            return shapes.Mesh(file, uri, scale, missing=not file.is_file()), pose @ own.inverse()
+            return shapes.Mesh(file, uri, scale, missing=not file.is_file()), pose @ engine_pose.inverse()
         if kind == _HFIELD:
             file, uri = self._asset("hfield", self._file.name("HFIELD", number))
             x, y, z, _ = (float(v) for v in model.hfield_size[number])

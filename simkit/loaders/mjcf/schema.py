@@ -37,17 +37,17 @@ def _schema_table(text: str) -> _ElementKind | None:
     stack: list[tuple[int, _ElementKind]] = []
     root: _ElementKind | None = None
     for line in text.splitlines():
-        found = _LINE.match(line)
-        if found is None:
+        match = _LINE.match(line)
+        if match is None:
             if stack:
                 stack[-1][1].attributes.update(line.split())
             continue
-        level = len(found[1]) // _INDENT
-        kind = _ElementKind(found[3] == "R", set(found[4].split()))
+        level = len(match[1]) // _INDENT
+        kind = _ElementKind(match[3] == "R", set(match[4].split()))
         while stack and stack[-1][0] >= level:
             stack.pop()
         if stack:
-            for name in ("worldbody", "body") if found[2] == "(world)body" else (found[2],):
+            for name in ("worldbody", "body") if match[2] == "(world)body" else (match[2],):
                 stack[-1][1].children[name] = kind
         else:
             root = kind

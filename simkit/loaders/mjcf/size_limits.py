@@ -59,13 +59,13 @@ def _elements(root: Params) -> Iterator[tuple[Params, int]]:
 
 
 def _numbers(text: str) -> list[float]:
-    found = []
+    numbers = []
     for part in text.split():
         try:
-            found.append(float(part))
+            numbers.append(float(part))
         except ValueError:
             return []
-    return found
+    return numbers
 
 
 def _check(element: Params, name: str, text: str) -> None:
@@ -116,5 +116,5 @@ def _check_memory(element: Params, text: str) -> None:
         _report_excess(element, "memory", text, f"at most {_MEMORY_MOST >> 30}G")
 
 
-def _report_excess(element: Params, name: str, found: str, allowed: str) -> None:
-    element.error("SK-MJCF-005", f"<{element.name} {name}>: found {found}; expected {allowed}")
+def _report_excess(element: Params, name: str, excess: str, allowed: str) -> None:
+    element.error("SK-MJCF-005", f"<{element.name} {name}>: found {excess}; expected {allowed}")

@@ -24,8 +24,8 @@ def _package_folder() -> Path:
 def bundled_folders(kind: str) -> list[Path]:
     """Return the folders `assets`, `worlds` or `labs` of simkit, inside the package and beside it, and of the packs."""
     package = _package_folder()
-    own = [folder for folder in (package / kind, package.parent / kind) if folder.is_dir()]
-    return own + [Path(folder) for folder in pack_folders(kind)]
+    of_core = [folder for folder in (package / kind, package.parent / kind) if folder.is_dir()]
+    return of_core + [Path(folder) for folder in pack_folders(kind)]
 
 
 def bundle_around(folder: Path) -> Path | None:
@@ -46,9 +46,9 @@ def find_bundled_model(name: str) -> Path | None:
     for bundle in bundled_folders("assets"):
         for folder in (bundle / name, *sorted(bundle.glob(f"*/{name}")), *sorted(bundle.glob(f"*/models/{name}"))):
             where = Where(str(folder))
-            found = model_file(folder, where, Diagnostics(), lambda _: True) if folder.is_dir() else None
-            if found is not None:
-                return found
+            model = model_file(folder, where, Diagnostics(), lambda _: True) if folder.is_dir() else None
+            if model is not None:
+                return model
         for suffix in ("sdf", "urdf", "xacro"):
             file_name = name if name.endswith(f".{suffix}") else f"{name}.{suffix}"
             below = [file for pattern in ("*", "*/urdf") for file in sorted(bundle.glob(f"{pattern}/{file_name}"))]

@@ -171,13 +171,13 @@ def read_lock(path: Path) -> dict[str, LockEntry]:
         raise _invalid_lock(path, f"it is not JSON: {error}") from None
     if not isinstance(content, Mapping) or content.get("format") != 1 or not isinstance(content.get("entries"), list):
         raise _invalid_lock(path, 'it has no {"format": 1, "entries": [...]}')
-    found = {}
+    entries = {}
     for number, item in enumerate(content["entries"]):
         url = parse_fuel_url(item["url"]) if isinstance(item, Mapping) and isinstance(item.get("url"), str) else None
         if url is None or not _is_entry(item):
             raise _invalid_lock(path, f"entry {number} needs name, url, version, sha256 and size")
-        found[url.key] = LockEntry(str(item["name"]), item["url"], item["version"], item["sha256"], item["size"])
-    return found
+        entries[url.key] = LockEntry(str(item["name"]), item["url"], item["version"], item["sha256"], item["size"])
+    return entries
 
 
 def _is_entry(item: Mapping[str, object]) -> bool:

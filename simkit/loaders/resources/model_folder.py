@@ -73,12 +73,12 @@ def sdf_version(text: str) -> tuple[int, int] | None:
 
 
 def _listed_files(root: Params) -> list[tuple[tuple[int, int], str]]:
-    found = []
+    versions = []
     for element in root.all("sdf"):
         version = sdf_version(element.attribute("version", "1.0")) or (1, 0)
         if version <= NEWEST_SDF and element.value:
-            found.append((version, element.value))
-    return found + [((0, 0), element.value) for element in root.all("urdf") if element.value]
+            versions.append((version, element.value))
+    return versions + [((0, 0), element.value) for element in root.all("urdf") if element.value]
 
 
 def _mjcf_models(folder: Path) -> list[Path]:

@@ -27,14 +27,14 @@ def spawnable_models(resolver: Resolver) -> dict[str, str]:
     """
     near = [] if resolver.base is None else [resolver.base, resolver.base / "models", resolver.base.parent / "models"]
     packages = (package / "models" for package in resolver.packages.packages(near[:1]))
-    found: dict[str, str] = {}
+    models: dict[str, str] = {}
     folders = (folder for folder in _model_folders((*resolver.paths, *near, *packages)) if resolver.allows(folder))
     for folder in islice(folders, _MOST_MODELS):
-        found.setdefault(folder.name, str(folder))
+        models.setdefault(folder.name, str(folder))
     for bundle in bundled_folders("assets"):
         for folder in _model_folders((bundle, *sorted(bundle.glob("*/")), *sorted(bundle.glob("*/models/")))):
-            found.setdefault(folder.name, folder.name)
-    return dict(sorted(found.items()))
+            models.setdefault(folder.name, folder.name)
+    return dict(sorted(models.items()))
 
 
 def client_models(
@@ -55,9 +55,9 @@ def client_models(
         path = Path(unquote(source.removeprefix("file://")))
         is_name = is_bare_name(source) and not is_existing(path)
         if not is_name and not resolver.allows(absolute_path(path), folder):
-            message = f"{OutsideError.code} a client may not spawn {source[:200]}: it is outside the folders of the run"
+            message = f"a client may not spawn {source[:200]}: it is outside the folders of the run"
             hint = "start the run with --resource-path FOLDER, or send the model as text"
-            raise OutsideError(f"{message}\n    help: {hint}")
+            raise OutsideError(OutsideError.code, message, help=hint)
 
     return lambda: spawnable_models(resolver), check_source
 

@@ -100,8 +100,8 @@ class PackageIndex:
             yield folder
         if not is_found:
             if (name, around) not in self._fallbacks:
-                found = dict.fromkeys((*self._folders_of_that_name(name, around), *self._similar(name, around)))
-                self._fallbacks[name, around] = tuple(found)
+                folders = dict.fromkeys((*self._folders_of_that_name(name, around), *self._similar(name, around)))
+                self._fallbacks[name, around] = tuple(folders)
             yield from self._fallbacks[name, around]
 
     def named_exactly(self, name: str, around: Iterable[Path]) -> Iterator[Path]:
@@ -119,10 +119,10 @@ class PackageIndex:
         for place in self._all_places(tuple(dict.fromkeys(around))):
             yield from self._area(place).folders
 
-    def confirm(self, name: str, found: Path) -> bool:
+    def confirm(self, name: str, file: Path) -> bool:
         """Record the decision that led to a file; return false if the file is in no folder that was offered."""
         for folder, reason in self._reasons.get(name, {}).items():
-            if folder == found or folder in found.parents:
+            if folder == file or folder in file.parents:
                 if reason:
                     self.notes.setdefault(name, reason)
                 return True
@@ -169,7 +169,7 @@ class PackageIndex:
             if folder.name == name:
                 yield self._offer(name, folder, f"no package is named {name}; {self._shown(folder)} is used")
         for folder in around:
-            yield from (self._offer(name, own) for own in _own_folders(name, folder))
+            yield from (self._offer(name, package_folder) for package_folder in _own_folders(name, folder))
             home = enclosing_package(folder)
             if home is not None and not is_private(join_below(home.parent, name)):
                 yield self._offer(name, join_below(home.parent, name))
@@ -187,11 +187,11 @@ class PackageIndex:
 
     def _has_same_end(self, name: str, folder: Path) -> bool:
         """Check whether a name has the prefix of a group, such as `moveit_resources_`, and the other name lacks it."""
-        own = self._name_of(folder)
-        if "_" in name and own.endswith(f"_{name}"):
+        package = self._name_of(folder)
+        if "_" in name and package.endswith(f"_{name}"):
             return True
         groups = (parent.name for parent in folder.parents[:2])
-        return any(name == f"{group}_{own}" for group in groups)
+        return any(name == f"{group}_{package}" for group in groups)
 
     def _offer(self, name: str, folder: Path, reason: str = "") -> Path:
         self._reasons.setdefault(name, {}).setdefault(folder, reason)
@@ -246,11 +246,11 @@ class PackageIndex:
                 if name:
                     area.by_name.setdefault(name, []).append(folder)
                 elif folder in self._areas:  # a folder of a file that was searched before
-                    for own, folders in self._areas[folder].by_name.items():
-                        area.by_name.setdefault(own, []).extend(folders)
+                    for package, folders in self._areas[folder].by_name.items():
+                        area.by_name.setdefault(package, []).extend(folders)
                     continue
-                found = _subfolders(folder)
-                children = [name for name, leads in found if not leads or self._follows(folder / name, inside)]
+                subfolders = _subfolders(folder)
+                children = [name for name, leads in subfolders if not leads or self._follows(folder / name, inside)]
                 count += len(children)
                 area.is_complete = count <= _MAX_FOLDERS and time.monotonic() - begin <= _MAX_SECONDS
                 if not area.is_complete:
@@ -300,10 +300,10 @@ def _read_name(folder: Path, *, may_read: bool) -> str:
     if not may_read:
         return folder.name
     try:
-        found = _NAME.search(read_input(folder / "package.xml", 65536))
+        match = _NAME.search(read_input(folder / "package.xml", 65536))
     except OSError:
         return ""
-    return folder.name if found is None else found.group(1).decode()
+    return folder.name if match is None else match.group(1).decode()
 
 
 def _subfolders(folder: Path) -> list[tuple[str, bool]]:
@@ -312,16 +312,16 @@ def _subfolders(folder: Path) -> list[tuple[str, bool]]:
     The name `src` is first and `install` is last. Where packages are installed, they are in `share`: the headers of a
     distribution would be 1400 folders.
     """
-    found = {}
+    is_link = {}
     try:
         with os.scandir(folder) as entries:
             for entry in entries:
                 if not entry.name.startswith(".") and entry.name not in _OTHER_FOLDERS and entry.is_dir():
-                    found[entry.name] = is_link_entry(entry)
+                    is_link[entry.name] = is_link_entry(entry)
     except OSError:
         return []
-    names = [name for name in found if "share" not in found or name not in _INSTALLED_FOLDERS]
-    return [(name, found[name]) for name in sorted(names, key=lambda name: (name == "install", name != "src", name))]
+    names = [name for name in is_link if "share" not in is_link or name not in _INSTALLED_FOLDERS]
+    return [(name, is_link[name]) for name in sorted(names, key=lambda name: (name == "install", name != "src", name))]
 
 
 def _own_folders(name: str, folder: Path) -> Iterator[Path]:
@@ -338,5 +338,5 @@ def _is_copy(folder: Path) -> bool:
     return folder.parent.name == "share" or any(is_file(folder / marker) for marker in _IGNORE_MARKERS)
 
 
-def _common_levels(one: Path, other: Path) -> int:
-    return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(one.parts, other.parts, strict=False)))
+def _common_levels(path: Path, other: Path) -> int:
+    return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(path.parts, other.parts, strict=False)))

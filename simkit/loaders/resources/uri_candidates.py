@@ -17,6 +17,7 @@ from simkit.loaders.resources.fuel_cache import (
     parse_fuel_url,
     read_lock,
 )
+from simkit.loaders.resources.install_rules import installed_sources
 from simkit.loaders.resources.project_folder import readable_folder
 from simkit.loaders.resources.ros_packages import PackageIndex, enclosing_package
 from simkit.loaders.resources.uris import absolute_path, is_existing, is_folder, is_link, is_private
@@ -49,6 +50,7 @@ class UriCandidates:
         self._projects: dict[Path, list[Path]] = {}  # folder of a file -> folder, project and package
         self._locks: dict[Path | None, dict[str, LockEntry]] = {}
         self._lock_problems: list[Diagnostic] = []
+        self._subfolders: dict[tuple[str, Path], bool] = {}  # name of a folder, folder above it -> it exists
 
     # ------------------------------------------------------------------ access
 
@@ -80,9 +82,9 @@ class UriCandidates:
 
     def limits(self, folders: Iterable[Path]) -> list[Path]:
         """Return the folders that a path in a file may name, for a file in certain folders."""
-        own = [place for folder in folders for place in self._trust_around(folder)]
-        given = [*self.packages.named.values(), *self.packages.workspaces, *self._found.values()]
-        return [*own, *self.paths, *bundled_folders("assets"), *given]
+        of_files = [place for folder in folders for place in self._trust_around(folder)]
+        of_packages = [*self.packages.named.values(), *self.packages.workspaces, *self._found.values()]
+        return [*of_files, *self.paths, *bundled_folders("assets"), *of_packages]
 
     def first_allowed(self, candidates: Iterable[Path], relative_to: Path | None) -> tuple[Path | None, list[Path]]:
         """Return the first candidate that exists and may be read, and all candidates up to it.
@@ -146,6 +148,7 @@ class UriCandidates:
         around = self._around(relative_to)
         for folder in self.packages.candidates(name, around):
             yield join_below(self.trust_plain(folder), inside)
+            yield from (join_below(folder, source) for source in installed_sources(folder, inside))
         member, _, inside = inside.partition("/")
         for folder in self.packages.members(name, member, around) if inside else ():
             yield join_below(self.trust_plain(folder), inside)
@@ -153,6 +156,8 @@ class UriCandidates:
     def _models_of_packages(self, name: str, inside: str, relative_to: Path | None) -> Iterator[Path]:
         """Yield candidates for `model://name/...` in the folders `models` of packages, which packages export."""
         for package in self.packages.packages(self._around(relative_to)):
+            if not self._has_subfolder(package, "models"):
+                continue
             folder = join_below(package / "models", name)
             if is_folder(folder) and not is_private(folder):
                 self.trust_plain(package)
@@ -162,7 +167,15 @@ class UriCandidates:
         """Yield candidates for a relative path in the folders `Media` of search paths and packages."""
         if ".." not in Path(text).parts:
             packages = map(self.trust_plain, self.packages.packages(self._around(relative_to)))
-            yield from (join_below(root / media, text) for root in chain(self.paths, packages) for media in _MEDIA)
+            roots = ((root, media) for root in chain(self.paths, packages) for media in _MEDIA)
+            yield from (join_below(root / media, text) for root, media in roots if self._has_subfolder(root, media))
+
+    def _has_subfolder(self, folder: Path, name: str) -> bool:
+        """Check once whether a package or a search path has a folder of this name: few of thousands have."""
+        key = name, folder
+        if key not in self._subfolders:
+            self._subfolders[key] = is_folder(folder / name)
+        return self._subfolders[key]
 
     def _renamed_checkout_candidates(self, inside: str, relative_to: Path | None) -> Iterator[Path]:
         """Yield candidates for `package://name/a/b`: the path `a/b` in the folders above the file.

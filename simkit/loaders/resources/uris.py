@@ -37,10 +37,10 @@ def path_of_file_uri(rest: str, has_drives: bool = os.name == "nt") -> str:
     return rest[1:] if is_drive else rest
 
 
-def is_relocated(uri: str, found: Path) -> bool:
+def is_relocated(uri: str, file: Path) -> bool:
     """Check whether the file of an absolute path was found in another folder than the path names."""
     plain = Path(path_of_file_uri(unquote(uri.removeprefix("file://"))))
-    return plain.is_absolute() and absolute_path(plain) != absolute_path(found)
+    return plain.is_absolute() and absolute_path(plain) != absolute_path(file)
 
 
 def absolute_path(path: Path) -> Path:

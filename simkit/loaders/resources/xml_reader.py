@@ -40,7 +40,7 @@ _FOREIGN_SIGNATURES: Final[tuple[tuple[bytes, str], ...]] = (
 )
 _FOREIGN_ROOTS: Final = {
     "COLLADA": "a mesh (COLLADA); name it in the <uri> of a <mesh>",
-    "launch": "a ROS launch file; load the world or robot that the launch file names",
+    "launch": "a ROS launch file; run it with `simkit launch FILE`",
     "package": "a package.xml; load a model in its folder",
     "model": "a model without its <sdf>, or a model.config; put <sdf version='1.9'> around it, or load its folder",
     "world": "a world without the <sdf> around it; put <sdf version='1.9'> around it",
@@ -98,6 +98,7 @@ def _is_binary_stl(data: bytes) -> bool:
 MAX_BYTES = 256 * 1024 * 1024
 MAX_DEPTH = 200
 MAX_ELEMENTS = 3_000_000
+_PLAIN_AMPERSAND = re.compile(rb"(<!\[CDATA\[.*?\]\]>)|&(?!#?\w+;)", re.DOTALL)
 _DECLARATION = re.compile(rb"<\?xml\b[^?]*\?>")
 
 
@@ -145,8 +146,8 @@ class _RefusedDocument(Exception):
 class _TreeBuilder:
     """Builder of the element tree from expat's events, with limits on size and depth."""
 
-    def __init__(self, file: str | None, diagnostics: Diagnostics) -> None:
-        self.file, self.offset, self.diagnostics = file, 0, diagnostics
+    def __init__(self, file: str | None, diagnostics: Diagnostics, keep_space: bool) -> None:
+        self.file, self.offset, self.diagnostics, self.keep_space = file, 0, diagnostics, keep_space
         self.parser = expat.ParserCreate()
         self.parser.buffer_text = True
         self.parser.StartElementHandler = self.start
@@ -193,13 +194,14 @@ class _TreeBuilder:
     def characters(self, text: str) -> None:
         if self.stack:
             texts = self.stack[-1][1]
-            if texts or not text.isspace():
+            if texts or self.keep_space or not text.isspace():
                 texts.append(text)
 
     def end(self, _name: str) -> None:
         element, texts = self.stack.pop()
         if texts:
-            element.value = "".join(texts).strip()
+            joined = "".join(texts)
+            element.value = joined if self.keep_space else joined.strip()
         if not self.stack:
             self.root = element
 
@@ -207,13 +209,16 @@ class _TreeBuilder:
         raise _RefusedDocument("SK-XML-003", f"the file declares the entity {name!r}; entities are not supported")
 
 
-def parse_text(text: str | bytes, diagnostics: Diagnostics, file: str | None = None) -> Params | None:
+def parse_text(
+    text: str | bytes, diagnostics: Diagnostics, file: str | None = None, *, keep_space: bool = False
+) -> Params | None:
     """Parse an XML text; return its root element, or None, with an error recorded, if it cannot be read.
 
     Args:
         text: XML; bytes can be in any encoding that their declaration names.
         diagnostics: receives the problems.
         file: name for `file:line`; None for text that is not from a file.
+        keep_space: keep the white space around the texts of elements, which matters if they are YAML.
     """
     data = text.encode() if isinstance(text, str) else text
     if len(data) > MAX_BYTES:
@@ -223,12 +228,14 @@ def parse_text(text: str | bytes, diagnostics: Diagnostics, file: str | None = N
         declaration, _, rest = data.lstrip().partition(b"?>")
         blank = data[: len(data) - len(data.lstrip())]
         data = blank + b"<?xml version='1.0'?>" + b"\n" * declaration.count(b"\n") + rest
-    reader = _TreeBuilder(file, diagnostics)
+    reader = _TreeBuilder(file, diagnostics, keep_space)
     try:
         return reader.read(data)
     except expat.ExpatError as error:
         stripped = _lenient_text(data)
-        root = None if stripped is None else _parse_lenient_text(stripped, file, diagnostics)
+        root = None
+        if stripped is not None:
+            root = _parse_lenient_text(stripped, _TreeBuilder(file, diagnostics, keep_space))
         message, where = expat.ErrorString(error.code), Where(file, error.lineno + reader.offset)
         if root is not None:
             diagnostics.warning("SK-XML-004", f"not strictly valid XML, but accepted: {message}", where)
@@ -244,24 +251,27 @@ def parse_text(text: str | bytes, diagnostics: Diagnostics, file: str | None = N
 def _lenient_text(data: bytes) -> bytes | None:
     """Return the text as lenient readers see it: without comments and declaration, and up to the first zero byte.
 
+    An `&` that begins no entity, as in `<description>Salt & pepper</description>`, is the character, as for tinyxml2.
     None if this is the whole text. In UTF-16, zero bytes are parts of letters.
     """
     is_wide = data.startswith((b"\xff\xfe", b"\xfe\xff", b"<\0", b"\0<"))
     plain = data if is_wide else data.partition(b"\0")[0]
     plain = without_comments(plain, keep_lines=True)
     plain = _DECLARATION.sub(lambda m: b"\n" * m.group().count(b"\n"), plain)
+    if not is_wide:
+        plain = _PLAIN_AMPERSAND.sub(lambda m: m.group(1) or b"&amp;", plain)
     return plain if plain != data else None
 
 
-def _parse_lenient_text(data: bytes, file: str | None, diagnostics: Diagnostics) -> Params | None:
+def _parse_lenient_text(data: bytes, builder: _TreeBuilder) -> Params | None:
     try:
-        return _TreeBuilder(file, diagnostics).read(data)
+        return builder.read(data)
     except (expat.ExpatError, _RefusedDocument, LookupError, ValueError):
         return None
 
 
-def parse_file(path: Path, diagnostics: Diagnostics) -> Document | None:
-    """Read one XML file; return None, with an error recorded, if it cannot be read."""
+def parse_file(path: Path, diagnostics: Diagnostics, *, keep_space: bool = False) -> Document | None:
+    """Read one XML file; return None, with an error recorded, if it cannot be read; see `parse_text`."""
     progress.set_item(path.name)
     try:
         text = read_input(path, MAX_BYTES, allow_pipe=True)
@@ -273,5 +283,5 @@ def parse_file(path: Path, diagnostics: Diagnostics) -> Document | None:
         return None
     if report_foreign_format(text, Where(str(path)), diagnostics):
         return None
-    root = parse_text(text, diagnostics, str(path))
+    root = parse_text(text, diagnostics, str(path), keep_space=keep_space)
     return None if root is None else Document(root, path, text)

@@ -42,15 +42,17 @@ def read_actor(source: EntitySource, pose_world: Pose, scope: Scope, workspace: 
 
 def _link_visuals(source: EntitySource, scope: Scope, workspace: Workspace) -> list[SceneVisual]:
     """Return the visuals of the links of an actor without a skin, with their poses in the actor's frame."""
-    found: list[SceneVisual] = []
+    visuals: list[SceneVisual] = []
     links, owner = source.element.all("link"), f"actor {source.name!r}"
     for name, link in named_elements(links, owner, workspace.diagnostics, source.file.version, "left out"):
-        pose, own = link.pose("pose"), scoped(source.name, name)
-        part = NamedElement(name, link, Frame(name, "link", own, scope, pose, where=link.where), scope, source.file)
-        for visual in read_visuals(part, own, workspace):
+        pose, link_name = link.pose("pose"), scoped(source.name, name)
+        part = NamedElement(
+            name, link, Frame(name, "link", link_name, scope, pose, where=link.where), scope, source.file
+        )
+        for visual in read_visuals(part, link_name, workspace):
             own_name = visual.name if len(links) == 1 else f"{name}_{visual.name}"
-            found.append(replace(visual, name=own_name, pose_link=pose @ visual.pose_link))
-    return found
+            visuals.append(replace(visual, name=own_name, pose_link=pose @ visual.pose_link))
+    return visuals
 
 
 def _person(element: Params) -> PersonLook:

@@ -142,4 +142,4 @@ def sdf_elements() -> Schema:
                 open_tables.add(table)
             else:
                 rows.setdefault(table, []).append(Row(path, Use(use), becomes, like))
-    return Schema(tuple(Table(name, tuple(found), name in open_tables) for name, found in rows.items()))
+    return Schema(tuple(Table(name, tuple(elements), name in open_tables) for name, elements in rows.items()))

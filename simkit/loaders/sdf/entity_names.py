@@ -69,7 +69,7 @@ def named_elements(
 
     A repeated name is an error, or a warning where Gazebo continues: the element gets another name or is left out.
     """
-    found: dict[str, Params] = {}
+    by_name: dict[str, Params] = {}
     free = FreeNames({element.attributes.get("name", "").strip() for element in elements})
     if len(elements) > MOST_SIBLINGS:
         text = f"{owner} has {len(elements)} <{elements[0].name}> elements; the limit is {MOST_SIBLINGS}"
@@ -79,11 +79,11 @@ def named_elements(
         name = read_name(element, diagnostics, version)
         if not name:
             continue
-        if name in found:
-            text = f"{owner} has two <{element.name}> named {name!r} (the other at line {found[name].where.line})"
+        if name in by_name:
+            text = f"{owner} has two <{element.name}> named {name!r} (the other at line {by_name[name].where.line})"
             if repeated == "renamed":
                 other = free.next(name)
-                found[other] = element
+                by_name[other] = element
                 diagnostics.warning("SK-SDF-002", f"{text}; this one is named {other!r}", element.where)
             elif repeated == "left out":
                 element.mark_all_read()
@@ -91,5 +91,5 @@ def named_elements(
             else:
                 diagnostics.error("SK-SDF-002", text, element.where)
         else:
-            found[name] = element
-    return list(found.items())
+            by_name[name] = element
+    return list(by_name.items())

@@ -46,13 +46,13 @@ def _apply_action(change: Params, entity: Params, name_of: IncludedName) -> None
     if adding and not change.attribute("name").strip():
         change.error(_CODE, f"<{change.name}> is added to {path or entity.attribute('name')!r} and needs a name")
         return
-    found = _find_element(entity, path, "" if adding else change.name, name_of)
-    if found is None:
+    target_place = _find_element(entity, path, "" if adding else change.name, name_of)
+    if target_place is None:
         near = did_you_mean(path, _known_paths(entity, name_of))
         kind = "element" if adding else f"<{change.name}>"
         change.error(_CODE, f"the included model has no {kind} with element_id={path!r}", near)
         return
-    owner, target, rest = found
+    owner, target, rest = target_place
     if rest is not None:
         _forward_to_include(change, target, rest)
     elif adding:
@@ -104,12 +104,12 @@ def _known_paths(entity: Params, name_of: IncludedName, prefix: str = "", depth:
     """Return the valid values of `element_id` of the first three levels, for a hint."""
     if depth == 0:
         return []
-    found = []
+    paths = []
     for child in entity.children:
         if name := _name(child, name_of):
             here = scoped(prefix, name)
-            found += [here, *_known_paths(child, name_of, here, depth - 1)]
-    return found
+            paths += [here, *_known_paths(child, name_of, here, depth - 1)]
+    return paths
 
 
 def _forward_to_include(change: Params, include: Params, rest: str) -> None:
@@ -135,9 +135,9 @@ def _change_element(action: str, change: Params, owner: Params | None, target: P
         _modify(change, target)
     elif action == "remove" and change.children:
         for child in change.children:
-            found = _matching_child(child, target)
-            if found is not None:
-                target.children.remove(found)
+            same = _matching_child(child, target)
+            if same is not None:
+                target.children.remove(same)
     elif owner is None:
         change.error(_CODE, f"action={action!r} is not allowed for the included model itself")
     elif action == "remove":
@@ -156,10 +156,10 @@ def _child_actions(change: Params, target: Params) -> None:
             continue
         elif action == "add":
             target.children.append(_without_action_attributes(child))
-        elif (found := _matching_child(child, target)) is None:
+        elif (same := _matching_child(child, target)) is None:
             continue
         else:
-            _change_element(action, child, target, found)
+            _change_element(action, child, target, same)
 
 
 def _matching_child(change: Params, target: Params) -> Params | None:
@@ -182,8 +182,8 @@ def _modify(change: Params, target: Params) -> None:
     if change.value or not change.children:
         target.value, target.where = change.value, change.where
     for child in change.children:
-        if (found := _matching_child(child, target)) is not None:
-            _modify(child, found)
+        if (same := _matching_child(child, target)) is not None:
+            _modify(child, same)
 
 
 def _replace(change: Params, owner: Params, target: Params) -> None:

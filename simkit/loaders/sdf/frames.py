@@ -80,26 +80,26 @@ class Scope:
         Names in files before 1.8 can contain `::`, so the whole path is tried first.
         """
         scope: Scope = self
-        found: list[Frame] = []
+        frames: list[Frame] = []
         if path in self.names:
             return [self.names[path]]
         parts = path.split("::")
         for position, part in enumerate(parts):
             last = position == len(parts) - 1
-            own = WORLD if scope.root.kind == WORLD else MODEL
-            if last and part in ("", own):
+            root_name = WORLD if scope.root.kind == WORLD else MODEL
+            if last and part in ("", root_name):
                 if scope is self and scope.root.scope is not None:
-                    found.append(scope.root)  # the frame that replaces `__model__` of a merged model
-                return found
+                    frames.append(scope.root)  # the frame that replaces `__model__` of a merged model
+                return frames
             frame = scope.names.get(part)
             if frame is None:
                 return None
-            found.append(frame)
+            frames.append(frame)
             if not last:
                 if frame.inside is None:
                     return None
                 scope = frame.inside
-        return found
+        return frames
 
     def pose_of(self, path: str, user: Frame | None = None, where: Where = NOWHERE) -> Pose:
         """Return the pose of a named frame in this scope's coordinates; an unknown name is an error."""
@@ -151,10 +151,10 @@ class Scope:
     def body(self, path: str, where: Where, owner: str) -> Frame | None:
         """Return the link (or the world) that a named frame moves with; None, with an error recorded, if missing."""
         seen: dict[int, Frame] = {}
-        found = self._follow_attachment(path, where, owner, seen)
+        body = self._follow_attachment(path, where, owner, seen)
         for frame in seen.values():
-            frame.carrier, frame.is_unattached = found, found is None
-        return found
+            frame.carrier, frame.is_unattached = body, body is None
+        return body
 
     def _follow_attachment(self, path: str, where: Where, owner: str, seen: dict[int, Frame]) -> Frame | None:
         """Follow the attachments from a named frame to its link, and store the visited frames in `seen`."""

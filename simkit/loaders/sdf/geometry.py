@@ -97,12 +97,12 @@ def _mesh(element: Params, file: SdfFile, workspace: Workspace) -> Geometry | No
 
 def _mesh_scale(element: Params, uri: str) -> Vec3:
     """Return the scale of a mesh; one number is used for x, y and z, with a warning."""
-    found = element.child("scale")
-    if found is None or len(found.value.split()) != 1:
+    scale = element.child("scale")
+    if scale is None or len(scale.value.split()) != 1:
         return element.vector3("scale", (1.0, 1.0, 1.0))
     size = element.number("scale", 1.0)
     message = f"<mesh> {uri}: <scale> has one number, which is used for x, y and z; SDF defines three numbers"
-    found.warning("SK-MESH-017", message, f"write <scale>{size:g} {size:g} {size:g}</scale>")
+    scale.warning("SK-MESH-017", message, f"write <scale>{size:g} {size:g} {size:g}</scale>")
     return (size, size, size)
 
 

@@ -8,7 +8,7 @@ from functools import partial
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.loaders.resources.bundled_models import builtin_model, turtlebot3_uri
 from simkit.loaders.resources.model_folder import model_file
-from simkit.loaders.resources.uri_resolver import NOT_FOUND_CODES
+from simkit.loaders.resources.uri_resolver import NOT_FOUND_CODES, with_known_scheme
 from simkit.loaders.resources.xml_reader import parse_text
 from simkit.loaders.sdf.entity_names import read_name
 from simkit.loaders.sdf.experimental_params import BLOCK, apply_changes
@@ -43,19 +43,19 @@ def read_include(include: Params, file: SdfFile, workspace: Workspace) -> Entity
     plugins = tuple(include.all("plugin"))
     placed = include.has("pose")
     pose, base = read_pose(include)
-    found = _open_include(uri, include, file, workspace) if uri else None
-    element = None if found is None else _only_entity(found, uri, include, workspace)
-    if found is None or element is None:
+    document = _open_include(uri, include, file, workspace) if uri else None
+    element = None if document is None else _only_entity(document, uri, include, workspace)
+    if document is None or element is None:
         return None
     merge = include.attribute("merge", "false").lower() in ("true", "1")
-    if found.included is not None and (merge or include.has(BLOCK)):
-        code, reason, hint = found.included.fixed_content
+    if document.included is not None and (merge or include.has(BLOCK)):
+        code, reason, hint = document.included.fixed_content
         include.error(code, f"{uri} is {reason}: it cannot be merged or changed by its include", hint=hint)
         include.all(BLOCK)
         return None
-    element = _with_changes(include, element, found, workspace)
-    own, own_base = read_pose(element)
-    own_name = name or read_name(element, workspace.diagnostics, found.version)
+    element = _with_changes(include, element, document, workspace)
+    file_pose, own_base = read_pose(element)
+    own_name = name or read_name(element, workspace.diagnostics, document.version)
     if not own_name:
         return None
     if placement and not placed:
@@ -66,8 +66,8 @@ def read_include(include: Params, file: SdfFile, workspace: Workspace) -> Entity
     return EntitySource(
         name=own_name,
         element=element,
-        file=found,
-        pose=pose if placed else own,
+        file=document,
+        pose=pose if placed else file_pose,
         relative_to=base if placed else own_base,
         static=fixed,
         placement=placement or (element.attribute("placement_frame") if element.name == "model" else ""),
@@ -84,11 +84,11 @@ def _with_changes(include: Params, element: Params, file: SdfFile, workspace: Wo
     if not blocks:
         return element
     element.mark_all_read()
-    own = element.copied()
-    workspace.changed.append(own)
+    changed = element.copied()
+    workspace.changed.append(changed)
     for block in blocks:
-        apply_changes(block, own, partial(_included_name, file=file, workspace=workspace))
-    return own
+        apply_changes(block, changed, partial(_included_name, file=file, workspace=workspace))
+    return changed
 
 
 def _included_name(include: Params, file: SdfFile, workspace: Workspace) -> str:
@@ -101,8 +101,8 @@ def _included_name(include: Params, file: SdfFile, workspace: Workspace) -> str:
     if name or not uri:
         return name
     preliminary = workspace.quiet()
-    found = _open_include(uri, include, file, preliminary)
-    element = None if found is None else _only_entity(found, uri, include, preliminary)
+    document = _open_include(uri, include, file, preliminary)
+    element = None if document is None else _only_entity(document, uri, include, preliminary)
     return "" if element is None else element.attribute("name").strip()
 
 
@@ -112,7 +112,9 @@ def _open_include(uri: str, include: Params, file: SdfFile, workspace: Workspace
     chosen = turtlebot3_uri(uri, place.where, diagnostics)
     if chosen is None:
         return None
-    uri = chosen
+    uri = with_known_scheme(chosen)
+    if uri != chosen:
+        diagnostics.warning("SK-URI-004", f"{chosen}: unknown scheme, {uri} is used", place.where)
     path = workspace.places.get((uri, file.folder)) or resolver.search(uri, file.folder)[0]
     if path is None:
         text = builtin_model(uri)
@@ -120,11 +122,11 @@ def _open_include(uri: str, include: Params, file: SdfFile, workspace: Workspace
             workspace.has_found = True
             root = parse_text(text, diagnostics, uri)
             return None if root is None else workspace.file(root, None, (*file.chain, uri))
-        found = Diagnostics()
-        path = resolver.resolve(uri, place.where, found, file.folder)
-        is_missing = path is None and all(problem.code in NOT_FOUND_CODES for problem in found)
-        workspace.missing += [(uri, problem) for problem in found if is_missing]
-        diagnostics.extend(() if is_missing else found)
+        problems = Diagnostics()
+        path = resolver.resolve(uri, place.where, problems, file.folder)
+        is_missing = path is None and all(problem.code in NOT_FOUND_CODES for problem in problems)
+        workspace.missing += [(uri, problem) for problem in problems if is_missing]
+        diagnostics.extend(() if is_missing else problems)
     if path is not None and path.is_dir():
         path = model_file(path, place.where, diagnostics, resolver.allows)
     if path is None:

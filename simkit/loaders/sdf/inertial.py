@@ -138,16 +138,16 @@ def _automatic(
     for mass, at, moments in parts:
         d = at - com
         inertia += moments + mass * (float(matmul(d, d)) * np.eye(3) - np.outer(d, d))
-    given = block.number("mass", total, maximum=_MAX_MOMENT)
+    total_mass = block.number("mass", total, maximum=_MAX_MOMENT)
     if not (total <= _MAX_MOMENT and np.abs(inertia).max() <= _MAX_MOMENT):
         weight = f"link {name!r} has mass {total:g} kg from its collisions"
         block.error("SK-SDF-013", f"{weight}; at most {_MAX_MOMENT:g} kg and kg·m² can be simulated")
         return Inertial()
-    if given <= 0:
-        message = f"link {name!r} has mass {given:g} kg; it must be positive"
+    if total_mass <= 0:
+        message = f"link {name!r} has mass {total_mass:g} kg; it must be positive"
         block.child_or_self("mass").error("SK-SDF-013", message)
-        given = total
-    return Inertial(given, vec3(com), moments_of(inertia * (given / total)), True)
+        total_mass = total
+    return Inertial(total_mass, vec3(com), moments_of(inertia * (total_mass / total)), True)
 
 
 def _solid(collision: SceneCollision, mesh_reader: MeshReader | None, block: Params) -> Solid | None:

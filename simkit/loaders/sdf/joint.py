@@ -32,8 +32,8 @@ _NO_LIMIT = 1e15
 
 def joint_link_name(joint: Params, name: str) -> str:
     """Return the link name in `<parent>` or `<child>`; SDF before 1.2 has this name in the attribute `link`."""
-    found = joint.child(name)
-    return "" if found is None else found.value or found.attribute("link").strip()
+    link = joint.child(name)
+    return "" if link is None else link.value or link.attribute("link").strip()
 
 
 def read_joints(parts: Iterable[NamedElement], model: str) -> tuple[SceneJoint, ...]:
@@ -48,7 +48,7 @@ def read_joints(parts: Iterable[NamedElement], model: str) -> tuple[SceneJoint, 
 
 def _joint(part: NamedElement, model: str) -> SceneJoint | None:
     element = part.element
-    own = scoped(model, part.name)
+    joint_name = scoped(model, part.name)
     kind = element.attribute("type").strip()
     parent, child = _joint_link(part, "parent"), _joint_link(part, "child")
     if kind not in AXES:
@@ -65,7 +65,7 @@ def _joint(part: NamedElement, model: str) -> SceneJoint | None:
     element.child("pose")
     return SceneJoint(
         name=part.name,
-        scoped=own,
+        scoped=joint_name,
         type=kind,
         parent_link=WORLD if parent.kind == WORLD else parent.scoped,
         child_link=child.scoped,
@@ -74,8 +74,8 @@ def _joint(part: NamedElement, model: str) -> SceneJoint | None:
         thread_pitch=_thread_pitch(element) if kind == "screw" else 0.0,
         gearbox_ratio=element.number("gearbox_ratio", 1.0) if kind == "gearbox" else 1.0,
         gearbox_reference=_gearbox_reference(part) if kind == "gearbox" else "",
-        sensors=read_sensors(part, own, world_pose(child), world_pose(child).inverse() @ pose),
-        plugins=read_plugins(element.all("plugin"), own),
+        sensors=read_sensors(part, joint_name, world_pose(child), world_pose(child).inverse() @ pose),
+        plugins=read_plugins(element.all("plugin"), joint_name),
         where=element.where,
     )
 

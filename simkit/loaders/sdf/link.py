@@ -31,25 +31,25 @@ def read_link(part: NamedElement, model: str, static: bool, windy: bool, workspa
         workspace: state of the load.
     """
     element = part.element
-    own = scoped(model, part.name)
+    link_name = scoped(model, part.name)
     pose = world_pose(part.frame)
     element.child("pose")
-    read = [_collision(part, c, name, own, workspace) for name, c in part.named("collision")]
+    read = [_collision(part, c, name, link_name, workspace) for name, c in part.named("collision")]
     collisions = tuple(c for c, _ in read if c is not None)
     densities = [density for c, density in read if c is not None]
     return SceneLink(
         name=part.name,
-        scoped=own,
+        scoped=link_name,
         pose_world=pose,
         inertial=read_inertial(element, part.name, collisions, densities, static, workspace.mesh_reader),
         gravity=element.boolean("gravity", True),
         kinematic=element.boolean("kinematic", False),
         self_collide=element.boolean("self_collide", False),
         collisions=collisions,
-        visuals=read_visuals(part, own, workspace),
-        sensors=read_sensors(part, own, pose),
-        lights=read_lights(part, own, pose),
-        plugins=read_plugins(element.all("plugin"), own),
+        visuals=read_visuals(part, link_name, workspace),
+        sensors=read_sensors(part, link_name, pose),
+        lights=read_lights(part, link_name, pose),
+        plugins=read_plugins(element.all("plugin"), link_name),
         where=element.where,
         velocity_decay=_velocity_decay(element),
         enable_wind=element.boolean("enable_wind", windy),
@@ -59,8 +59,8 @@ def read_link(part: NamedElement, model: str, static: bool, windy: bool, workspa
 
 def read_visuals(part: NamedElement, link: str, workspace: Workspace) -> tuple[SceneVisual, ...]:
     """Return the visuals of a link, with the scoped name of the link in front of their names."""
-    found = (_visual(part, element, name, link, workspace) for name, element in part.named("visual"))
-    return tuple(visual for visual in found if visual is not None)
+    visuals = (_visual(part, element, name, link, workspace) for name, element in part.named("visual"))
+    return tuple(visual for visual in visuals if visual is not None)
 
 
 def _velocity_decay(element: Params) -> tuple[float, float]:
@@ -103,17 +103,17 @@ def _with_friction_frame(surface: Surface, part: NamedElement, element: Params, 
     scope, frames = part.scope, part.scope.chain(name)
     if frames and frames[-1].kind == "link":
         return surface
-    found = element.block("surface").block("friction").block("ode").child("fdir1") or element
+    direction = element.block("surface").block("friction").block("ode").child("fdir1") or element
     owner = f"the direction of friction of link {part.name!r}"
-    body = None if frames is None else scope.body(name, found.where, owner)
+    body = None if frames is None else scope.body(name, direction.where, owner)
     if body is None or body.kind != "link":
         if frames is None:
             message = f"{owner} is given in the unknown frame {name!r}; the collision's own frame is used"
-            found.warning("SK-SDF-040", message, did_you_mean(name, scope.all_names()))
+            direction.warning("SK-SDF-040", message, did_you_mean(name, scope.all_names()))
         return replace(surface, fdir1_frame="")
     turned = world_pose(body).inverse().rotate((scope.world @ scope.pose_of(name)).rotate(surface.fdir1))
-    own = link.rpartition("::")[0]
-    frame = body.scoped.removeprefix(f"{own}::") if own else body.scoped
+    model_name = link.rpartition("::")[0]
+    frame = body.scoped.removeprefix(f"{model_name}::") if model_name else body.scoped
     return replace(surface, fdir1=vec3(turned), fdir1_frame=frame)
 
 

@@ -159,9 +159,9 @@ class Workspace:
         text = root.attribute("version")
         version = sdf_version(text)
         if version is None:
-            found = f"the invalid version {text!r}" if text else "no version"
+            description = f"the invalid version {text!r}" if text else "no version"
             text = "1.6"
-            self.diagnostics.warning("SK-LOAD-004", f"<{root.name}> has {found}; it is read as 1.6", root.where)
+            self.diagnostics.warning("SK-LOAD-004", f"<{root.name}> has {description}; it is read as 1.6", root.where)
             version = (1, 6)
         elif version > NEWEST_SDF:
             newest = ".".join(str(n) for n in NEWEST_SDF)

@@ -62,24 +62,24 @@ def _read(file: SdfFile, document: Document, request: LoadRequest, workspace: Wo
 def _bare(file: SdfFile, workspace: Workspace) -> EntitySource | None:
     """Return the one model (or light) of a file without a world."""
     root = file.root
-    found = [*root.all("model"), *root.all("light")]
+    entities = [*root.all("model"), *root.all("light")]
     actors = root.all("actor")
     for actor in actors:
         actor.mark_all_read()
         actor.warning("SK-SDF-012", "<actor>: actors are not simulated")
     includes = root.all("include")
-    if not found and includes:
+    if not entities and includes:
         return read_include(includes[0], file, workspace)
-    if not found:
+    if not entities:
         if not actors:
             near = next((h for c in root.children if (h := did_you_mean(c.name, ("world", "model", "light")))), "")
             root.error("SK-SDF-026", f"<{root.name}> contains neither a world nor a model", near)
         return None
-    for extra in found[1:]:
+    for extra in entities[1:]:
         extra.mark_all_read()
         element = f"<{extra.name} name={extra.attribute('name')!r}>"
         extra.error("SK-SDF-028", f"{element}: a file without a world can have only one model", "add a <world>")
-    return read_inline_entity(found[0], file, workspace)
+    return read_inline_entity(entities[0], file, workspace)
 
 
 def _model(source: EntitySource, request: LoadRequest, workspace: Workspace) -> SceneModel | None:

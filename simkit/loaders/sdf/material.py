@@ -69,8 +69,8 @@ def read_transparency(block: Params, default: float = 0.0) -> float:
 
 
 def _has_content(block: Params, name: str) -> bool:
-    found = block.child(name)
-    return found is not None and bool(found.value)
+    element = block.child(name)
+    return element is not None and bool(element.value)
 
 
 def _script_material(
@@ -80,8 +80,8 @@ def _script_material(
     # Gazebo's own scripts are identified by name, in the table of gazebo_materials.py
     uris = [e.value for e in script.all("uri") if e.value and "media/materials" not in e.value]
     places = [place for uri in uris if (place := workspace.resolver.search(uri, file.folder)[0]) is not None]
-    found = find_material(name, places, workspace.resolver.allows) if name and places else None
-    return found, places
+    material = find_material(name, places, workspace.resolver.allows) if name and places else None
+    return material, places
 
 
 def _script_colours(name: str, ogre: OgreMaterial | None) -> dict[str, Colour]:
@@ -104,15 +104,15 @@ def _report_unknown_script(name: str, script: Params, workspace: Workspace) -> N
 
 def read_colour(block: Params, name: str, default: Colour) -> Colour:
     """Return the colour of a child element, with each channel limited to 0..1; an invalid text is an error."""
-    found = block.child(name)
-    if found is None or not found.value:
+    colour = block.child(name)
+    if colour is None or not colour.value:
         return default
     try:
-        numbers = [float(v) for v in found.value.split()]
+        numbers = [float(v) for v in colour.value.split()]
     except ValueError:
         numbers = []
     if len(numbers) not in (3, 4) or any(map(math.isnan, numbers)):
-        found.error("SK-PARAM-002", f"found <{name}>{found.value}</{name}>; expected red green blue [alpha]")
+        colour.error("SK-PARAM-002", f"found <{name}>{colour.value}</{name}>; expected red green blue [alpha]")
         return default
     r, g, b, a = [min(1.0, max(0.0, v)) for v in (*numbers, 1.0)[:4]]
     return (r, g, b, a)
@@ -127,16 +127,16 @@ def _workflow(block: Params) -> Params:
 
 
 def _texture(workflow: Params, file: SdfFile, workspace: Workspace) -> Path | None:
-    found = workflow.child("albedo_map")
-    if found is None or not found.value:
+    texture = workflow.child("albedo_map")
+    if texture is None or not texture.value:
         return None
-    path, _ = workspace.resolver.search(found.value, file.folder)
+    path, _ = workspace.resolver.search(texture.value, file.folder)
     if path is not None and path.is_file():
         return path.absolute()
     if workspace.resolver.refused is not None:
-        _report_refused_texture(found.value, found, workspace.resolver.refused, workspace)
+        _report_refused_texture(texture.value, texture, workspace.resolver.refused, workspace)
     else:
-        _report_missing_texture(f"texture {found.value}", found, workspace)
+        _report_missing_texture(f"texture {texture.value}", texture, workspace)
     return None
 
 

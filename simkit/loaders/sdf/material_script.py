@@ -58,23 +58,27 @@ def find_material(name: str, places: Sequence[Path], allows: Callable[[Path], bo
     for script in filter(allows, _scripts(places)):
         for material in _materials(script):
             known.setdefault(material.name, material)
-    found = known.get(name)
+    script_material = known.get(name)
     seen = {name}
-    while found is not None and found.parent and found.parent not in seen:
-        seen.add(found.parent)
-        above = known.get(found.parent)
+    while script_material is not None and script_material.parent and script_material.parent not in seen:
+        seen.add(script_material.parent)
+        above = known.get(script_material.parent)
         if above is None:
-            return replace(found, parent="", colours={**gazebo_colours(found.parent), **found.colours})
-        found = replace(
-            found,
+            return replace(
+                script_material,
+                parent="",
+                colours={**gazebo_colours(script_material.parent), **script_material.colours},
+            )
+        script_material = replace(
+            script_material,
             parent=above.parent,
-            colours={**above.colours, **found.colours},
-            texture=found.texture or above.texture,
-            is_transparent=found.is_transparent or above.is_transparent,
-            is_double_sided=found.is_double_sided or above.is_double_sided,
-            scale=found.scale or above.scale,
+            colours={**above.colours, **script_material.colours},
+            texture=script_material.texture or above.texture,
+            is_transparent=script_material.is_transparent or above.is_transparent,
+            is_double_sided=script_material.is_double_sided or above.is_double_sided,
+            scale=script_material.scale or above.scale,
         )
-    return found
+    return script_material
 
 
 def find_texture(material: OgreMaterial, places: Sequence[Path], allows: Callable[[Path], bool]) -> Path | None:

@@ -32,11 +32,11 @@ def declare_model(source: EntitySource, outer: Scope, outer_scoped: str, workspa
     """Register a model and all named elements in it; return None if the limit of models is exceeded."""
     if not workspace.count_model(source.where):
         return None
-    own = scoped(outer_scoped, source.name)
-    scope = Scope(Frame(source.name, "model", own), workspace.diagnostics)
-    frame = Frame(source.name, "model", own, outer, source.pose, source.relative_to, where=source.where)
+    model_name = scoped(outer_scoped, source.name)
+    scope = Scope(Frame(source.name, "model", model_name), workspace.diagnostics)
+    frame = Frame(source.name, "model", model_name, outer, source.pose, source.relative_to, where=source.where)
     frame.inside, frame.placement, frame.pose_where = scope, source.placement, source.pose_where
-    draft = ModelDraft(source, own, frame, scope)
+    draft = ModelDraft(source, model_name, frame, scope)
     _declare_content(draft, source.element, source.file, scope, workspace)
     draft.plugins.extend(source.plugins)
     _choose_canonical(draft, source.element, workspace)
@@ -120,19 +120,19 @@ def declare_elements(
     parts = []
     named = named_elements(element.all(kind), owner, scope.diagnostics, file.version)
     siblings = {name for name, _ in named}
-    for written, found in named:
-        name = _distinct_name(written, kind, siblings, scope, found.where)
-        pose, base = read_pose(found)
+    for written, child_element in named:
+        name = _distinct_name(written, kind, siblings, scope, child_element.where)
+        pose, base = read_pose(child_element)
         attached = ""
         if kind == "joint":
-            child = joint_link_name(found, "child")
+            child = joint_link_name(child_element, "child")
             attached = "" if child == WORLD else child
         elif kind == "frame":
-            attached = found.attribute("attached_to")
-        frame = Frame(name, kind, scoped(outer, name), scope, pose, base, attached, where=found.where)
-        frame.pose_where = pose_location(found)
+            attached = child_element.attribute("attached_to")
+        frame = Frame(name, kind, scoped(outer, name), scope, pose, base, attached, where=child_element.where)
+        frame.pose_where = pose_location(child_element)
         register_frame(frame, scope, file.version)
-        parts.append(NamedElement(name, found, frame, scope, file))
+        parts.append(NamedElement(name, child_element, frame, scope, file))
     return parts
 
 
@@ -226,8 +226,8 @@ def _choose_canonical(draft: ModelDraft, element: Params, workspace: Workspace) 
 
 
 def _is_static(source: EntitySource) -> bool:
-    own = source.element.boolean("static", False)
-    return own if source.static is None else source.static
+    is_static = source.element.boolean("static", False)
+    return is_static if source.static is None else source.static
 
 
 def place_model(draft: ModelDraft) -> None:

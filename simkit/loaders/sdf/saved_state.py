@@ -23,18 +23,18 @@ _UNAPPLIED = ("velocity", "acceleration", "wrench")
 
 def saved_states(world: Params, name: str) -> list[Params]:
     """Return the states of this world; a state of another world is reported."""
-    found = []
+    states = []
     for state in world.all("state"):
         world_name = state.attribute("world_name").strip()
         for clock in ("sim_time", "wall_time", "real_time", "iterations"):
             state.child(clock)
         if world_name in ("", name):
-            found.append(state)
+            states.append(state)
             continue
         state.mark_all_read()
         message = f"the saved state of world {world_name!r} is not applied to {name!r}"
         state.warning(_CODE, message, did_you_mean(world_name, (name,)))
-    return found
+    return states
 
 
 def _all_saved(block: Params, kind: str) -> list[Params]:

@@ -34,8 +34,8 @@ def _sensor(element: Params, name: str, parent: str, on_joint: bool, pose_link: 
     if not kind:
         element.error("SK-SDF-020", f"sensor {name!r} needs a type")
     scoped = join(parent, name)
-    own = [c for c in element.children if c.name != "plugin"]
-    params = Params(element.name, element.value, element.attributes, own, element.where, element.diagnostics)
+    elements = [c for c in element.children if c.name != "plugin"]
+    params = Params(element.name, element.value, element.attributes, elements, element.where, element.diagnostics)
     for common in ("pose", "always_on", "visualize", "enable_metrics", "update_rate", "topic"):
         params.child(common)
         element.child(common)

@@ -92,11 +92,11 @@ def _extruded(outlines: Sequence[Outline], height: float) -> Solid | None:
     if not 1e-15 <= area < math.inf:
         return None
     centre = np.array((*(first / area), height / 2))
-    whole = np.zeros((3, 3))
-    whole[:2, :2] = second * height
-    whole[:2, 2] = whole[2, :2] = first * height * height / 2
-    whole[2, 2] = area * height * height * height / 3
-    return _about_centroid(area * height, centre, whole)
+    moments = np.zeros((3, 3))
+    moments[:2, :2] = second * height
+    moments[:2, 2] = moments[2, :2] = first * height * height / 2
+    moments[2, 2] = area * height * height * height / 3
+    return _about_centroid(area * height, centre, moments)
 
 
 def _polygon(outline: Outline) -> tuple[float, Floats, Floats]:

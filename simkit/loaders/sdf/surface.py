@@ -50,8 +50,8 @@ def read_surface(collision: Params) -> Surface:
 
 def _direction_frame(ode: Params) -> str:
     """Return the link in whose frame `<fdir1>` is given, from Gazebo's own attribute."""
-    found = ode.block("fdir1")
-    return found.attribute("gz:expressed_in") or found.attribute("ignition:expressed_in")
+    direction = ode.block("fdir1")
+    return direction.attribute("gz:expressed_in") or direction.attribute("ignition:expressed_in")
 
 
 def _friction(block: Params, name: str, default: float) -> float:
@@ -78,14 +78,14 @@ def _optional_number(block: Params | None, name: str) -> float | None:
 
 def _mask(contact: Params, name: str) -> int:
     """Return a 16-bit mask, written as decimal or 0x..; all bits are set if the file gives none."""
-    found = contact.child(name)
-    if found is None:
+    mask = contact.child(name)
+    if mask is None:
         return 0xFFFF
-    text = found.value.lower()
+    text = mask.value.lower()
     try:
         if not text.isascii() or "_" in text:
             raise ValueError
         return int(text, 16 if text.startswith("0x") else 10) & 0xFFFFFFFF
     except ValueError:
-        found.error("SK-PARAM-002", f"found <{name}>{found.value}</{name}>; expected a whole number")
+        mask.error("SK-PARAM-002", f"found <{name}>{mask.value}</{name}>; expected a whole number")
         return 0xFFFF

@@ -23,23 +23,23 @@ def nest_flattened_models(root: Params, version: tuple[int, int]) -> Params:
 
 def _unflatten(model: Params) -> None:
     groups: dict[str, Params] = {}
-    kept: list[Params] = []
+    children: list[Params] = []
     for child in model.children:
         outer, separator, inner = child.attributes.get("name", "").partition("::")
         if child.name not in _GROUPED or not separator or not outer or not inner:
-            kept.append(child)
+            children.append(child)
             continue
         if outer not in groups:
             groups[outer] = Params("model", "", {"name": outer}, (), child.where, child.diagnostics)
-            kept.append(groups[outer])
+            children.append(groups[outer])
         if child.name == "frame" and inner == MODEL:
             _use_model_frame(child, outer, groups[outer])
             continue
         child.attributes["name"] = inner
         _strip_group_name(child, f"{outer}::")
         groups[outer].children.append(child)
-    model.children = kept
-    for child in kept:
+    model.children = children
+    for child in children:
         if child.name == "model":
             _unflatten(child)
 
@@ -107,8 +107,8 @@ def _spread_noise(imu: Params) -> None:
     for part in noise.children if noise is not None else ():
         if part.name in _NOISE_OF and _NOISE_OF[part.name] not in own_names:
             values = [_make_element(c.name, c.value, c) for c in part.children]
-            own = Params("noise", "", {"type": kind}, values, part.where, part.diagnostics)
-            imu.children.append(_make_element(_NOISE_OF[part.name], "", part, [own]))
+            noise_block = Params("noise", "", {"type": kind}, values, part.where, part.diagnostics)
+            imu.children.append(_make_element(_NOISE_OF[part.name], "", part, [noise_block]))
     imu.children = [c for c in imu.children if c is not noise]
 
 

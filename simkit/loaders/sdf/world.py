@@ -118,22 +118,22 @@ def _entity_sources(
     A model of a repeated name gets another name, as in Gazebo Classic.
     """
     diagnostics = workspace.diagnostics
-    found: list[EntitySource] = []
+    sources: list[EntitySource] = []
     for kind in ("light", "actor"):
         named = named_elements(element.all(kind), "the world", diagnostics, file.version, "left out")
-        found += [entity_source(e, name, file) for name, e in named]
-    found += model_sources(element, file, workspace)
+        sources += [entity_source(e, name, file) for name, e in named]
+    sources += model_sources(element, file, workspace)
     for population in element.all("population"):
-        found += population_sources(population, world, file, workspace)
+        sources += population_sources(population, world, file, workspace)
     for block in inserted_blocks(states):
-        found += model_sources(block, file, workspace)
+        sources += model_sources(block, file, workspace)
         named = named_elements(block.all("light"), "the saved state", diagnostics, file.version, "left out")
-        found += [entity_source(e, name, file) for name, e in named]
+        sources += [entity_source(e, name, file) for name, e in named]
     deleted = deleted_names(states)
-    for source in found:
+    for source in sources:
         if source.name in deleted:
             source.element.mark_all_read()
-    return rename_repeated([source for source in found if source.name not in deleted], "the world", diagnostics)
+    return rename_repeated([source for source in sources if source.name not in deleted], "the world", diagnostics)
 
 
 def _add_entity(source: EntitySource, content: _WorldContent, workspace: Workspace) -> None:

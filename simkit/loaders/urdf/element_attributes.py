@@ -29,9 +29,9 @@ def report_missing(element: Params, attribute: str, allowed: str, owner: str = "
     element.error("SK-URDF-001", f"{prefix}<{element.name}> needs {attribute}= ({allowed})", near)
 
 
-def report_substitute(element: Params, found: str, instead: str, hint: str = "") -> None:
+def report_substitute(element: Params, problem: str, instead: str, hint: str = "") -> None:
     """Record a warning for content that urdfdom rejects with a message, and the value that simkit uses instead."""
-    element.warning("SK-URDF-031", f"{found}; {instead}", hint)
+    element.warning("SK-URDF-031", f"{problem}; {instead}", hint)
 
 
 def skip_element(element: Params) -> None:
@@ -63,24 +63,24 @@ def number_attribute(
     NaN, a number below the minimum, or with `finite` an infinite number is an error.
     """
     allowed = "a number" + ("" if minimum is None else f" of at least {minimum:g}")
-    found = text_attribute(element, attribute)
+    text = text_attribute(element, attribute)
     if attribute not in element.attributes:
         if default is None:
             report_missing(element, attribute, allowed, owner)
         return 0.0 if default is None else default
-    value = parse_number(found)
+    value = parse_number(text)
     if value is None or (finite and math.isinf(value)) or (minimum is not None and value < minimum):
         report_bad_value(element, attribute, allowed)
         return 0.0 if default is None else default
     return value
 
 
-def parse_number(found: str) -> float | None:
+def parse_number(text: str) -> float | None:
     """Parse a number; return None for any other text and for NaN."""
-    if "_" in found or not found.isascii():
+    if "_" in text or not text.isascii():
         return None
     try:
-        value = float(found)
+        value = float(text)
     except ValueError:
         return None
     return None if math.isnan(value) else value
@@ -100,16 +100,18 @@ def numbers_attribute(element: Params, attribute: str, count: int, allowed: str 
 
 def vector3_attribute(element: Params, attribute: str, default: Vec3 = (0.0, 0.0, 0.0)) -> Vec3:
     """Return three finite numbers."""
-    found = numbers_attribute(element, attribute, 3)
-    return default if found is None else vec3(found)
+    numbers = numbers_attribute(element, attribute, 3)
+    return default if numbers is None else vec3(numbers)
 
 
 def leading_numbers(element: Params, attribute: str, count: int, allowed: str = "") -> tuple[float, ...] | None:
     """Return the first `count` numbers, with a warning if there are more; otherwise like `numbers_attribute`."""
     parts = text_attribute(element, attribute).split()
     if len(parts) > count and all(parse_number(part) is not None for part in parts):
-        found = f'<{element.name} {attribute}="{" ".join(parts[:8])}"> has {len(parts)} numbers'
-        report_substitute(element, found, f"the first {count} are used", f"expected {allowed or f'{count} numbers'}")
+        statement = f'<{element.name} {attribute}="{" ".join(parts[:8])}"> has {len(parts)} numbers'
+        report_substitute(
+            element, statement, f"the first {count} are used", f"expected {allowed or f'{count} numbers'}"
+        )
         element.attributes[attribute] = " ".join(parts[:count])
     return numbers_attribute(element, attribute, count, allowed)
 
@@ -140,18 +142,18 @@ def extension_text(element: Params) -> str:
 
 def extension_boolean(element: Params) -> bool:
     """Return true for true, yes and 1, and false for false, no and 0; any other text is an error."""
-    found = extension_text(element).lower()
-    if found not in ("true", "yes", "1", "false", "no", "0"):
+    text = extension_text(element).lower()
+    if text not in ("true", "yes", "1", "false", "no", "0"):
         element.error("SK-URDF-013", f"<{element.name}> is {extension_text(element)!r}; expected true or false")
-    return found in ("true", "yes", "1")
+    return text in ("true", "yes", "1")
 
 
 def extension_numbers(element: Params, count: int) -> Sequence[float] | None:
     """Return the numbers of a Gazebo extension; None, with an error recorded, if not `count` finite numbers."""
     parts = [parse_number(part) for part in extension_text(element).split()]
-    kept = [p for p in parts if p is not None and math.isfinite(p)]
-    if len(kept) == len(parts) == count:
-        return kept
+    finite = [p for p in parts if p is not None and math.isfinite(p)]
+    if len(finite) == len(parts) == count:
+        return finite
     allowed = "a number" if count == 1 else f"{count} numbers"
     hint = _XACRO_HINT if "${" in extension_text(element) else ""
     element.error("SK-URDF-013", f"<{element.name}> is {extension_text(element)!r}; expected {allowed}", hint)

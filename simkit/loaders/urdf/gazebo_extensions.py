@@ -60,30 +60,30 @@ def _merge_blocks(blocks: list[Params]) -> Params:
 
 def last_child(block: Params, *names: str) -> Params | None:
     """Return the last child with one of these names, because a later block overrides an earlier one."""
-    found = [child for name in names for child in block.all(name)]
-    return max(found, key=lambda c: c.where.line or 0) if found else None
+    children = [child for name in names for child in block.all(name)]
+    return max(children, key=lambda c: c.where.line or 0) if children else None
 
 
 def read_flag(block: Params, *names: str) -> bool | None:
     """Return a boolean, or None if the file gives none."""
-    found = last_child(block, *names)
-    return None if found is None else extension_boolean(found)
+    element = last_child(block, *names)
+    return None if element is None else extension_boolean(element)
 
 
 def read_number(block: Params, *names: str, minimum: float | None = None) -> float | None:
     """Return a number; None if the file gives none or, with an error recorded, an invalid one."""
-    found = last_child(block, *names)
-    values = None if found is None else extension_numbers(found, 1)
-    if found is None or values is None:
+    element = last_child(block, *names)
+    values = None if element is None else extension_numbers(element, 1)
+    if element is None or values is None:
         return None
     if minimum is not None and values[0] < minimum:
-        found.error("SK-URDF-013", f"<{found.name}> is {values[0]:g}; it must be at least {minimum:g}")
+        element.error("SK-URDF-013", f"<{element.name}> is {values[0]:g}; it must be at least {minimum:g}")
         return None
     return values[0]
 
 
 def read_vector(block: Params, name: str) -> Vec3 | None:
     """Return three numbers; None if the file gives none or, with an error recorded, invalid ones."""
-    found = last_child(block, name)
-    values = None if found is None else extension_numbers(found, 3)
+    element = last_child(block, name)
+    values = None if element is None else extension_numbers(element, 3)
     return None if values is None else vec3(values)

@@ -104,8 +104,8 @@ def _scale(element: Params) -> Vec3:
     if len(written) == 1 and parse_number(written[0]) is not None:
         report_substitute(element, f'<mesh scale="{written[0]}"> has one number', "it is used for x, y and z")
         element.attributes["scale"] = " ".join(written * 3)
-    found = leading_numbers(element, "scale", 3)
-    return (1.0, 1.0, 1.0) if found is None else (found[0], found[1], found[2])
+    scale = leading_numbers(element, "scale", 3)
+    return (1.0, 1.0, 1.0) if scale is None else (scale[0], scale[1], scale[2])
 
 
 def _plane(element: Params, what: str) -> Geometry:

@@ -36,17 +36,17 @@ def read_joint(draft: RobotDraft, joint: JointDraft) -> SceneJoint:
     pose = draft.links_world[joint.child]
     for setting in _FIXED_DEFAULTS:
         extension.all(setting)
-    own = draft.own(name)
+    joint_name = draft.own(name)
     return SceneJoint(
         name=name,
-        scoped=own,
+        scoped=joint_name,
         type=joint.type,
         parent_link=draft.own(joint.parent),
         child_link=draft.own(joint.child),
         pose_world=pose,
         axes=_axes(draft, joint, pose, extension),
-        sensors=read_sensors(draft.part(joint.child, extension, name), own, pose),
-        plugins=read_plugins(extension.all("plugin"), own),
+        sensors=read_sensors(draft.part(joint.child, extension, name), joint_name, pose),
+        plugins=read_plugins(extension.all("plugin"), joint_name),
         where=element.where,
         safety=_safety(element),
         calibration=_calibration(element),
@@ -62,11 +62,11 @@ def _axes(draft: RobotDraft, joint: JointDraft, pose: Pose, extension: Params) -
     mimic = _mimic(draft, joint)
     if joint.type in _NO_AXES:
         for unused in ("axis", "limit", "dynamics"):
-            found = element.child(unused)
-            if found is not None:
-                found.mark_all_read()
-                for attribute in found.attributes:
-                    found.attribute(attribute)
+            unused_element = element.child(unused)
+            if unused_element is not None:
+                unused_element.mark_all_read()
+                for attribute in unused_element.attributes:
+                    unused_element.attribute(attribute)
         return ()
     direction = _direction(joint)
     lower, upper, effort, velocity = _limits(joint)

@@ -57,22 +57,22 @@ def place_links(draft: RobotDraft) -> None:
 
 def _elements_by_name(draft: RobotDraft, kind: str) -> dict[str, Params]:
     """Return elements by name; a missing, invalid or repeated name is an error."""
-    found: dict[str, Params] = {}
+    elements: dict[str, Params] = {}
     for element in draft.element.all(kind):
         name = text_attribute(element, "name")
         if not name:
             report_missing(element, "name", "a text")
             element.mark_all_read()
-        elif name in found:
-            message = f"two {kind}s are named {name!r} (the other at line {found[name].where.line})"
+        elif name in elements:
+            message = f"two {kind}s are named {name!r} (the other at line {elements[name].where.line})"
             draft.diagnostics.error("SK-URDF-002", message, element.where, "rename one of them")
             skip_element(element)
         else:
             if "::" in name:
                 message = f"{kind} {name!r}: a name cannot contain '::', which separates names"
                 draft.diagnostics.error("SK-URDF-002", message, element.where)
-            found[name] = element
-    return found
+            elements[name] = element
+    return elements
 
 
 def _joint(draft: RobotDraft, name: str, element: Params) -> JointDraft | None:

@@ -79,8 +79,8 @@ def _inertial(name: str, link: Params) -> Inertial:
         block.mark_all_read()
         return NO_MASS
     if inertia is None:
-        found = f"link {name!r}: <inertial> has no <inertia ixx= iyy= izz= ixy= ixz= iyz=...>"
-        report_substitute(block, found, "its mass is at one point", "add the moments of its shape")
+        problem = f"link {name!r}: <inertial> has no <inertia ixx= iyy= izz= ixy= ixz= iyz=...>"
+        report_substitute(block, problem, "its mass is at one point", "add the moments of its shape")
     kilograms = attribute_number(mass, "value", owner=f"link {name!r}")
     if kilograms < 0:
         mass.error("SK-URDF-016", f"link {name!r} has mass {kilograms:g} kg; it cannot be negative")
@@ -127,15 +127,15 @@ def unique_names(elements: list[Params], link: str, kind: str) -> list[str]:
 def _collisions(draft: RobotDraft, link: str, element: Params, extension: Params) -> tuple[SceneCollision, ...]:
     elements = element.all("collision")
     surface, retro = _surface(extension), read_number(extension, "laserRetro") or 0.0
-    found = []
+    collisions = []
     for name, collision in zip(unique_names(elements, link, "collision"), elements, strict=True):
         shape = read_geometry(collision, draft, f"collision {name!r} of link {link!r}")
         pose = read_origin(collision)
         collision.attribute("group")
         if shape is not None:
-            own = draft.own(link, name)
-            found.append(SceneCollision(name, own, pose, shape, surface, retro, collision.where))
-    return tuple(found)
+            collision_name = draft.own(link, name)
+            collisions.append(SceneCollision(name, collision_name, pose, shape, surface, retro, collision.where))
+    return tuple(collisions)
 
 
 def _surface(extension: Params) -> Surface:
@@ -159,7 +159,7 @@ def _visuals(
 ) -> tuple[SceneVisual, ...]:
     elements, blocks = element.all("visual"), extension.all("visual")
     retro = read_number(extension, "laserRetro")
-    found = []
+    visuals = []
     for name, visual in zip(unique_names(elements, link, "visual"), elements, strict=True):
         shape = read_geometry(visual, draft, f"visual {name!r} of link {link!r}")
         pose = read_origin(visual)
@@ -184,8 +184,8 @@ def _visuals(
                 laser_retro=block.number("laser_retro", scene_visual.laser_retro),
                 plugins=(*scene_visual.plugins, *read_plugins(block.all("plugin"), scene_visual.scoped)),
             )
-        found.append(scene_visual)
-    return tuple(found)
+        visuals.append(scene_visual)
+    return tuple(visuals)
 
 
 # ---------------------------------------------------------------------- sensors
@@ -200,7 +200,7 @@ def _sensors(draft: RobotDraft, link: str, extension: Params) -> tuple[SceneSens
 def _without_duplicates(sensors: list[Params], link: str) -> list[Params]:
     """Return the sensors without repeated names, which occur in robots that include a xacro file twice."""
     first: dict[str, Params] = {}
-    kept = []
+    distinct = []
     for element in sensors:
         name = element.attribute("name").strip()
         known = first.setdefault(name, element)
@@ -209,8 +209,8 @@ def _without_duplicates(sensors: list[Params], link: str) -> list[Params]:
             element.warning("SK-URDF-030", message, "rename one of them")
             element.mark_all_read()
         else:
-            kept.append(element)
-    return kept
+            distinct.append(element)
+    return distinct
 
 
 def is_massless(link: SceneLink) -> bool:

@@ -67,10 +67,10 @@ class IncludedRobot(IncludedModel):
     def build(self, draft: ModelDraft, static: bool, workspace: Workspace, base: str) -> SceneModel:
         arguments = self.robot.arguments
         file = replace(draft.source.file, root=self.robot.root, included=None, arguments=arguments)
-        own = declare_robot(file, workspace, workspace.resolver)
-        own.name = draft.source.name
+        robot = declare_robot(file, workspace, workspace.resolver)
+        robot.name = draft.source.name
         outer = draft.scoped.rpartition("::")[0]
-        model = build_robot(own, outer, draft.scope.world, base, static, is_included=True)
+        model = build_robot(robot, outer, draft.scope.world, base, static, is_included=True)
         plugins = read_plugins(draft.plugins, draft.scoped)
         return replace(model, plugins=(*model.plugins, *plugins), where=draft.source.where)
 

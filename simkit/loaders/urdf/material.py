@@ -55,9 +55,9 @@ class Materials:
         if element is None:
             return None
         name = text_attribute(element, "name")
-        own = self._read(element)
-        if own is not None:
-            return own
+        material = self._read(element)
+        if material is not None:
+            return material
         if name in self.named:
             return self.named[name]
         if name.startswith("Gazebo/") and (known := gazebo_colours(name)):
@@ -70,21 +70,21 @@ class Materials:
 
     def _define(self, name: str, element: Params) -> None:
         self._lines.setdefault(name, element.where.line)
-        found = self._read(element)
-        if found is not None and name:
-            self.named[name] = found
+        material = self._read(element)
+        if material is not None and name:
+            self.named[name] = material
 
     def _read(self, element: Params) -> Material | None:
         """Return the colour and texture in an element; None if both are missing."""
         colour, texture = element.child("color"), element.child("texture")
         rgba: Colour | None = None
         if colour is not None:
-            found = leading_numbers(colour, "rgba", 4, "red green blue alpha")
-            if found is None and "rgba" not in colour.attributes:
+            numbers = leading_numbers(colour, "rgba", 4, "red green blue alpha")
+            if numbers is None and "rgba" not in colour.attributes:
                 report_missing(colour, "rgba", "red green blue alpha")
-            if found is not None:
-                clamped = [min(1.0, max(0.0, v)) for v in found]
-                if clamped != list(found):
+            if numbers is not None:
+                clamped = [min(1.0, max(0.0, v)) for v in numbers]
+                if clamped != list(numbers):
                     text = f'<color rgba="{text_attribute(colour, "rgba")[:60]}"> has numbers outside 0 to 1'
                     report_substitute(colour, text, "they are limited to this range")
                 rgba = (clamped[0], clamped[1], clamped[2], clamped[3])
@@ -101,16 +101,16 @@ class Materials:
         return Material(base, base, texture=path)
 
 
-def extended_material(extension: Params, own: Material | None, draft: RobotDraft) -> Material | None:
+def extended_material(extension: Params, written: Material | None, draft: RobotDraft) -> Material | None:
     """Return a visual's material with its `<gazebo>` extensions: a script name, or SDF elements in `<visual>`."""
     script = last_child(extension, "material")
     if script is not None:
         element = _as_sdf(script) if not script.children else Params("visual", children=[script])
         element.diagnostics = script.diagnostics
-        own = read_material(element, draft.file, draft.workspace) or own
+        written = read_material(element, draft.file, draft.workspace) or written
     for block in extension.all("visual"):
-        own = read_material(block, draft.file, draft.workspace) or own
-    return own
+        written = read_material(block, draft.file, draft.workspace) or written
+    return written
 
 
 def _as_sdf(element: Params) -> Params:

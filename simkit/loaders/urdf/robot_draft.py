@@ -47,10 +47,10 @@ class RobotFiles:
         """Return an image file; a missing one is a warning."""
         key = f"texture {uri}"
         if key not in self._found:
-            found = Diagnostics()
-            path = self.resolver.resolve(uri, place.where, found, self.folder)
+            problems = Diagnostics()
+            path = self.resolver.resolve(uri, place.where, problems, self.folder)
             self._found[key] = path if path is None else path.absolute()
-            for problem in found:
+            for problem in problems:
                 message = f"texture: {problem.message}; the visual is drawn without the texture"
                 self.diagnostics.warning("SK-URI-006", message, place.where, problem.hint)
         return self._found[key]

@@ -85,20 +85,22 @@ def _transmission_end(element: Params, reduction: float) -> TransmissionEnd:
 
 
 def _reduction(element: Params, default: float) -> float:
-    found = _number(element, "mechanicalReduction", default)
-    if found == 0:
+    reduction = _number(element, "mechanicalReduction", default)
+    if reduction == 0:
         element.child_or_self("mechanicalReduction").error("SK-URDF-013", "<mechanicalReduction> cannot be 0")
         return default
-    return found
+    return reduction
 
 
 def _number(element: Params, name: str, default: float) -> float:
-    found = element.child(name)
-    if found is None:
+    number_element = element.child(name)
+    if number_element is None:
         return default
-    value = parse_number(extension_text(found))
+    value = parse_number(extension_text(number_element))
     if value is None or abs(value) == float("inf"):
-        report_substitute(found, f"<{name}> is {extension_text(found)!r}; expected a number", f"{default:g} is used")
+        report_substitute(
+            number_element, f"<{name}> is {extension_text(number_element)!r}; expected a number", f"{default:g} is used"
+        )
         return default
     return value
 

@@ -63,12 +63,12 @@ def report_unread(robot: Params, extensions: GazeboExtensions) -> None:
     _note_all("SK-URDF-011", "elements of other tools, without effect in simkit and in Gazebo", notes, robot)
 
 
-def _note_all(code: str, message: str, found: _Places, robot: Params) -> None:
+def _note_all(code: str, message: str, counted: _Places, robot: Params) -> None:
     """Record one note that lists the found names with lines; none if the list is empty."""
-    if found:
-        counts = {name: f", {len(places)} times" if len(places) > 1 else "" for name, places in found.items()}
-        listed = ", ".join(f"{name} (line {places[0].line}{counts[name]})" for name, places in found.items())
-        first = min((p for places in found.values() for p in places), key=lambda w: w.line or 0)
+    if counted:
+        counts = {name: f", {len(places)} times" if len(places) > 1 else "" for name, places in counted.items()}
+        listed = ", ".join(f"{name} (line {places[0].line}{counts[name]})" for name, places in counted.items())
+        first = min((p for places in counted.values() for p in places), key=lambda w: w.line or 0)
         robot.diagnostics.note(code, f"{message}: {listed}", first)
 
 
@@ -81,7 +81,7 @@ def _report_extensions(robot: Params, extensions: GazeboExtensions, warnings: _W
         if name and not kind:
             continue  # the reference to an unknown name is already reported
         place = kind or "model"
-        kept = []
+        children = []
         for child in block.children:
             if child.name in _SETTINGS_OF_GAZEBO:
                 settings[f"<{child.name}>"].append(child.where)
@@ -94,8 +94,8 @@ def _report_extensions(robot: Params, extensions: GazeboExtensions, warnings: _W
                 message = f"<gazebo> has no element <{child.name}>; it is ignored"
                 warnings[message, "SK-URDF-010", hint].append(child.where)
             else:
-                kept.append(child)
-        parts += [Params(place, "", {}, kept, block.where, robot.diagnostics)] if name else kept
+                children.append(child)
+        parts += [Params(place, "", {}, children, block.where, robot.diagnostics)] if name else children
     model = Params("model", "", {}, parts, robot.where, robot.diagnostics)
     for part in ("link", "joint"):
         model.all(part)

@@ -49,8 +49,8 @@ def _element(document: minidom.Document, params: Params) -> minidom.Element:
 
 def place_of(node: minidom.Element | None) -> Where:
     """Return file and line of an element."""
-    found = node.getUserData(_KEY) if node is not None else None
-    return found if isinstance(found, Where) else NOWHERE
+    place = node.getUserData(_KEY) if node is not None else None
+    return place if isinstance(place, Where) else NOWHERE
 
 
 def to_params(top: Any, diagnostics: Diagnostics) -> Params:

@@ -64,10 +64,12 @@ class _Expansion:
         self.given = {str(k): str(v) for k, v in arguments.items()}
         self.arguments: dict[str, str] = dict(self.given)
         self.declared: set[str] = set()
+        self.used: set[str] = set()  # arguments that a $(arg ...) has read, also without an <xacro:arg>
         self.expanded = self.copied = 0
         self.sizes: dict[int, int] = {}
         self.calls: list[tuple[str, Where]] = []
         self.folder = document.folder or resolver.base
+        self.has_left_out = False
 
     # ------------------------------------------------------------------ the run
 
@@ -117,7 +119,7 @@ class _Expansion:
 
     def _report_unknown_arguments(self) -> None:
         for name in self.given:
-            if name not in self.declared:
+            if name not in self.declared and name not in self.used:
                 known = ", ".join(sorted(self.declared)) or "none"
                 message = (
                     f"the file has no argument {name!r}, so its value does not change the robot; known are {known}"
@@ -145,12 +147,12 @@ class _Expansion:
     def _with_place(self, original: Callable[..., list[object]]) -> Callable[..., list[object]]:
         def call(tag: minidom.Element, *args: object) -> list[object]:
             self.where = place_of(tag) if place_of(tag) is not NOWHERE else self.where
-            found = original(tag, *args)
+            answer = original(tag, *args)
             if tag.tagName == "xacro:arg":
-                self.declared.add(str(found[0]))
+                self.declared.add(str(answer[0]))
             elif tag.tagName == "xacro:macro":
-                self._macros.add(str(found[0]))
-            return found
+                self._macros.add(str(answer[0]))
+            return answer
 
         return call
 
@@ -165,6 +167,8 @@ class _Expansion:
             if not node.tagName.startswith("xacro:"):
                 return False
             self._enter_element(node, _CALL)
+            if self._leave_out_call(node, macros, symbols):
+                return True
             if node.tagName != "xacro:call":
                 self._count_body(node.tagName[6:], macros, symbols)
             self.calls.append((node.tagName[6:], self.where))
@@ -194,6 +198,24 @@ class _Expansion:
         if self.copied > MAX_COPIED:
             raise BoundError(f"macros copy more than {MAX_COPIED} elements")
 
+    def _leave_out_call(self, node: minidom.Element, macros: Names, symbols: Names) -> bool:
+        """Remove the call of a macro that is unknown because a file was left out; return True if it was removed."""
+        name = node.tagName[6:]
+        if not self.has_left_out or name in _ELEMENT_NAMES:
+            return False
+        try:
+            self.engine.resolve_macro(name, macros, symbols)
+        except KeyError:
+            self._leave_out(f"<{node.tagName}> is left out: no macro has this name, and a file is left out")
+            if node.parentNode is not None:
+                node.parentNode.removeChild(node)
+            return True
+        return False
+
+    def _leave_out(self, message: str, hint: str = "") -> None:
+        self.has_left_out = True
+        self.diagnostics.warning("SK-XACRO-008", f"xacro: {message}", self.where, hint)
+
     def _report_message(self, args: tuple[object, ...]) -> None:
         """Record a message of the file, or of xacro about the file, as a warning."""
         self.diagnostics.warning("SK-XACRO-005", "xacro: " + " ".join(map(str, args)), self.where)
@@ -217,6 +239,10 @@ class _Expansion:
         try:
             path = self.files.find_file(filename, self._current_folder())
         except MissingError as error:
+            if self.files.resolver.missing_includes:
+                self.engine.filestack.append(filename)
+                self._leave_out(f"an included file is left out: {error}", error.hint)
+                return minidom.parseString("<robot/>")
             raise self.engine.XacroException(str(error), exc=_MissingFile(error)) from error
         self.engine.filestack.append(str(path))
         root = self.files.read_xml(path)
@@ -239,18 +265,18 @@ class _Expansion:
         results: list[Value] = []
         position = 0
         while position < len(text):
-            found = _TOKEN.match(text, position)
-            if found is None:
+            token = _TOKEN.match(text, position)
+            if token is None:
                 raise ExpansionError(f"invalid text: {text[position : position + 60]}")
-            position = found.end()
-            if found.lastgroup == "expression":
-                results.append(self._expression(found.group()[2:-1], symbols))
-            elif found.lastgroup == "command":
-                results.append(self._command(str(self._text(found.group()[2:-1], symbols)), symbols))
-            elif found.lastgroup == "escaped":
-                results.append(found.group()[1:])
+            position = token.end()
+            if token.lastgroup == "expression":
+                results.append(self._expression(token.group()[2:-1], symbols))
+            elif token.lastgroup == "command":
+                results.append(self._command(str(self._text(token.group()[2:-1], symbols)), symbols))
+            elif token.lastgroup == "escaped":
+                results.append(token.group()[1:])
             else:
-                results.append(found.group())
+                results.append(token.group())
         if len(results) == 1:
             return self.budget.value(results[0])
         self.budget.weigh(results)
@@ -302,6 +328,7 @@ class _Expansion:
         if name in ("dirname", "cwd") and not rest:
             return str(self._current_folder() if name == "dirname" else Path.cwd())
         if name == "eval" and rest:
+            self.used.update(known for known in self.arguments if re.search(rf"\b{re.escape(known)}\b", text))
             return Evaluator({**_literals(self.arguments), **self._global_names()}, self.budget).run(text[4:])
         known = ("find", "arg", "env", "optenv", "dirname", "cwd", "eval")
         raise ExpansionError(f"unknown substitution $({text}); known are {', '.join(known)}")
@@ -311,6 +338,7 @@ class _Expansion:
             known = ", ".join(sorted(self.arguments)) or "none"
             remedy = f"set it with --xacro-arg {name}=VALUE (Python: xacro_args)"
             raise ExpansionError(f"the argument {name!r} has no value (arguments with values: {known}); {remedy}")
+        self.used.add(name)
         return self.arguments[name]
 
     def _global_names(self) -> dict[str, Value]:
@@ -319,7 +347,7 @@ class _Expansion:
         space = self.engine.NameSpace
         python, mathematics = python_functions(evaluator), math_functions()
         spaces = {"python": space(), "math": space(), "xacro": space()}
-        own = {
+        functions = {
             "load_yaml": Function(self._yaml),
             "abs_filename": Function(lambda spec: str((self._current_folder() or Path.cwd()) / str(spec))),
             "dotify": Function(self.engine.YamlDictWrapper),
@@ -329,8 +357,8 @@ class _Expansion:
             "print_location": Function(lambda: ""),
         }
         for function_name in ("message", "warning", "error"):
-            own[function_name] = Function(self._print_message)
-        for name, table in (("python", python), ("math", mathematics), ("xacro", own)):
+            functions[function_name] = Function(self._print_message)
+        for name, table in (("python", python), ("math", mathematics), ("xacro", functions)):
             dict.update(spaces[name], table)
         direct = {name: python[name] for name in DIRECT_NAMES}
         commands = {
@@ -338,7 +366,7 @@ class _Expansion:
             "env": Function(lambda name: self._command(f"env {name}", None)),
             "optenv": Function(self._optional_variable),
         }
-        shared = {name: own[name] for name in ("load_yaml", "abs_filename", "dotify", "arg")}
+        shared = {name: functions[name] for name in ("load_yaml", "abs_filename", "dotify", "arg")}
         return {**mathematics, **direct, **shared, **commands, **spaces, "true": True, "false": False}
 
     def _optional_variable(self, name: object, default: Value = "") -> Value:
@@ -371,16 +399,16 @@ def _inner_error(error: BaseException) -> BaseException:
 
 def _table_names(symbols: object) -> set[str]:
     """Return the names in a table of xacro and in its parent tables."""
-    found: set[str] = set()
+    names: set[str] = set()
     while isinstance(symbols, dict):
-        found |= {str(k) for k in dict.keys(symbols)}
+        names |= {str(k) for k in dict.keys(symbols)}
         symbols = getattr(symbols, "parent", None)
-    return found
+    return names
 
 
 def _literals(arguments: Mapping[str, str]) -> dict[str, Value]:
     """Convert arguments to numbers and booleans if possible, for `$(eval ...)`."""
-    found: dict[str, Value] = {}
+    values: dict[str, Value] = {}
     for name, text in arguments.items():
         value: Value = text
         for read in (int, float):
@@ -389,8 +417,8 @@ def _literals(arguments: Mapping[str, str]) -> dict[str, Value]:
                 break
             except ValueError:
                 continue
-        found[name] = {"true": True, "false": False}.get(str(text).lower(), value)
-    return found
+        values[name] = {"true": True, "false": False}.get(str(text).lower(), value)
+    return values
 
 
 _ELEMENT_NAMES = ("include", "property", "macro", "arg", "if", "unless", "insert_block", "call", "element", "attribute")

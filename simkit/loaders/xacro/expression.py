@@ -199,13 +199,13 @@ class Evaluator:
         return {ast.List: list, ast.Tuple: tuple, ast.Set: set}[type(node)](values)
 
     def _dict(self, node: ast.Dict, local: Names) -> Value:
-        found: dict[Value, Value] = {}
+        items: dict[Value, Value] = {}
         for key, value in zip(node.keys, node.values, strict=True):
             if key is None:
-                found.update(self._visit(value, local))
+                items.update(self._visit(value, local))
             else:
-                found[self._visit(key, local)] = self._visit(value, local)
-        return found
+                items[self._visit(key, local)] = self._visit(value, local)
+        return items
 
     def _subscript(self, node: ast.Subscript, local: Names) -> Value:
         return self._visit(node.value, local)[self._visit(node.slice, local)]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 from simkit.diagnostics import Diagnostics, Where
 from simkit.input_file import FileTooLargeError, read_input
@@ -53,11 +52,11 @@ class FileAccess:
         Raises:
             MissingError: there is no such file.
         """
-        found = Diagnostics()
-        path = self.resolver.resolve(text, self._where(), found, folder)
+        problems = Diagnostics()
+        path = self.resolver.resolve(text, self._where(), problems, folder)
         if path is not None and path.is_file():
             return path
-        problem = next(iter(found), None)
+        problem = next(iter(problems), None)
         if path is not None:
             raise MissingError(f"{text} is a folder, not a file")
         raise MissingError(problem.message if problem else f"{text} is not found", problem.hint if problem else "")
@@ -87,11 +86,11 @@ class FileAccess:
         Raises:
             ExpansionError: the file cannot be read.
         """
-        found = Diagnostics()
-        document = parse_file(path, found)
-        self.diagnostics.extend(d for d in found if d.severity != "error")
+        problems = Diagnostics()
+        document = parse_file(path, problems)
+        self.diagnostics.extend(d for d in problems if d.severity != "error")
         if document is None:
-            problem = next((d for d in found if d.severity == "error"), None)
+            problem = next((d for d in problems if d.severity == "error"), None)
             line = "" if problem is None or problem.line is None else f":{problem.line}"
             raise ExpansionError(f"{path}{line}: {problem.message if problem else 'cannot be read'}")
         return document.root
@@ -102,9 +101,9 @@ class FileAccess:
         A robot that opens no file of the package can then still be loaded.
         """
         if name not in self._packages:
-            found, tried = self.resolver.find_package(name, folder)
-            self._packages[name] = f"package://{name}" if found is None else str(found)
-            if found is None:
+            package_place, tried = self.resolver.find_package(name, folder)
+            self._packages[name] = f"package://{name}" if package_place is None else str(package_place)
+            if package_place is None:
                 message = f"$(find {name}): the package is not found; package://{name} is used"
                 searched = self.resolver.format_searched_packages(tried)
                 hint = f"give its folder, --package-path {name}=DIR, or its workspace, --package-path DIR"
@@ -123,7 +122,7 @@ class FileAccess:
         class Reader(yaml.SafeLoader):
             """Separate class, so that the added constructors do not change `yaml.SafeLoader`."""
 
-        def with_unit(factor: float) -> Callable[[Any, Any], float]:
+        def with_unit(factor: float) -> Callable[[yaml.SafeLoader, yaml.ScalarNode], float]:
             return lambda loader, node: float(evaluate(str(loader.construct_scalar(node)))) * factor
 
         for tag, factor in _UNITS.items():

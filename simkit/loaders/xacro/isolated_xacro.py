@@ -11,6 +11,7 @@ import itertools
 import re
 import sys
 import threading
+from importlib.machinery import PathFinder
 from typing import Any
 from xml.dom import minidom
 
@@ -32,12 +33,12 @@ def import_private_xacro() -> XacroModule:
     Raises:
         ImportError: xacro (or PyYAML, which xacro needs) is not installed.
     """
-    found = importlib.util.find_spec("xacro")
-    if found is None or found.origin is None:
+    module_spec = PathFinder.find_spec("xacro")  # a program that runs now may have another module of that name
+    if module_spec is None or module_spec.origin is None:
         raise ImportError("xacro")
     name = f"_simkit_xacro_{next(_COUNT)}"
     spec = importlib.util.spec_from_file_location(
-        name, found.origin, submodule_search_locations=list(found.submodule_search_locations or ())
+        name, module_spec.origin, submodule_search_locations=list(module_spec.submodule_search_locations or ())
     )
     if spec is None or spec.loader is None:
         raise ImportError("xacro")

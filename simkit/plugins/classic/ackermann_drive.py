@@ -106,20 +106,22 @@ class GazeboRosAckermannDrive(CommandedDrive):
     def _measure(self, scene: SceneModel, wheels: list[SceneJoint], params: Params) -> None:
         """Measure the radius of the rear wheels, the track width and the wheel base."""
         links = {link.scoped: link for link in scene.all_links()}
-        found = [links[joint.child_link] for joint in wheels]
-        bare = [link.name for link in found if not link.collisions]
+        wheel_links = [links[joint.child_link] for joint in wheels]
+        bare = [link.name for link in wheel_links if not link.collisions]
         if bare:
             names = ", ".join(map(repr, bare))
             params.error("SK-PLUGIN-093", f"the drive cannot measure its wheels: no collision in {names}")
             return
-        shape = found[3].collisions[0].geometry
+        shape = wheel_links[3].collisions[0].geometry
         if not isinstance(shape, (Cylinder, Sphere)):
             kind = type(shape).__name__.lower()
-            message = f"the drive needs the radius of its wheels, but the collision of {found[3].name!r} is a {kind}"
+            message = (
+                f"the drive needs the radius of its wheels, but the collision of {wheel_links[3].name!r} is a {kind}"
+            )
             params.error("SK-PLUGIN-093", f"{message}; expected a cylinder or a sphere")
             return
         self._radius = shape.radius
-        front_left, front_right, rear_left, rear_right = (_centre(link) for link in found)
+        front_left, front_right, rear_left, rear_right = (_centre(link) for link in wheel_links)
         self._width = math.dist(front_left, front_right)
         middles = [
             [(a + b) / 2 for a, b in zip(*pair, strict=True)]
@@ -137,8 +139,8 @@ class GazeboRosAckermannDrive(CommandedDrive):
         name = self.options.steering_wheel_joint
         if not any(name in (joint.name, joint.scoped) for joint in scene.all_joints()):
             if params.has("steering_wheel_joint"):
-                found = f"model {scene.name!r} has no joint {name!r}; the car drives without a steering wheel"
-                params.block("steering_wheel_joint").warning("SK-PLUGIN-124", found, "remove <steering_wheel_joint>")
+                message = f"model {scene.name!r} has no joint {name!r}; the car drives without a steering wheel"
+                params.block("steering_wheel_joint").warning("SK-PLUGIN-124", message, "remove <steering_wheel_joint>")
             return None
         joint = find_drive_joint(scene, name, "steering wheel", params)
         if joint is None:

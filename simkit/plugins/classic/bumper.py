@@ -34,7 +34,7 @@ class GazeboRosBumper(SensorPlugin):
 
     def load(self, parent: Contact, params: Params) -> None:
         topic = self.ros.topic(self.options.bumper_topic_name or "bumper_states")
-        frame = self.options.frame_name or self.options.frame_name_ros_1 or "world"
+        frame = self.options.frame_name or "world"
         _ = self.options.always_on
         if not hasattr(parent, "publish_states"):
             self.refuse(parent, "contact")

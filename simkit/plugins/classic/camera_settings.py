@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import TYPE_CHECKING, ClassVar, Final
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from simkit.plugins.options import Options, OptionsOf, boolean, number, text, wi
 
 if TYPE_CHECKING:
     from simkit.sensors.cameras.camera_model import CameraModel
+    from simkit.sensors.cameras.distortion_model import Distortion
     from simkit.sensors.cameras.rendered_camera import RenderedCamera
 
 EMPTY: Final = ("std_msgs/msg/Empty", "std_msgs/msg/Bool")
@@ -41,8 +42,7 @@ _LITTLE = 1e-3  # tolerance, relative for a focal length, absolute for a distort
 class CameraOptions(SensorFrameOptions):
     """Options of every camera plugin: in the spelling of ROS 2, and in camelCase of ROS 1."""
 
-    camera_name: str = text()
-    camera_name_ros_1: str = text(element="cameraName")
+    camera_name: str = text(ros_1="cameraName")
     image_topic_name: str = text("image_raw", element="imageTopicName")
     camera_info_topic_name: str = text("camera_info", element="cameraInfoTopicName")
     hack_baseline_ros_1: float = number(0.0, "m", element="hackBaseline")
@@ -90,7 +90,7 @@ class CameraNames:
         if is_ros_1 is None:
             is_ros_1 = not params.has("ros") and any(params.has(name) for name in _OF_ROS_1)
         self.is_ros_1 = is_ros_1
-        self.camera = options.camera_name or options.camera_name_ros_1 or ("" if is_ros_1 else sensor.name)
+        self.camera = options.camera_name or ("" if is_ros_1 else sensor.name)
         self.image = options.image_topic_name
         self.info = options.camera_info_topic_name
 
@@ -144,19 +144,18 @@ def override_intrinsics(plugin: CameraPlugin, sensor: RenderedCamera, *, is_ros_
     else:
         names = ("focal_length", "cx", "cy")
         focal, cx, cy = options.focal_length, options.cx, options.cy
-    lens = _read_distortion(options) if is_ros_1 else {}
     is_off = bool(plugin.sim.world.gazebo_quirks)
 
     def change(model: CameraModel) -> CameraModel:
-        own = model.info_model or model
-        middle = ((own.width + 1) / 2, (own.height + 1) / 2) if is_off else (own.cx, own.cy)
+        intrinsics = model.info_model or model
+        middle = ((intrinsics.width + 1) / 2, (intrinsics.height + 1) / 2) if is_off else (intrinsics.cx, intrinsics.cy)
         return replace(
-            own,
-            fx=focal or own.fx,
-            fy=focal or own.fy,
+            intrinsics,
+            fx=focal or intrinsics.fx,
+            fy=focal or intrinsics.fy,
             cx=cx or middle[0],
             cy=cy or middle[1],
-            distortion=replace(own.distortion, **lens),
+            distortion=_read_distortion(options, intrinsics.distortion) if is_ros_1 else intrinsics.distortion,
         )
 
     drawn = sensor.options.model
@@ -166,27 +165,22 @@ def override_intrinsics(plugin: CameraPlugin, sensor: RenderedCamera, *, is_ros_
     _report_difference(params, drawn, published, names)
 
 
-def _read_distortion(options: CameraOptions) -> dict[str, Any]:
-    """Return the distortion that a ROS 1 file sets; empty if it is zero, or with `<autoDistortion>`."""
-    found = {
-        "k1": options.distortion_k1,
-        "k2": options.distortion_k2,
-        "k3": options.distortion_k3,
-        "p1": options.distortion_t1,
-        "p2": options.distortion_t2,
-    }
-    if options.auto_distortion or max(map(abs, found.values())) < _LITTLE:
-        return {}
-    return found
+def _read_distortion(options: CameraOptions, drawn: Distortion) -> Distortion:
+    """Return the distortion that a ROS 1 file sets; that of the picture if it is zero, or with `<autoDistortion>`."""
+    radial = options.distortion_k1, options.distortion_k2, options.distortion_k3
+    k1, k2, k3, p1, p2 = (*radial, options.distortion_t1, options.distortion_t2)
+    if options.auto_distortion or max(map(abs, (k1, k2, k3, p1, p2))) < _LITTLE:
+        return drawn
+    return replace(drawn, k1=k1, k2=k2, k3=k3, p1=p1, p2=p2)
 
 
 def _report_difference(params: Params, drawn: CameraModel, published: CameraModel, names: Sequence[str]) -> None:
     off = []
     if abs(published.fx - drawn.fx) > _LITTLE * drawn.fx:
         off.append(f"<{names[0]}>{published.fx:g} instead of {drawn.fx:g}")
-    for name, value, own in ((names[1], published.cx, drawn.cx), (names[2], published.cy, drawn.cy)):
-        if abs(value - own) > _FEW_PIXELS:
-            off.append(f"<{name}>{value:g} instead of {own:g}")
+    for name, value, drawn_value in ((names[1], published.cx, drawn.cx), (names[2], published.cy, drawn.cy)):
+        if abs(value - drawn_value) > _FEW_PIXELS:
+            off.append(f"<{name}>{value:g} instead of {drawn_value:g}")
     if np.abs(published.coefficients - drawn.coefficients).max(initial=0.0) > _LITTLE:
         off.append("a distortion that the picture does not have")
     if off:
@@ -197,14 +191,14 @@ def _report_difference(params: Params, drawn: CameraModel, published: CameraMode
 def read_depths(options: Options, near: str, far: str) -> tuple[float, float]:
     """Return the nearest and the farthest depth [m] from the named fields; the far depth must exceed the near depth."""
     fields = type(options).fields()
-    found: float = getattr(options, near)
+    first: float = getattr(options, near)
     last: float = getattr(options, far)
-    if last <= found:
+    if last <= first:
         elements = f"<{fields[far].element}> beyond <{fields[near].element}>"
-        options.params.error("SK-PARAM-002", f"found depths from {found:g} to {last:g} m; expected a {elements}")
+        options.params.error("SK-PARAM-002", f"found depths from {first:g} to {last:g} m; expected a {elements}")
         default_near = float(fields[near].default)
         return default_near, max(float(fields[far].default), 2 * default_near)
-    return found, last if last <= FARTHEST else math.inf
+    return first, last if last <= FARTHEST else math.inf
 
 
 def report_without_effect(plugin: Plugin, names: dict[str, str]) -> None:

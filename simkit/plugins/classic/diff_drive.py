@@ -9,23 +9,29 @@ its forward speed is negative when the robot drives backwards.
 from __future__ import annotations
 
 import abc
+import copy
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
+import numpy as np
+
+from simkit.elementary_functions import arithmetic_of
 from simkit.params import Params
 from simkit.plugins.classic.commanded_drive import CommandedDrive
 from simkit.plugins.drives.drive_outputs import DriveOutputOptions, DriveOutputs
+from simkit.plugins.drives.drive_rule import DifferentialDriveRule, DriveWheel
 from simkit.plugins.drives.odometry import (
     COMMAND_TYPES,
-    BodyTwist,
     DeadReckoning,
+    OdometryRows,
     planar_pose,
+    rim_speeds,
     rolling_twist,
-    wheel_angles,
+    wheel_motion,
 )
-from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, odometry_message
+from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, BodyTwist, odometry_message
 from simkit.plugins.drives.odometry_noise import (
     EquivalentWheelAngles,
     NoisyOdometry,
@@ -50,10 +56,13 @@ from simkit.plugins.options import (
 )
 from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import Pose, Vector
+from simkit.runtime.array_rules import CannotBatchError, Ids, Ticks, TopicRule, is_due, next_due
+from simkit.runtime.handles.joint import wheel_angles
 
 if TYPE_CHECKING:
     from simkit.compiler import ActuatorRef, SpecBuilder
     from simkit.runtime import Model
+    from simkit.runtime.state_arrays import StateArrays
     from simkit.scene import SceneModel
 
 _ROS_1 = ("robotNamespace", "leftJoint", "rightJoint", "wheelSeparation", "wheelDiameter", "commandTopic", "updateRate")
@@ -235,20 +244,20 @@ class GazeboRosDiffDrive(CommandedDrive):
         """Move each wheel's rim speed towards its target, by at most the acceleration limit."""
         (forward, turn), elapsed = self._command, self._elapsed()
         for index, pair in enumerate(self.options.pairs):
-            for side, sign in ((0, -1.0), (1, 1.0)):
+            for side, target in enumerate(rim_speeds(forward, turn, pair.separation)):
                 wheel = 2 * index + side
-                target = forward + sign * turn * pair.separation / 2
                 speed = self._ramped(self._rims[wheel], target, elapsed)
                 if speed != self._rims[wheel]:
                     self._rims[wheel] = speed
                     self.sim.engine.set_control(self._servos[wheel], speed / pair.radius)
 
-    def _ramped(self, speed: float, target: float, elapsed: float) -> float:
+    def _ramped(self, speed: Any, target: Any, elapsed: Any) -> Any:
+        """Return the next rim speed towards a target [m/s]; each number may be an array."""
         limit = self.options.max_wheel_acceleration
-        if limit == 0 or abs(target - speed) < _CLOSE:
+        if limit == 0:
             return target
-        step = limit * elapsed
-        return speed + max(-step, min(step, target - speed))
+        of, step, missing = arithmetic_of(target), limit * elapsed, target - speed
+        return of.where(abs(missing) < _CLOSE, target, speed + of.maximum(-step, of.minimum(step, missing)))
 
     # ------------------------------------------------------------------ readings
 
@@ -311,13 +320,77 @@ class GazeboRosDiffDrive(CommandedDrive):
     def _advance(self) -> None:
         pair = self.options.pairs[0]
         angles = self._first_angles()
-        left, right = ((new - old) * pair.radius for new, old in zip(angles, self._angles, strict=True))
+        self._reckoning.go(*wheel_motion(self._angles, angles, pair.radius, pair.separation))
         self._angles = angles
-        self._reckoning.advance(left, right, pair.separation)
 
     def _first_angles(self) -> tuple[float, float]:
         left, right = self._wheels[:2]
         return wheel_angles(left, right)
+
+    def array_rule(self) -> GazeboRosDiffDriveRule:
+        return GazeboRosDiffDriveRule(self)
+
+
+class GazeboRosDiffDriveRule(DifferentialDriveRule):
+    """Drive of Gazebo Classic in n simulations, with any number of pairs of wheels."""
+
+    def __init__(self, plugin: GazeboRosDiffDrive) -> None:
+        pairs = [(side, pair) for pair in plugin.options.pairs for side in (0, 1)]
+        wheels = [
+            DriveWheel(joint, servo, side, pair.separation, pair.radius)
+            for joint, servo, (side, pair) in zip(plugin._wheels, plugin._servos, pairs, strict=True)
+        ]
+        super().__init__(plugin, plugin.command_topic, wheels)
+        self._drive = plugin
+
+    def bind(self, states: StateArrays) -> None:
+        super().bind(states)
+        pair = self._drive.options.pairs[0]
+        self._rim_speeds = np.zeros((states.count, len(self._drive._wheels)))
+        self._last_ns = np.zeros(states.count)
+        self.odometry = OdometryRows(states.count, pair.radius, pair.separation)
+
+    def take(self, row: int, tick: int) -> None:
+        drive = self._drive
+        self.target[row], self._last_ns[row], self._rim_speeds[row] = drive._command, drive._last_ns, drive._rims
+        self.odometry.angles[row], self.odometry.reckonings[row] = drive._angles, copy.copy(drive._reckoning)
+        if drive._erring is not None:
+            self.take_noise(row, drive._erring, drive._last_read_ns)
+
+    def next_stop(self, ids: Ids, tick: int) -> int:
+        return next_due(self.grid, tick)
+
+    def before_step(self, ids: Ids, ticks: Ticks) -> None:
+        """Move each wheel's rim speed towards its target, by at most the acceleration limit."""
+        if not is_due(self.grid, int(ticks[0])):
+            return
+        now = np.array([self._clock.time_ns(tick) for tick in ticks.tolist()], float)
+        elapsed = (now - self._last_ns[ids]) * 1e-9
+        self._last_ns[ids] = now
+        before = self._rim_speeds[ids]
+        speeds = self._drive._ramped(before, self.rims(self.target[ids]), elapsed[:, None])
+        self._rim_speeds[ids] = speeds
+        self.turn_wheels(ids, speeds, speeds != before)
+
+    def after_step(self, ids: Ids, ticks: Ticks) -> None:
+        if not self.observes_wheels or not is_due(self.grid, int(ticks[0])):
+            return
+        if self.has_noise:
+            self.advance_noise(ids, ticks)
+            return
+        self.odometry.roll(ids, self.wheel_angles(ids))
+        speeds = self.wheel_velocities(ids)
+        self.odometry.store(ids, np.zeros_like(speeds), speeds, 1.0)
+
+    def reading(self, topic: str) -> TopicRule | None:
+        drive = self._drive
+        if topic and topic == drive._outputs.odometry_topic:
+            if drive._followed is not None:
+                raise CannotBatchError(f"topic {topic}: ground truth with <odometry_noise>")
+            return self.wheel_odometry() if drive.options.from_encoders else self.true_odometry(drive._true)
+        if drive._truth is not None and topic == drive._truth.topic:
+            return self.true_odometry(drive._true)
+        return None
 
 
 class SkidSteerOptions(CommonDiffDriveOptions):
@@ -365,3 +438,6 @@ class GazeboRosSkidSteerDrive(GazeboRosDiffDrive):
 
     def read(self, params: Params) -> CommonDiffDriveOptions:
         return SkidSteerOptions(params).read_all()
+
+    def array_rule(self) -> GazeboRosDiffDriveRule:
+        return GazeboRosDiffDriveRule(self)

@@ -74,12 +74,12 @@ class ElevatorPlugin(ModelPlugin):
         self._height = self.options.floor_height
         if not params.has("floor_height"):
             params.warning("SK-PLUGIN-137", f"plugin {self.name!r} has no <floor_height>: floors are 3 m apart")
-        found = [self._joint(scene, params, element) for element in ("lift_joint", "door_joint")]
-        self._joints = [joint.scoped for joint in found if joint is not None]
+        joints = [self._joint(scene, params, element) for element in ("lift_joint", "door_joint")]
+        self._joints = [joint.scoped for joint in joints if joint is not None]
         strengths = (_LIFT, _DOOR)
         self._servos = [
             builder.add_position_servo(joint.scoped, max_effort=float("inf"), owner=self.name, kp=p, kv=d)
-            for joint, (p, d) in zip(found, strengths, strict=True)
+            for joint, (p, d) in zip(joints, strengths, strict=True)
             if joint is not None
         ]
 
@@ -97,19 +97,19 @@ class ElevatorPlugin(ModelPlugin):
 
     def open_topic(self, params: Params) -> None:
         """Subscribe to the commands."""
-        own = f"/gazebo/{self.sim.world.name}"
+        prefix = f"/gazebo/{self.sim.world.name}"
         topic = self.options.topic
-        found = read_topic(params, "topic", f"{own}/elevator")
-        self.listen(valid_topic(f"{own}/{topic[2:]}") if topic.startswith("~/") else found, STRING, self._on_floor)
+        default = read_topic(params, "topic", f"{prefix}/elevator")
+        self.listen(valid_topic(f"{prefix}/{topic[2:]}") if topic.startswith("~/") else default, STRING, self._on_floor)
 
     # ------------------------------------------------------------------ commands
 
     def _on_floor(self, message: String) -> None:
-        found = _FLOOR.match(message.data)
-        if found is None or len(found[0]) > 9:
+        match = _FLOOR.match(message.data)
+        if match is None or len(match[0]) > 9:
             self._once.left_out("text", f"{message.data[:40]!r} is not a floor number; the command is ignored")
             return
-        floor = int(found[0])
+        floor = int(match[0])
         if self._bottom is not None and floor < self._bottom:
             self._beyond(floor, f"the lowest floor is {self._bottom}")
         elif self._top is not None and floor > self._top:

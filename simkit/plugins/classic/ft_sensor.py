@@ -15,7 +15,6 @@ from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import publishes
 from simkit.plugins.find_entities import find_joint, find_link, find_named_link
 from simkit.plugins.options import Options, OptionsOf, number, text, without_effect
-from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import Vector
 from simkit.runtime.handles.joint_mechanics import transmitted_wrench
 
@@ -31,15 +30,14 @@ _BODY = int(mujoco.mjtObj.mjOBJ_BODY)
 class GazeboRosFtSensorOptions(Options):
     """Options of `GazeboRosFtSensor`."""
 
-    joint_name_ros_1: str = text(element="jointName", required=True)
+    ros_1_marks = ("jointName", "topicName", "updateRate")
+
+    joint_name: str = text(required=True, ros_1="jointName")
     topic_name: str = text(element="topicName", required=True)
-    update_rate_ros_1: float = number(0.0, "Hz", element="updateRate", minimum=0.0)
-    update_rate: float = number(0.0, "Hz", minimum=0.0)
-    gaussian_noise_ros_1: float = number(0.0, element="gaussianNoise", minimum=0.0, maximum=1e100)
-    gaussian_noise: float = number(0.0, minimum=0.0, maximum=1e100)
+    update_rate: float = number(0.0, "Hz", minimum=0.0, ros_1="updateRate")
+    gaussian_noise: float = number(0.0, minimum=0.0, maximum=LARGEST, ros_1="gaussianNoise")
     body_name: str = text()
     frame_name: str = text("world")
-    joint_name: str = text(required=True)
 
 
 class GazeboRosFtSensor(ModelPlugin):
@@ -62,21 +60,18 @@ class GazeboRosFtSensor(ModelPlugin):
     reads_contacts: ClassVar[bool] = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        is_old = is_ros_1(params, ("jointName", "topicName", "updateRate"))
-        joint_name, rate, noise = ("joint_name", "update_rate", "gaussian_noise")
-        if is_old:
-            joint_name, rate, noise = ("jointName", "updateRate", "gaussianNoise")
-        self._topic = self.options.topic_name if is_old else "wrench"
-        self.after_step_rate = params.number(rate, 0.0, minimum=0)
-        self._deviation = params.number(noise, 0.0, minimum=0, maximum=LARGEST)
+        options = self.options
+        self._topic = options.topic_name if options.is_ros_1 else "wrench"
+        self.after_step_rate = options.update_rate
+        self._deviation = options.gaussian_noise
         self._joint = self._link = ""
-        body = "" if is_old else self.options.body_name
+        body = "" if options.is_ros_1 else options.body_name
         if body:
             link = find_link(scene, body, params)
             self._link = link.scoped if link is not None else ""
-            self._frame = self.options.frame_name
+            self._frame = options.frame_name
             return
-        name = params.text(joint_name, required=True)
+        name = options.joint_name
         if not name:
             return
         joint = find_joint(scene, name, params)

@@ -86,8 +86,8 @@ class GraspFix(ModelPlugin):
         palm = find_link(scene, palm_name, inner.block("palm_link")) if palm_name else None
         self._palm = "" if palm is None else palm.scoped
         _ = links.gripper_links
-        found = [find_link(scene, named.value, named) for named in inner.all("gripper_link")]
-        self._fingers = tuple(link.scoped for link in found if link is not None)
+        gripper_links = [find_link(scene, named.value, named) for named in inner.all("gripper_link")]
+        self._fingers = tuple(link.scoped for link in gripper_links if link is not None)
         self._model = scene.scoped.split("::")[0]
         self._most = options.max_grip_count
         has_threshold = params.has("grip_count_threshold")
@@ -116,10 +116,12 @@ class GraspFix(ModelPlugin):
         for name in [name for name in self._counts if name not in gripped]:
             self._counts[name] = max(self._counts[name] - 1, 0)
         self._counts = {name: count for name, count in self._counts.items() if count > 0 or name == self._held}
-        held = self._held
-        if held is not None:
-            is_gone = held not in self.sim.engine.names.links
-            if is_gone or (held not in gripped and self._counts[held] <= self._threshold and self._has_opened(held)):
+        held_link = self._held
+        if held_link is not None:
+            is_gone = held_link not in self.sim.engine.names.links
+            if is_gone or (
+                held_link not in gripped and self._counts[held_link] <= self._threshold and self._has_opened(held_link)
+            ):
                 self._release()
             return
         for name in gripped:
@@ -150,12 +152,12 @@ class GraspFix(ModelPlugin):
 
     def _is_gripped(self, forces: list[Vector]) -> bool:
         """Check whether two of the forces [N] are opposite and of similar length."""
-        for i, one in enumerate(forces):
+        for i, force in enumerate(forces):
             for other in forces[i + 1 :]:
-                a, b = norm(one), norm(other)
+                a, b = norm(force), norm(other)
                 if min(a, b) <= 0 or min(a, b) < _LEAST_RATIO * max(a, b):
                     continue
-                if math.acos(max(-1.0, min(1.0, float(matmul(one, other)) / (a * b)))) > self._angle:
+                if math.acos(max(-1.0, min(1.0, float(matmul(force, other)) / (a * b)))) > self._angle:
                     return True
         return False
 

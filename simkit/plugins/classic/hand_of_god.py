@@ -15,7 +15,6 @@ from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.drives.odometry_messages import TRANSFORMS, transforms
 from simkit.plugins.find_entities import find_named_link
 from simkit.plugins.options import Options, OptionsOf, number, text
-from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import IDENTITY, Pose
 
 if TYPE_CHECKING:
@@ -31,10 +30,10 @@ _FARTHEST: Final = 1e9  # [m]
 class GazeboRosHandOfGodOptions(Options):
     """Options of `GazeboRosHandOfGod`."""
 
-    link_name_ros_1: str = text(element="linkName", required=True)
-    frame_id_ros_1: str = text("world", element="frameId")
-    link_name: str = text(required=True)
-    frame_id: str = text("world")
+    ros_1_marks = ("linkName", "frameId")
+
+    link_name: str = text(required=True, ros_1="linkName")
+    frame_id: str = text("world", ros_1="frameId")
     kl: float = number(200.0, minimum=0.0, maximum=1000000000.0)
     ka: float = number(200.0, minimum=0.0, maximum=1000000000.0)
 
@@ -55,9 +54,8 @@ class GazeboRosHandOfGod(ModelPlugin):
     drives = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        old = is_ros_1(params, ("linkName", "frameId"))
-        self._scoped = find_named_link(scene, "linkName" if old else "link_name", params)
-        self._frame = self.options.frame_id_ros_1 if old else self.options.frame_id
+        self._scoped = find_named_link(scene, self.options.element_of("link_name"), params)
+        self._frame = self.options.frame_id
         self._stiffness = np.array([self.options.kl, self.options.ka])
         link = next((candidate for candidate in scene.all_links() if candidate.scoped == self._scoped), None)
         self._mass, self._inertia = (1.0, 1.0) if link is None else (link.inertial.mass, link.inertial.inertia[0])
@@ -85,12 +83,12 @@ class GazeboRosHandOfGod(ModelPlugin):
         self.sim.engine.wrenches.set(self, lift, are_applied=are_applied)
 
     def _on_transforms(self, message: TFMessage) -> None:
-        own = f"{self._frame}_actual"
+        model_frame = f"{self._frame}_actual"
         for transform in message.transforms:
             child = transform.child_frame_id.lstrip("/")
             t, q = transform.transform.translation, transform.transform.rotation
             position, turn = (t.x, t.y, t.z), (q.w, q.x, q.y, q.z)
-            if child == own:
+            if child == model_frame:
                 continue
             if not all(abs(number) <= _FARTHEST for number in position) or not 1e-6 <= math.hypot(*turn) <= 1e6:
                 self._once.left_out(child, f"frame {child!r} is ignored: its transform is not a valid pose")

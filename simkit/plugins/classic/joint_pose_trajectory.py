@@ -80,7 +80,7 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
             return
         model = self._model if link is None else self.sim.model(link.scoped.rsplit("::", 1)[0])
         names = tuple(str(name) for name in message.joint_names)
-        known = model._below("joints")
+        known = model.below("joints")
         unknown = [name for name in names if name not in known]
         if unknown:
             problem = f"a trajectory is ignored: model {model.scoped!r} has no joint {unknown[0]!r}"
@@ -101,13 +101,13 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
         if frame in _WORLD:
             return None
         links: dict[str, Link] = self.sim.contents.handles.tables["link"]
-        own = f"{self.scoped}::{frame}"
-        found = links.get(own) or links.get(frame)
-        found = found or next((link for scoped, link in links.items() if scoped.endswith("::" + frame)), None)
-        if found is None:
+        scoped_frame = f"{self.scoped}::{frame}"
+        reference = links.get(scoped_frame) or links.get(frame)
+        reference = reference or next((link for scoped, link in links.items() if scoped.endswith("::" + frame)), None)
+        if reference is None:
             problem = f"a trajectory is ignored: its frame_id {frame!r} is not 'world', 'map' or a link"
             self._once.left_out(f"frame {frame}", problem, suggest_names(frame, list(links)))
-        return found
+        return reference
 
     def before_step(self) -> None:
         if self._index >= len(self._points):

@@ -11,13 +11,11 @@ from simkit.diagnostics import did_you_mean
 from simkit.linear_algebra import norm
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.drives.odometry import BodyTwist
-from simkit.plugins.drives.odometry_messages import ODOMETRY, odometry_message
+from simkit.plugins.drives.odometry_messages import ODOMETRY, BodyTwist, odometry_message
 from simkit.plugins.endpoints import publishes
 from simkit.plugins.find_entities import find_named_link
 from simkit.plugins.options import Options, OptionsOf, number, text, vector3, without_effect
 from simkit.plugins.publish_on_demand import count_instants, publish_while_subscribed
-from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate
 
 if TYPE_CHECKING:
@@ -25,30 +23,24 @@ if TYPE_CHECKING:
     from simkit.runtime import Model
     from simkit.scene import SceneModel
 
-_ROS_1 = ("robotNamespace", "bodyName", "topicName", "frameName", "gaussianNoise", "updateRate")
 _INERTIAL = {"world", "map"}
 
 
 class GazeboRosP3DOptions(Options):
     """Options of `GazeboRosP3D`."""
 
-    body_name_ros_1: str = text(element="bodyName", required=True)
+    ros_1_marks = ("robotNamespace", "bodyName", "topicName", "frameName", "gaussianNoise", "updateRate")
+
+    body_name: str = text(required=True, ros_1="bodyName")
     topic_name: str = text(element="topicName", required=True)
-    frame_name_ros_1: str = text("world", element="frameName")
-    gaussian_noise_ros_1: float = number(0.0, element="gaussianNoise", minimum=0.0, maximum=1e100)
-    update_rate_ros_1: float = number(0.0, "Hz", element="updateRate", minimum=0.0)
-    frame_name: str = text("world")
-    always_on_ros_1: bool = without_effect(element="alwaysOn")
-    always_on: bool = without_effect()
-    gaussian_noise: float = number(0.0, minimum=0.0, maximum=1e100)
-    update_rate: float = number(0.0, "Hz", minimum=0.0)
-    xyz_offset_ros_1: tuple[float, float, float] = vector3(unit="m", element="xyzOffset")
-    xyz_offsets: tuple[float, float, float] = vector3(unit="m")
-    xyz_offset: tuple[float, float, float] = vector3(unit="m", instead="xyz_offsets")
-    rpy_offset_ros_1: tuple[float, float, float] = vector3(unit="rad", element="rpyOffset")
-    rpy_offsets: tuple[float, float, float] = vector3(unit="rad")
-    rpy_offset: tuple[float, float, float] = vector3(unit="rad", instead="rpy_offsets")
-    body_name: str = text(required=True)
+    frame_name: str = text("world", ros_1="frameName")
+    always_on: bool = without_effect(ros_1="alwaysOn")
+    gaussian_noise: float = number(0.0, minimum=0.0, maximum=1e100, ros_1="gaussianNoise")
+    update_rate: float = number(0.0, "Hz", minimum=0.0, ros_1="updateRate")
+    xyz_offsets: tuple[float, float, float] = vector3(unit="m", ros_1="xyzOffset")
+    xyz_offset: tuple[float, float, float] = vector3(unit="m", instead="xyz_offsets", ros_1="xyzOffset")
+    rpy_offsets: tuple[float, float, float] = vector3(unit="rad", ros_1="rpyOffset")
+    rpy_offset: tuple[float, float, float] = vector3(unit="rad", instead="rpy_offsets", ros_1="rpyOffset")
 
 
 class GazeboRosP3D(ModelPlugin):
@@ -71,24 +63,15 @@ class GazeboRosP3D(ModelPlugin):
     only_publishes = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        is_old = is_ros_1(params, _ROS_1)
         options = self.options
-        if is_old:
-            body, frame = "bodyName", options.frame_name_ros_1
-            self._topic = options.topic_name
-            _ = options.always_on_ros_1
-            self._deviation, self._rate = options.gaussian_noise_ros_1, options.update_rate_ros_1
-            shift, turn = options.xyz_offset_ros_1, options.rpy_offset_ros_1
-        else:
-            body, frame = "body_name", options.frame_name
-            self._topic = "odom"
-            _ = options.always_on
-            self._deviation, self._rate = options.gaussian_noise, options.update_rate
-            shift, turn = options.xyz_offset, options.rpy_offset
-        self._shift, self._turn = np.array(shift), quat_from_rpy(*turn)
+        self._frame = options.frame_name.strip("/")
+        self._topic = options.topic_name if options.is_ros_1 else "odom"
+        _ = options.always_on
+        self._deviation, self._rate = options.gaussian_noise, options.update_rate
+        self._shift, self._turn = np.array(options.xyz_offset), quat_from_rpy(*options.rpy_offset)
         self._is_shifted = bool(self._shift.any()) or self._turn.tolist() != [1.0, 0.0, 0.0, 0.0]
-        self._body = find_named_link(scene, body, params)
-        self._frame, self._reference = frame.strip("/"), self._find_reference(scene, frame.strip("/"), params)
+        self._body = find_named_link(scene, options.element_of("body_name"), params)
+        self._reference = self._find_reference(scene, self._frame, params)
 
     def _find_reference(self, scene: SceneModel, frame: str, params: Params) -> str:
         """Return the scoped name of the link whose frame the poses use; empty for the world."""
@@ -120,7 +103,7 @@ class GazeboRosP3D(ModelPlugin):
     def _reading(self) -> tuple[Pose, Vector]:
         """Return the pose with its offset, and the twist (linear, angular), both in the axes of `<frame_name>`."""
         link, base = self._link, self._base
-        pose, velocity = link.pose, link._velocity()
+        pose, velocity = link.pose, link.spatial_velocity()
         linear, angular = velocity[3:], velocity[:3]
         if base is not None:
             frame, turning = base.pose, base.angular_velocity

@@ -10,8 +10,8 @@ import numpy as np
 from simkit.params import Params
 from simkit.plugins.drives.drive_outputs import DriveOutputOptions, DriveOutputs
 from simkit.plugins.drives.kinematic_motion import KinematicMotion, KinematicMover, KinematicPlugin, VelocityTarget
-from simkit.plugins.drives.odometry import COMMAND_TYPES, BodyTwist, TrueMotion, planar_covariance
-from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS
+from simkit.plugins.drives.odometry import COMMAND_TYPES, TrueMotion, planar_covariance
+from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, BodyTwist
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.one_time_warnings import are_usable
 from simkit.plugins.options import boolean, number, text

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
     from simkit.scene import ScenePlugin, SceneWorld
 
-Handler = Callable[[Any], Any]
+Handler = Callable[["msgs.Message"], Any]
 """Function from a request to a response, each of the service's type."""
 
 Table = Mapping[str, tuple[str, Handler]]
@@ -48,9 +48,9 @@ class ClassicServices(WorldPlugin):
 
     They spawn, delete and list models, pause and reset the world, and apply wrenches and efforts; `gazebo.launch.py` of
     ROS 2 loads them into every server. Classic offers the services for states and properties only with a plugin in the
-    world. simkit always offers them, because they cost nothing. A world with plugins in ROS 1's spelling (camelCase) or
-    with `libgazebo_ros_api_plugin.so` also has ROS 1's services, under `/gazebo`. `docs/services.md` describes the
-    requests and effects of all services.
+    world. simkit always offers them, because they cost nothing. ROS 1's services, under `/gazebo`, always answer, too,
+    but only a world with plugins in ROS 1's spelling (camelCase) or with `libgazebo_ros_api_plugin.so` lists them.
+    `docs/services.md` describes the requests and effects of all services.
     """
 
     on_error = "stop"
@@ -65,10 +65,10 @@ class ClassicServices(WorldPlugin):
         tables = [_server_services(sim), _wrench_services(self), state_services(sim), property_services(sim)]
         offer_table("", sim, *tables)
         _broadcast_states("", sim)
-        if self._is_ros_1:
-            offer_table("/gazebo", sim, _server_services(sim), _ros_1_services(self), property_services(sim))
-            _broadcast_states("/gazebo", sim)
-            listen_to_states("/gazebo", sim)
+        ros_1_tables = (_server_services(sim), _ros_1_services(self), property_services(sim))
+        offer_table("/gazebo", sim, *ros_1_tables, is_listed=self._is_ros_1)
+        _broadcast_states("/gazebo", sim)
+        listen_to_states("/gazebo", sim)
         sim.communication.on_demand.add(lambda: bool(self.pushes), None, self._apply, "before")
 
     def push_link(self, request: msgs.ApplyLinkWrench_Request | msgs.ApplyBodyWrench_Request, link: str) -> str:
@@ -109,7 +109,13 @@ class ClassicServices(WorldPlugin):
         self._replace_wrenches(apply_wrenches(self.sim, self.pushes))
 
 
-def offer_table(prefix: str, sim: Simulation, *tables: Table, full_name: Callable[[str], str] | None = None) -> None:
+def offer_table(
+    prefix: str,
+    sim: Simulation,
+    *tables: Table,
+    full_name: Callable[[str], str] | None = None,
+    is_listed: bool = True,
+) -> None:
     """Offer the services of tables.
 
     With `full_name` the services belong to a plugin in the file and are permanent. Otherwise a service is replaced when
@@ -120,6 +126,7 @@ def offer_table(prefix: str, sim: Simulation, *tables: Table, full_name: Callabl
         sim: simulation.
         *tables: tables of services.
         full_name: function from a short name to the service name, in place of the prefix.
+        is_listed: False for services without `full_name` that lists of services omit.
     """
     for table in tables:
         for short, (type_name, execute) in table.items():
@@ -130,7 +137,7 @@ def offer_table(prefix: str, sim: Simulation, *tables: Table, full_name: Callabl
                 has_status = not type_name.endswith(("GetModelList", "GetEntityState", "SetEntityState"))
                 handler = answer_handler(sim, name, execute, has_status)
             if full_name is None:
-                sim.communication.services.offer_by_default(name, type_name, handler)
+                sim.communication.services.offer_by_default(name, type_name, handler, is_listed=is_listed)
             else:
                 sim.communication.services.offer(name, type_name, handler)
 
@@ -235,8 +242,8 @@ def _set_physics(sim: Simulation, request: msgs.SetPhysicsProperties_Request) ->
 
 
 def _world_properties(sim: Simulation, _: object) -> dict[str, object]:
-    found = {"sim_time": sim.time, "model_names": list(sim.models), "rendering_enabled": True}
-    return {**found, "status_message": "GetWorldProperties: got properties"}
+    properties = {"sim_time": sim.time, "model_names": list(sim.models), "rendering_enabled": True}
+    return {**properties, "status_message": "GetWorldProperties: got properties"}
 
 
 # ---------------------------------------------------------------------- ROS 1
@@ -276,9 +283,9 @@ def _delete_model(sim: Simulation, request: msgs.DeleteModel_Request) -> str:
 def _get_model_state(sim: Simulation, request: msgs.GetModelState_Request) -> dict[str, object]:
     frame = request.relative_entity_name
     pose, linear, angular = states.state_of(sim, request.model_name, frame, ("model",))
-    found = {"pose": pose_fields(pose), "twist": twist_fields(linear, angular)}
+    state = {"pose": pose_fields(pose), "twist": twist_fields(linear, angular)}
     message = "GetModelState: got properties"
-    return {"header": msgs.header(sim.time_ns, frame), **found, "status_message": message}
+    return {"header": msgs.header(sim.time_ns, frame), **state, "status_message": message}
 
 
 def _set_model_state(sim: Simulation, state: msgs.ModelState) -> str:

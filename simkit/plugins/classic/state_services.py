@@ -82,8 +82,8 @@ def state_of(sim: Simulation, name: str, frame: str, kinds: tuple[str, ...] = _K
     linear, angular = velocity_of(sim, kind, scoped)
     back = frame_of(sim, frame).inverse()
     if back != IDENTITY:
-        own, turn = velocity_of(sim, *find_entity(sim, frame, _KINDS, "reference frame"))
-        pose, linear, angular = back @ pose, back.rotate(linear - own), back.rotate(angular - turn)
+        frame_velocity, turn = velocity_of(sim, *find_entity(sim, frame, _KINDS, "reference frame"))
+        pose, linear, angular = back @ pose, back.rotate(linear - frame_velocity), back.rotate(angular - turn)
     return pose, linear, angular
 
 

@@ -44,9 +44,9 @@ class ClassicTouchPlugin(TouchTimer):
         sensors = {s.scoped: s.name for s in scene.all_sensors() if s.kind == "contact"}
         self._sensors: tuple[str, ...] = ()
         for element in params.all("sensor"):
-            found = tuple(scoped for scoped in sensors if f"::{scoped}".endswith(f"::{element.value}"))
-            self._sensors += found
-            if not found:
+            matching = tuple(scoped for scoped in sensors if f"::{scoped}".endswith(f"::{element.value}"))
+            self._sensors += matching
+            if not matching:
                 listed = ", ".join(map(repr, sensors.values())) or "none"
                 message = f"model {scene.scoped!r} has no contact sensor {element.value!r}; it has: {listed}"
                 element.error("SK-PLUGIN-003", message, did_you_mean(element.value, sensors.values()))

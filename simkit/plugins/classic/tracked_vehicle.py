@@ -71,10 +71,10 @@ class _TrackedVehicle(ModelPlugin):
         self._friction_overrides = [min(MU_MOST, mu) if params.has(name) else None for name, mu in frictions.items()]
 
     def load(self, parent: Model, params: Params) -> None:
-        own = valid_topic(f"/{self._namespace}") if self._namespace else ""
-        self.listen(f"{own}/cmd_vel", COMMAND_TYPES, partial(self._on_command, 1.0))
-        self.listen(f"{own}/cmd_vel_twist", COMMAND_TYPES, partial(self._on_command, -1.0))
-        self._tracks_speed = self.advertise(f"{own}/tracks_speed", _SPEEDS)
+        namespace = valid_topic(f"/{self._namespace}") if self._namespace else ""
+        self.listen(f"{namespace}/cmd_vel", COMMAND_TYPES, partial(self._on_command, 1.0))
+        self.listen(f"{namespace}/cmd_vel_twist", COMMAND_TYPES, partial(self._on_command, -1.0))
+        self._tracks_speed = self.advertise(f"{namespace}/tracks_speed", _SPEEDS)
 
     def _on_command(self, sense: float, message: Twist | TwistStamped) -> None:
         command = command_of(message)
@@ -126,9 +126,9 @@ class SimpleTrackedVehiclePlugin(_TrackedVehicle):
         self._body = "" if body is None else body.scoped
         self._tracks: list[tuple[SceneLink, int]] = []
         for index, side in enumerate(_SIDES):
-            found = [self._link(f"{side}_track", scene, params)]
-            found += [find_link(scene, flipper.value, flipper) for flipper in params.all(f"{side}_flipper")]
-            self._tracks += [(link, index) for link in found if link is not None]
+            links = [self._link(f"{side}_track", scene, params)]
+            links += [find_link(scene, flipper.value, flipper) for flipper in params.all(f"{side}_flipper")]
+            self._tracks += [(link, index) for link in links if link is not None]
         for link, _ in self._tracks:
             report_missing_collisions(link, params)
 

@@ -19,11 +19,12 @@ from typing import TYPE_CHECKING
 from simkit.params import Params
 from simkit.plugins.classic.commanded_drive import CommandedDrive
 from simkit.plugins.drives.drive_outputs import DriveOutputOptions, DriveOutputs
-from simkit.plugins.drives.odometry import COMMAND_TYPES, DeadReckoning, rolling_twist, wheel_angles
+from simkit.plugins.drives.odometry import COMMAND_TYPES, DeadReckoning, rolling_twist, wheel_motion
 from simkit.plugins.drives.wheel_joints import find_drive_joint, find_wheels
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.options import boolean, choice, integer, number, text
 from simkit.plugins.ros_names import is_ros_1
+from simkit.runtime.handles.joint import wheel_angles
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -195,9 +196,8 @@ class GazeboRosTricycleDrive(CommandedDrive):
         separation, outputs = self.options.wheel_separation, self._outputs
         if self._from_encoders:
             angles = wheel_angles(*self._pair)
-            left, right = ((b - a) * self._radius for a, b in zip(self._angles, angles, strict=True))
+            self._reckoning.go(*wheel_motion(self._angles, angles, self._radius, separation))
             self._angles = angles
-            self._reckoning.advance(left, right, separation)
         if outputs.wants_odometry and self._from_encoders:
             outputs.tell(self._reckoning.pose, rolling_twist(self._pair, self._radius, separation))
         elif outputs.wants_odometry:

@@ -71,8 +71,8 @@ class UnderactuatedFinger(ModelPlugin):
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         _ = self.options.actuated_joint
         motor = params.child("actuatedJoint")
-        found = None if motor is None else _joint_with_one_axis(scene, motor)
-        self._motor = "" if found is None else found.scoped
+        joint = None if motor is None else _joint_with_one_axis(scene, motor)
+        self._motor = "" if joint is None else joint.scoped
         self._servos: list[tuple[str, float, ActuatorRef]] = []
         self._loops: list[tuple[str, float, tuple[float, ...]]] = []
         if not self.options.virtual_joint:
@@ -150,8 +150,8 @@ class UnderactuatedFinger(ModelPlugin):
         error = self._targets[first:] - np.array([float(joint.position) for joint in joints])
         p, i, d, top, bottom = self._gain
         self._sums = self._sums + error * step
-        held = np.minimum(np.maximum(i * self._sums, bottom), top)
-        efforts = p * error + held + d * (error - self._errors) / step
+        integral_terms = np.minimum(np.maximum(i * self._sums, bottom), top)
+        efforts = p * error + integral_terms + d * (error - self._errors) / step
         self._errors = error
         for joint, effort in zip(joints, efforts.tolist(), strict=True):
             joint.set_effort(effort)

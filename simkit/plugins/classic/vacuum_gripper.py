@@ -17,7 +17,6 @@ from simkit.plugins.joints.run_time_welds import close_weld, has_weld, open_weld
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.options import Options, OptionsOf, number, text, texts
 from simkit.plugins.publish_on_demand import publish_while_subscribed
-from simkit.plugins.ros_names import is_ros_1
 from simkit.runtime.engine.physics_step import STALE
 
 if TYPE_CHECKING:
@@ -31,20 +30,20 @@ if TYPE_CHECKING:
 BOOL: Final = "std_msgs/msg/Bool"
 SET_BOOL: Final = "std_srvs/srv/SetBool"
 EMPTY: Final = "std_srvs/srv/Empty"
-_ROS_1: Final = ("bodyName", "topicName", "maxForce", "maxDistance", "minDistance")
 _RATE: Final = 80.0  # [Hz]
 
 
 class GazeboRosVacuumGripperOptions(Options):
     """Options of `GazeboRosVacuumGripper`."""
 
+    ros_1_marks = ("bodyName", "topicName", "maxForce", "maxDistance", "minDistance")
+
     body_name: str = text(element="bodyName", required=True)
     topic_name: str = text(element="topicName", required=True)
     max_force: float = number(None, "N", element="maxForce", minimum=0.0)
-    max_distance_ros_1: float = number(0.05, "m", element="maxDistance", minimum=0.0)
     min_distance: float = number(None, "m", element="minDistance", minimum=0.0)
     link_name: str = text(required=True)
-    max_distance: float = number(0.05, "m", minimum=0.0)
+    max_distance: float = number(0.05, "m", minimum=0.0, ros_1="maxDistance")
     fixed: tuple[str, ...] = texts()
 
 
@@ -71,12 +70,11 @@ class GazeboRosVacuumGripper(ModelPlugin):
     _services: tuple[str, ...] = ()
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        self._is_ros_1 = is_ros_1(params, _ROS_1)
+        self._is_ros_1, self._reach = self.options.is_ros_1, self.options.max_distance
         self._topic, self._rate, self._fixed = "grasping", _RATE, frozenset[str]()
         if self._is_ros_1:
             self._grippers = [find_named_link(scene, "bodyName", params)]
             self._topic, self._rate = self.options.topic_name, 0.0
-            self._reach = self.options.max_distance_ros_1
             for name in ("maxForce", "minDistance"):
                 if params.has(name):
                     params.number(name, minimum=0.0)
@@ -86,9 +84,8 @@ class GazeboRosVacuumGripper(ModelPlugin):
             named = params.all("link_name")
             if not named:
                 _ = self.options.link_name
-            found = [find_link(scene, element.value, element) for element in named]
-            self._grippers = [link.scoped for link in found if link is not None]
-            self._reach = self.options.max_distance
+            links = [find_link(scene, element.value, element) for element in named]
+            self._grippers = [link.scoped for link in links if link is not None]
             self._fixed = frozenset(self.options.fixed)
         self._own = scene.scoped.split("::")[0]
 
@@ -175,7 +172,7 @@ class _GrippableLinks(SharedByCopies):
     def __init__(self) -> None:
         self._known: WorldStructure | None = None
 
-    def bind(self, sim: Simulation, own: str, fixed: frozenset[str], grippers: list[str]) -> None:
+    def bind(self, sim: Simulation, model: str, fixed: frozenset[str], grippers: list[str]) -> None:
         """Find the links in the engine's current model."""
         if self._known is sim.engine.structure:
             return
@@ -184,7 +181,7 @@ class _GrippableLinks(SharedByCopies):
         self._links = [
             link
             for link in sim.contents.handles.tables["link"]
-            if (parts := link.split("::"))[0] != own
+            if (parts := link.split("::"))[0] != model
             and not fixed.intersection((parts[0], link, parts[-1]))
             and weld[names.link(link).body] != 0
         ]
@@ -196,12 +193,12 @@ class _GrippableLinks(SharedByCopies):
         if not self._links:
             return []
         origins = _origins(data, *self._others)
-        found: dict[str, str] = {}
+        gripper_by_link: dict[str, str] = {}
         for gripper, origin in zip(self._grippers, _origins(data, *self._own), strict=True):
             offsets = origins - origin
             for k in np.flatnonzero(np.einsum("ij,ij->i", offsets, offsets) <= reach * reach).tolist():
-                found.setdefault(self._links[k], gripper)
-        return [(gripper, link) for link, gripper in found.items()]
+                gripper_by_link.setdefault(self._links[k], gripper)
+        return [(gripper, link) for link, gripper in gripper_by_link.items()]
 
 
 Numbers = npt.NDArray[np.float64]
@@ -209,13 +206,13 @@ Numbers = npt.NDArray[np.float64]
 
 def _frames(names: NameMap, links: list[str]) -> tuple[npt.NDArray[np.intp], Numbers]:
     """Return the bodies of links, and the links' origins in these bodies [m], shape (n, 3)."""
-    found = [names.link(link) for link in links]
-    bodies = np.array([int(link.body) for link in found], dtype=np.intp)
-    return bodies, np.array([link.offset.position for link in found]).reshape(-1, 3)
+    links_in_bodies = [names.link(link) for link in links]
+    bodies = np.array([int(link.body) for link in links_in_bodies], dtype=np.intp)
+    return bodies, np.array([link.offset.position for link in links_in_bodies]).reshape(-1, 3)
 
 
 def _origins(data: mujoco.MjData, bodies: npt.NDArray[np.intp], offsets: Numbers) -> Numbers:
     """Return the origins of links in the world [m], shape (n, 3)."""
     turns = data.xmat[bodies].reshape(-1, 3, 3)
-    found: Numbers = data.xpos[bodies] + np.einsum("nij,nj->ni", turns, offsets)
-    return found
+    origins: Numbers = data.xpos[bodies] + np.einsum("nij,nj->ni", turns, offsets)
+    return origins

@@ -10,8 +10,7 @@ import numpy as np
 
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.drives.odometry import BodyTwist
-from simkit.plugins.drives.odometry_messages import ODOMETRY, odometry_message
+from simkit.plugins.drives.odometry_messages import ODOMETRY, BodyTwist, odometry_message
 from simkit.plugins.endpoints import publishes
 from simkit.plugins.find_entities import find_named_link
 from simkit.plugins.options import Options, OptionsOf, number, text

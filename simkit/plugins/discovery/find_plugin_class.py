@@ -4,16 +4,44 @@ from __future__ import annotations
 
 import functools
 import re
+import tomllib
 from collections.abc import Sequence
 from pathlib import Path
+from types import MappingProxyType
+from typing import Final
 
 from simkit.diagnostics import Diagnostics, closest
+from simkit.packs import left_out_names, missing_pack_text
 from simkit.plugins.base import ParentKind, Plugin
-from simkit.plugins.discovery.unsupported_plugins import GAZEBO_PLUGINS, UNSUPPORTED_REASONS
 from simkit.plugins.discovery.user_plugins import find_user_plugin
 from simkit.plugins.plugin_names import ENTRY_POINT_GROUP, aliases, normalise
 from simkit.registry import Kinds
 from simkit.scene import ScenePlugin
+
+_TABLE: Final = tomllib.loads(Path(__file__).with_name("unsupported_plugins.toml").read_text(encoding="utf-8"))
+
+GAZEBO_PLUGINS: frozenset[str] = frozenset(
+    [f"gz-sim-{name}-system" for name in _TABLE["gz_systems"].split()]
+    + [f"gazebo_ros_{name}" for name in _TABLE["classic_ros"].split()]
+    + _TABLE["control"].split()
+    + _TABLE["classic"].split()
+)
+"""Library names of Gazebo's plugins, normalised by `normalise`."""
+
+
+def _reasons_by_name() -> dict[str, str]:
+    reasons: dict[str, str] = {}
+    for row in _TABLE["gz"]:
+        for file_and_class in row["names"].split():
+            part, _, cls = file_and_class.partition(":")
+            reasons[f"gz-sim-{part}-system"] = reasons[f"gz::sim::systems::{cls}"] = row["reason"]
+    for row in _TABLE["libraries"]:
+        reasons.update(dict.fromkeys(row["names"].split(), row["reason"]))
+    return reasons
+
+
+UNSUPPORTED_REASONS: Final = MappingProxyType(_reasons_by_name())
+"""Reason by library name or gz class name; the names are normalised by `normalise`."""
 
 
 @functools.cache
@@ -47,17 +75,17 @@ def find_plugin(
     """
     if plugin.filename == "__default__":  # SDF's text for an attribute without a value; Gazebo loads nothing either
         return None
-    found = diagnostics if diagnostics is not None else plugin.params.diagnostics
+    collector = diagnostics if diagnostics is not None else plugin.params.diagnostics
     kinds = plugin_kinds()
     cls = next((kinds[alias] for alias in aliases(plugin) if alias in kinds), None)
     if cls is None:
-        reported = len(found)
-        cls = find_user_plugin(plugin, plugin_paths, found)
-        if cls is None and len(found) == reported:
-            _report_unknown(plugin, found)
+        reported = len(collector)
+        cls = find_user_plugin(plugin, plugin_paths, collector)
+        if cls is None and len(collector) == reported:
+            _report_unknown(plugin, collector)
     if parent == "any" and not plugin.scoped:
         parent = "world"
-    if cls is not None and not _fits(cls, plugin, parent, found):
+    if cls is not None and not _fits(cls, plugin, parent, collector):
         return None
     return cls
 
@@ -76,6 +104,16 @@ def _fits(cls: type[Plugin], plugin: ScenePlugin, parent: ParentKind, diagnostic
 
 def _report_unknown(plugin: ScenePlugin, diagnostics: Diagnostics) -> None:
     names = aliases(plugin)
+    if fault := next(filter(None, map(plugin_kinds().fault, names)), None):
+        message = f"plugin {plugin.filename!r} (name {plugin.name!r}) cannot be imported: {fault}"
+        diagnostics.error("SK-PLUGIN-008", message, plugin.where)
+        return
+    packs = {normalise(name): pack for name, pack in left_out_names("filenames", "names").items()}
+    if missing := next((packs[name] for name in names if name in packs), None):
+        need, advice = missing_pack_text(missing)
+        message = f"plugin {plugin.filename!r} (name {plugin.name!r}) {need}; it is ignored"
+        diagnostics.warning("SK-PLUGIN-001", message, plugin.where, advice)
+        return
     reason = next((UNSUPPORTED_REASONS[name] for name in names if name in UNSUPPORTED_REASONS), None)
     if reason is not None or GAZEBO_PLUGINS.intersection(names):
         named = f"plugin {plugin.filename!r} (name {plugin.name!r})"
@@ -91,7 +129,9 @@ def _report_unknown(plugin: ScenePlugin, diagnostics: Diagnostics) -> None:
         hint = f"did you mean {cores[near]!r}?"
     else:
         nearest = closest(names[0] if names else "", spelled, least=0.0)
-        hint = f"no known name is similar; the closest is {spelled[nearest]!r}" if nearest else ""
+        others = "`simkit plugin list` shows all names"
+        hint = f"the closest known name, {spelled[nearest]!r}, differs much; {others}" if nearest else ""
+    hint = f"{hint}; or install the pack that has it".removeprefix("; or ")
     message = f"unknown plugin {plugin.filename!r} (name {plugin.name!r}); it is ignored"
     diagnostics.warning("SK-PLUGIN-001", message, plugin.where, hint)
 

@@ -5,17 +5,20 @@ Unknown kinds are reported. If a file has errors, `find_more_problems` searches 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from simkit import progress
 from simkit.diagnostics import Diagnostics, did_you_mean, follows_from
 from simkit.errors import LoadError, RenderError, SimkitError
+from simkit.packs import left_out_names, missing_pack_text
+from simkit.plugins.adapters import FileFinder, entity_plugins
 from simkit.plugins.classic.server_services import ClassicServices, has_classic_plugins
 from simkit.plugins.discovery.find_plugin_class import find_plugin
+from simkit.plugins.discovery.left_out import LeftOutParts
 from simkit.plugins.discovery.python_plugins import Attachment, ParentGetter, SceneEntity, attach_plugins, handle_getter
 from simkit.plugins.discovery.user_plugins import find_user_plugin
 from simkit.plugins.drives.robot_transforms import StaticTransforms
@@ -31,6 +34,7 @@ if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.plugins.base import ParentKind, Plugin
     from simkit.runtime import SensorsAndPlugins
+    from simkit.runtime.engine.entity_structure import PluginEntry
     from simkit.sensors.base import Sensor
 
 
@@ -51,17 +55,17 @@ _DocumentPosition = tuple[tuple[bool, int], ...]
 
 def _model_positions(model: SceneModel) -> dict[str, tuple[_DocumentPosition, str | None]]:
     """Return the document position and the file of a model and of its nested models, by scoped name."""
-    found: dict[str, tuple[_DocumentPosition, str | None]] = {}
+    positions: dict[str, tuple[_DocumentPosition, str | None]] = {}
 
     def enter(model: SceneModel, outer: _DocumentPosition, file: str | None) -> None:
         # an <include> may contain plugins: they are in the outer file, and follow the plugins of the model's own file
         position = (*outer, (bool(outer) and model.where.file == file, model.where.serial))
-        found[model.scoped] = position, model.where.file
+        positions[model.scoped] = position, model.where.file
         for nested in model.models:
             enter(nested, position, model.where.file)
 
     enter(model, (), None)
-    return found
+    return positions
 
 
 def _document_order(
@@ -79,10 +83,18 @@ class InstanceMaker:
         builder: builder of the MuJoCo spec, to which sensors and plugins add elements.
         diagnostics: collector of the problems.
         plugin_paths: folders whose modules the user allows.
+        left_out: sensors and plugins that are not made, because they had errors; None for none.
     """
 
-    def __init__(self, builder: SpecBuilder, diagnostics: Diagnostics, plugin_paths: Sequence[Path]) -> None:
+    def __init__(
+        self,
+        builder: SpecBuilder,
+        diagnostics: Diagnostics,
+        plugin_paths: Sequence[Path],
+        left_out: LeftOutParts | None = None,
+    ) -> None:
         self._builder, self._diagnostics, self._plugin_paths = builder, diagnostics, plugin_paths
+        self._left_out = left_out or LeftOutParts()
 
     def all_parts(self, world: SceneWorld, plugins: Iterable[object] = ()) -> dict[str, SensorsAndPlugins]:
         """Return the sensors and plugins by name of the model; those of the world have the name "".
@@ -106,31 +118,34 @@ class InstanceMaker:
         from simkit.runtime import SensorsAndPlugins
 
         parts, diagnostics = SensorsAndPlugins(), self._diagnostics
-        found: list[_PluginSite] = []
+        sites: list[_PluginSite] = []
         positions = _model_positions(model)
         for named in model.all_sensors():
-            faults = diagnostics.error_count
-            scene = add_preset_defaults(named, diagnostics)
-            sensor = self._make_sensor(scene)
-            if sensor is None:
+            if named in self._left_out:
                 continue
-            if diagnostics.error_count == faults:
-                sensor.build(self._builder)
+            faults = diagnostics.error_count
+            with diagnostics.blame(named):
+                scene = add_preset_defaults(named, diagnostics)
+                sensor = self._make_sensor(scene)
+                if sensor is None:
+                    continue
+                if diagnostics.error_count == faults:
+                    sensor.build(self._builder)
             if diagnostics.error_count == faults:
                 parts.sensors.append(sensor)
             owner = scene.parent.rpartition("::")[0]
-            found += [
+            sites += [
                 _PluginSite(p, "sensor", scene, owner, handle_getter("sensor", scene.scoped)) for p in scene.plugins
             ]
         for nested in model.all_models():
             owners: list[SceneLink | SceneJoint] = [*nested.links, *nested.joints]
             below = [plugin for owner in owners for plugin in owner.plugins]
             parent = handle_getter("model", nested.scoped)
-            found += [_PluginSite(p, "model", nested, nested.scoped, parent) for p in (*below, *nested.plugins)]
+            sites += [_PluginSite(p, "model", nested, nested.scoped, parent) for p in (*below, *nested.plugins)]
             for visual in (v for link in nested.links for v in link.visuals if v.plugins):
                 parent = handle_getter("visual", visual.scoped)
-                found += [_PluginSite(p, "visual", visual, nested.scoped, parent) for p in visual.plugins]
-        for site in sorted(found, key=lambda site: _document_order(site, positions)):
+                sites += [_PluginSite(p, "visual", visual, nested.scoped, parent) for p in visual.plugins]
+        for site in sorted(sites, key=lambda site: _document_order(site, positions)):
             self._add_plugin(parts, site, _document_order(site, positions))
         return parts
 
@@ -150,21 +165,29 @@ class InstanceMaker:
         return parts
 
     def _add_python_plugin(self, parts: SensorsAndPlugins, attachment: Attachment, rank: int) -> None:
-        from simkit.runtime.engine.entity_structure import FROM_PYTHON
+        from simkit.runtime.engine.entity_structure import FROM_PYTHON, PluginEntry
 
         plugin = attachment.plugin
         plugin.hand_over(self._diagnostics, attachment.scoped)
-        plugin._order = (FROM_PYTHON, rank)
-        self._prepare_plugin(plugin, attachment.scene)
-        parts.plugins.append((plugin, attachment.parent))
+        entry = PluginEntry(plugin, attachment.parent, (FROM_PYTHON, rank))
+        parts.plugins.append(self._prepared(entry, attachment.scene))
 
     def _make_sensor(self, scene: SceneSensor) -> Sensor | None:
         kinds, diagnostics = sensor_kinds(), self._diagnostics
         if scene.kind not in kinds:
             if report_unsimulated(scene, diagnostics):
                 return None
-            hint = did_you_mean(scene.kind, kinds) or "kinds: " + ", ".join(kinds)
+            if fault := kinds.fault(scene.kind):
+                message = f"sensor {scene.scoped!r}: kind {scene.kind!r} is left out, because its package is broken"
+                diagnostics.warning("SK-SENSOR-001", f"{message}: {fault}", scene.where)
+                return None
             message = f"sensor {scene.scoped!r}: kind {scene.kind!r} is not simulated"
+            hint = did_you_mean(scene.kind, kinds) or "kinds: " + ", ".join(kinds)
+            hint += "; or install the pack that has it"
+            pack = left_out_names("kinds").get(scene.kind)
+            if pack is not None:
+                needs, hint = missing_pack_text(pack)
+                message = f"sensor {scene.scoped!r}: kind {scene.kind!r} {needs}"
             diagnostics.warning("SK-SENSOR-001", message, scene.where, hint)
             return None
         cls, parent_kind = kinds[scene.kind], "joint" if scene.on_joint else "link"
@@ -177,9 +200,11 @@ class InstanceMaker:
         return cls(scene, diagnostics)
 
     def _add_plugin(self, parts: SensorsAndPlugins, site: _PluginSite, position: _DocumentPosition) -> None:
-        from simkit.runtime.engine.entity_structure import FROM_FILE
+        from simkit.runtime.engine.entity_structure import FROM_FILE, PluginEntry
 
         plugin, scene, diagnostics = site.plugin, site.scene, self._diagnostics
+        if plugin in self._left_out:
+            return
         cls = find_plugin(plugin, self._plugin_paths, diagnostics, site.kind)
         if cls is None:
             return
@@ -187,21 +212,22 @@ class InstanceMaker:
             message = f"plugin {plugin.name!r} is ignored: it drives joints of {scene.scoped!r}, which is static"
             diagnostics.warning("SK-PLUGIN-010", message, plugin.where, "remove <static>true</static> or the plugin")
             return
-        instance = _make_plugin(cls, plugin)
-        instance.source = plugin
-        instance._order = (FROM_FILE, position)
-        instance.plugin_paths = tuple(self._plugin_paths)
+        self._left_out.describe(plugin, cls)
         faults = diagnostics.error_count
-        self._prepare_plugin(instance, scene)
+        with diagnostics.blame(plugin):
+            instance, failure = _make_plugin(cls, plugin)
+            instance.take_source(plugin, self._plugin_paths)
+            entry = self._prepared(PluginEntry(instance, site.parent, (FROM_FILE, position), failure=failure), scene)
         if diagnostics.error_count == faults:  # `load` would report the same errors again
-            parts.plugins.append((instance, site.parent))
+            parts.plugins.append(entry)
 
-    def _prepare_plugin(self, instance: Plugin, scene: SceneEntity) -> None:
-        """Call the plugin's `prepare`, and store in the plugin which servos and motors `prepare` adds."""
+    def _prepared(self, entry: PluginEntry, scene: SceneEntity) -> PluginEntry:
+        """Call a plugin's `prepare`; return its entry with the servos and motors that `prepare` added."""
         from simkit.runtime.engine.plugin_faults import call_plugin
 
-        if instance._failed is not None or not instance.has_hook("prepare"):
-            return
+        instance, failure = entry.plugin, entry.failure
+        if failure is not None or not instance.has_hook("prepare"):
+            return entry
         builder = self._builder
         before = {id(ref) for record in builder.records.values() for ref in record.actuators}
         try:
@@ -211,21 +237,19 @@ class InstanceMaker:
         except Exception as error:
             if self._diagnostics.has_errors:
                 raise  # the cause may be an entity that was dropped because of an earlier error
-            instance._failed = "prepare", error  # handled at load time, because no simulation exists yet
+            failure = "prepare", error  # handled at load time, because no simulation exists yet
         after = [ref for record in builder.records.values() for ref in record.actuators]
-        instance._actuators = tuple(ref for ref in after if id(ref) not in before)
+        return replace(entry, actuators=tuple(ref for ref in after if id(ref) not in before), failure=failure)
 
 
-def _make_plugin(cls: type[Plugin], plugin: ScenePlugin) -> Plugin:
-    """Return an instance of a plugin's class."""
+def _make_plugin(cls: type[Plugin], plugin: ScenePlugin) -> tuple[Plugin, tuple[str, Exception] | None]:
+    """Return an instance of a plugin's class, and the failure of its `__init__`."""
     from simkit.runtime.engine.plugin_faults import call_plugin
 
     try:
-        made: Plugin = call_plugin(plugin, "__init__", cls)
+        return call_plugin(plugin, "__init__", cls), None
     except Exception as error:  # noqa: BLE001 - a plugin may raise anything; handled at load time
-        made = cls.__new__(cls)
-        made._failed = "__init__", error
-    return made
+        return cls.__new__(cls), ("__init__", error)
 
 
 def report_unread(parts: Iterable[SensorsAndPlugins]) -> None:
@@ -233,9 +257,9 @@ def report_unread(parts: Iterable[SensorsAndPlugins]) -> None:
     for part in parts:
         for sensor in part.sensors:
             sensor.scene.params.report_unread("SK-PARAM-003", f"sensor {sensor.scoped!r}")
-        for plugin, _ in part.plugins:
-            if hasattr(plugin, "sim"):
-                plugin.report_unread()
+        for entry in part.plugins:
+            if hasattr(entry.plugin, "sim"):
+                entry.plugin.report_unread()
 
 
 def report_python_plugins(scene: Scene, diagnostics: Diagnostics, plugin_paths: Sequence[Path]) -> None:
@@ -270,30 +294,13 @@ def plugins_of_every_world(world: SceneWorld) -> tuple[tuple[Plugin, ...], tuple
     """Return the plugins that every world has: first those that run before the file's plugins, then those after."""
     from simkit.plugins.world.world_services import WorldServices
 
-    actors: tuple[Plugin, ...] = ()
-    if world.actors:
-        from simkit.plugins.actors import ActorMover  # 5 ms
-
-        actors = (ActorMover(),)
+    entities = (cls() for cls in entity_plugins(world))
     services: list[Plugin] = [SimulationInterfaces(), ClassicServices()]  # the first one owns the names of both
     is_classic = has_classic_plugins(world) if world.entity_services is None else world.entity_services == "classic"
     if is_classic:
         services.reverse()
-    return (ClockPublisher(), StaticTransforms(), *actors), (WorldStats(), WorldServices(), *services)
+    return (ClockPublisher(), StaticTransforms(), *entities), (WorldStats(), WorldServices(), *services)
 
-
-def add_actor_models(
-    world: SceneWorld, find_file: Callable[[str, Path | None], Path | None], diagnostics: Diagnostics
-) -> SceneWorld:
-    """Return the world with one more model for each actor; problems with an actor are reported."""
-    if not world.actors:
-        return world
-    from simkit.plugins.actors.actor_model import with_actors
-
-    return with_actors(world, find_file, diagnostics)
-
-
-FileFinder = Callable[[str, Path | None], Path | None]
 
 # engine diagnostics caused by missing parts, which are misleading for a file with errors
 _ENGINE_CODES = frozenset(("SK-JOINT-010", "SK-JOINT-016", "SK-PHYS-023", "SK-PHYS-025", "SK-PHYS-028"))
@@ -308,6 +315,7 @@ def make_all_parts(
     diagnostics: Diagnostics,
     plugin_paths: Sequence[Path],
     plugins: Sequence[object],
+    left_out: LeftOutParts | None = None,
 ) -> dict[str, SensorsAndPlugins]:
     """Return the sensors and plugins by name of the model; those of the world have the name "".
 
@@ -317,20 +325,26 @@ def make_all_parts(
         diagnostics: collector of the problems.
         plugin_paths: folders whose modules the user allows.
         plugins: further plugins, created in Python.
+        left_out: sensors and plugins that are not made; None for none.
     """
     try:
-        parts = InstanceMaker(builder, diagnostics, plugin_paths).all_parts(world, plugins)
+        parts = InstanceMaker(builder, diagnostics, plugin_paths, left_out).all_parts(world, plugins)
     except Exception:
         # the cause may be an entity dropped because of an earlier error, such as a joint without an axis
         diagnostics.raise_if_errors()
         raise
-    if diagnostics.has_errors:
+    is_retried = left_out is not None and not left_out.is_strict and diagnostics.has_only_blamed_errors
+    if diagnostics.has_errors and not is_retried:
         _load_sound_parts(world, builder, parts, diagnostics)
     return parts
 
 
 def find_more_problems(
-    world: SceneWorld, diagnostics: Diagnostics, plugin_paths: Sequence[Path], find_file: FileFinder
+    world: SceneWorld,
+    diagnostics: Diagnostics,
+    plugin_paths: Sequence[Path],
+    find_file: FileFinder,
+    left_out: LeftOutParts | None = None,
 ) -> None:
     """Find further problems of a file with errors: build the world without the faulty entities.
 
@@ -344,9 +358,8 @@ def find_more_problems(
         return
     before = tuple(diagnostics)
     try:
-        builder = SpecBuilder(world, diagnostics)
-        builder.find_file = find_file
-        parts = InstanceMaker(builder, diagnostics, plugin_paths).all_parts(world)
+        builder = SpecBuilder(world, diagnostics, find_file=find_file)
+        parts = InstanceMaker(builder, diagnostics, plugin_paths, left_out).all_parts(world)
         _load_sound_parts(world, builder, parts, diagnostics)
     except Exception:  # noqa: BLE001 - anything may be missing in a file with errors; keep what was found so far
         pass
@@ -358,12 +371,14 @@ def _load_sound_parts(
 ) -> None:
     """Compile and load the valid entities of a world with errors, to collect their diagnostics; no step runs."""
     from simkit.runtime import Simulation, WorldStructure
+    from simkit.runtime.world_source import WorldSource
 
     before = tuple(diagnostics)
     with suppress(SimkitError, ValueError, KeyError, AttributeError, TypeError):
         compiled = builder.compile()
         structure = WorldStructure(builder, compiled, {m.name: m for m in world.models}, frozenset(), parts)
-        with suppress(LoadError), Simulation(world, structure, diagnostics, 0, _unused_callback, _unused_callback):
+        source = WorldSource(load_model=_unused_callback, make_parts=_unused_callback)
+        with suppress(LoadError), Simulation(world, structure, diagnostics, 0, source):
             pass  # the constructor loads all plugins and reports their problems
         report_unread(parts.values())
     diagnostics.drop(d for d in tuple(diagnostics)[len(before) :] if d.code in _ENGINE_CODES)

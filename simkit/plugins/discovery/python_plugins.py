@@ -1,23 +1,23 @@
 """Plugins created in Python for `simkit.load(world, plugins=[…])`, and the entities that they are attached to.
 
-A class, an object or a module with the hooks of gz-sim is also accepted as a plugin; it needs no base class.
+A class, an object or a module with the hooks of another simulator is also accepted as a plugin, without a base class.
 """
 
 from __future__ import annotations
 
+import copy
 import inspect
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
+from simkit.plugins.adapters import describe_allowed_plugins, missing_system_pack, system_plugin_for
 from simkit.plugins.base import Plugin
-from simkit.plugins.plugin_names import GZ_HOOKS
 from simkit.scene import SceneModel, SceneSensor, SceneVisual, SceneWorld
 
 if TYPE_CHECKING:
-    from simkit.plugins.gz.gz_system_plugin import GzSystem
     from simkit.runtime import Simulation
 
 SceneEntity = SceneWorld | SceneModel | SceneSensor | SceneVisual
@@ -57,14 +57,44 @@ def attach_plugins(plugins: Iterable[object], world: SceneWorld, diagnostics: Di
         world: world with its entities.
         diagnostics: collector of errors; a plugin with an error is skipped.
     """
-    found = []
+    attachments = []
     for item in plugins:
         name, candidate = item if isinstance(item, tuple) and len(item) == 2 else ("", item)
         plugin = as_plugin(candidate, diagnostics)
         attachment = None if plugin is None else _attach_plugin(plugin, str(name), world, diagnostics)
         if attachment is not None:
-            found.append(attachment)
-    return found
+            attachments.append(attachment)
+    return attachments
+
+
+def copied_plugins(plugins: Iterable[object]) -> tuple[object, ...]:
+    """Return copies of plugins, so that several simulations can be loaded from one list.
+
+    A copy has copies of the attributes that `__init__` has set; an attribute that cannot be copied, such as a lock, is
+    shared. A plugin that a simulation has already loaded is not copied: its attributes belong to that simulation.
+
+    Args:
+        plugins: plugins, or pairs of a scoped name and a plugin.
+    """
+    return tuple(
+        (item[0], _copied_plugin(item[1])) if isinstance(item, tuple) and len(item) == 2 else _copied_plugin(item)
+        for item in plugins
+    )
+
+
+def _copied_plugin(plugin: object) -> object:
+    if not isinstance(plugin, Plugin):
+        return copy.deepcopy(plugin)
+    if "sim" in vars(plugin):
+        return plugin
+    copied = object.__new__(type(plugin))
+    memo: dict[int, object] = {id(plugin): copied}  # bound methods and references to itself become those of the copy
+    for name, value in vars(plugin).items():
+        try:
+            vars(copied)[name] = copy.deepcopy(value, memo)
+        except Exception:  # noqa: BLE001 - a foreign object may raise anything when copied
+            vars(copied)[name] = value
+    return copied
 
 
 def _attach_plugin(plugin: Plugin, name: str, world: SceneWorld, diagnostics: Diagnostics) -> Attachment | None:
@@ -96,16 +126,16 @@ def _attach_plugin(plugin: Plugin, name: str, world: SceneWorld, diagnostics: Di
 
 def _candidates_of_kind(kind: str, plugin: Plugin, world: SceneWorld) -> Mapping[str, Attachment]:
     """Return an attachment of the plugin to each entity of a kind, by scoped name."""
-    found: dict[str, Attachment] = {}
+    candidates: dict[str, Attachment] = {}
     entities: Iterable[SceneEntity]
     for top in world.models:
         visuals = [visual for link in top.all_links() for visual in link.visuals]
-        for own, entities in (("model", top.all_models()), ("sensor", top.all_sensors()), ("visual", visuals)):
-            if kind in (own, "any"):
+        for entity_kind, entities in (("model", top.all_models()), ("sensor", top.all_sensors()), ("visual", visuals)):
+            if kind in (entity_kind, "any"):
                 for entity in entities:
-                    getter = handle_getter(own, entity.scoped)
-                    found[entity.scoped] = Attachment(plugin, top.name, entity.scoped, entity, getter)
-    return found
+                    getter = handle_getter(entity_kind, entity.scoped)
+                    candidates[entity.scoped] = Attachment(plugin, top.name, entity.scoped, entity, getter)
+    return candidates
 
 
 def handle_getter(kind: str, scoped: str) -> ParentGetter:
@@ -119,52 +149,34 @@ def as_plugin(candidate: object, diagnostics: Diagnostics, where: Where = NOWHER
         return candidate
     if inspect.isclass(candidate) and issubclass(candidate, Plugin) and not inspect.isabstract(candidate):
         return candidate()
-    if not has_hooks(candidate):
-        diagnostics.error("SK-PLUGIN-022", f"found {candidate!r}; expected {describe_allowed_plugins()}", where)
+    cls = system_plugin_for(candidate)
+    if cls is None:
+        message = f"found {candidate!r}; expected {describe_allowed_plugins()}"
+        diagnostics.error("SK-PLUGIN-022", message, where, missing_system_pack([candidate]))
         return None
-    from simkit.plugins.gz.gz_system_plugin import GzSystem  # 12 ms: gz's modules, which few worlds use
-
-    plugin = GzSystem(system_of(candidate))
+    plugin = cls(cls.system_of(candidate))
     plugin.name = _plugin_name(candidate)
     return plugin
 
 
-def as_class(found: object) -> type[Plugin] | None:
+def as_class(candidate: object) -> type[Plugin] | None:
     """Return the plugin class for a class or module; None if it cannot be a plugin.
 
-    A class derived from `Plugin` is returned itself. A class or module with gz's hooks is wrapped in a new class.
+    A class derived from `Plugin` is returned itself. A class or module that is a system is wrapped in a new class.
     """
-    if inspect.isclass(found) and issubclass(found, Plugin):
-        return None if inspect.isabstract(found) else found
-    if not (isinstance(found, ModuleType) or inspect.isclass(found)) or not has_hooks(found):
+    if inspect.isclass(candidate) and issubclass(candidate, Plugin):
+        return None if inspect.isabstract(candidate) else candidate
+    if not (isinstance(candidate, ModuleType) or inspect.isclass(candidate)):
         return None
-    from simkit.plugins.gz.gz_system_plugin import GzSystem  # as above
-
-    def find_system(_self: GzSystem) -> object:
-        return system_of(found)
-
-    names = {"find_system": find_system, "wrapped_system": found, "__doc__": found.__doc__}
-    return type(_plugin_name(found), (GzSystem,), {**names, "__module__": getattr(found, "__module__", found.__name__)})
-
-
-def has_hooks(candidate: object) -> bool:
-    """Check whether a class, an object or a module has a hook of gz, or the function `get_system`."""
-    if isinstance(candidate, Plugin) or (inspect.isclass(candidate) and issubclass(candidate, Plugin)):
-        return False
-    return any(callable(getattr(candidate, name, None)) for name in (*GZ_HOOKS, "get_system"))
-
-
-def system_of(candidate: Any) -> object:
-    """Return the object with gz's hooks: a new instance of a class, the object itself, or what `get_system` returns."""
-    if inspect.isclass(candidate):
-        return candidate()
-    has_own = any(callable(getattr(candidate, name, None)) for name in GZ_HOOKS)
-    return candidate if has_own else candidate.get_system()
-
-
-def describe_allowed_plugins() -> str:
-    """Return a description, for messages, of the objects that can be plugins."""
-    return f"a class derived from simkit's Plugin with a load method, or one with hooks of gz ({', '.join(GZ_HOOKS)})"
+    system_class = system_plugin_for(candidate)
+    if system_class is None:
+        return None
+    names = {
+        "wrapped_system": candidate,
+        "__doc__": candidate.__doc__,
+        "__module__": getattr(candidate, "__module__", candidate.__name__),
+    }
+    return type(_plugin_name(candidate), (system_class,), names)
 
 
 def _plugin_name(candidate: object) -> str:

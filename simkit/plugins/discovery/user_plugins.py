@@ -13,11 +13,18 @@ from pathlib import Path
 from types import ModuleType
 
 from simkit.diagnostics import Diagnostics, closest, did_you_mean
+from simkit.entry_points import entry_points_of
 from simkit.input_file import TEXT_LIMIT, read_input
 from simkit.linked_files import hide_linked_text
-from simkit.packs import entry_points_of
+from simkit.plugins.adapters import (
+    describe_allowed_plugins,
+    has_hooks,
+    makes_systems,
+    missing_system_pack,
+    user_code_line,
+)
 from simkit.plugins.base import Plugin
-from simkit.plugins.discovery.python_plugins import as_class, describe_allowed_plugins, has_hooks
+from simkit.plugins.discovery.python_plugins import as_class
 from simkit.plugins.plugin_folders import find_module, folder_help, is_inside, split_python_name
 from simkit.plugins.plugin_names import ENTRY_POINT_GROUP, aliases, normalise
 from simkit.scene import ScenePlugin
@@ -57,9 +64,9 @@ def find_user_class(named: ScenePlugin, paths: Sequence[Path], diagnostics: Diag
     """
     module_name, _, class_name = named.filename.partition(":")
     module, file = _allowed_module(module_name, named, paths, diagnostics)
-    found = getattr(module, class_name, None)
-    if module is None or inspect.isclass(found):
-        return found
+    named_class = getattr(module, class_name, None)
+    if module is None or inspect.isclass(named_class):
+        return named_class
     names = [name for name, cls in inspect.getmembers(module, inspect.isclass) if cls.__module__ == module.__name__]
     hint = did_you_mean(class_name, names) or ("classes: " + (", ".join(names) or "none"))
     diagnostics.error("SK-PLUGIN-008", f"plugin {named.name!r}: {file} has no class {class_name!r}", named.where, hint)
@@ -70,14 +77,14 @@ def _allowed_module(
     name: str, plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics
 ) -> tuple[ModuleType | None, Path]:
     """Return a module under a plugin path and its file; None after an error."""
-    found = find_module(name, paths)
-    if found is None:
+    file_and_folder = find_module(name, paths)
+    if file_and_folder is None:
         places = "under a plugin path" if name.endswith(".py") else "in an entry point or under a plugin path"
         kind = "file" if name.endswith(".py") else "module"
         message = f"plugin {plugin.filename!r} is not found: no {kind} {name!r} {places}"
         diagnostics.error("SK-PLUGIN-001", message, plugin.where, folder_help(name, plugin.where, paths))
         return None, Path()
-    return _import_file(name, found[0], plugin, diagnostics), found[0]
+    return _import_file(name, file_and_folder[0], plugin, diagnostics), file_and_folder[0]
 
 
 def _named_class(
@@ -98,13 +105,16 @@ def _only_class(module: object, plugin: ScenePlugin, diagnostics: Diagnostics) -
     matching = [c for c in classes if c.__name__ == plugin.name] or classes
     if len(matching) == 1:
         return as_class(matching[0])
-    whole = None if any(issubclass(c, Plugin) for c in classes) else as_class(module)
-    if whole is not None:
-        return whole
+    module_as_class = None if any(issubclass(c, Plugin) for c in classes) else as_class(module)
+    if module_as_class is not None:
+        return module_as_class
     names = [c.__name__ for c in classes]
     listed = ", ".join(names) or "none with a load method"
     message = f"{plugin.filename!r} needs one plugin class, or one named {plugin.name!r}; it has: {listed}"
-    hint = f'write filename="{plugin.filename}:{closest(plugin.name, names) or names[0]}"' if names else ""
+    if names:
+        hint = f'write filename="{plugin.filename}:{closest(plugin.name, names) or names[0]}"'
+    else:
+        hint = missing_system_pack([module, *_own_classes(module)])
     diagnostics.error("SK-PLUGIN-008", message, plugin.where, hint)
     return None
 
@@ -131,12 +141,12 @@ def _find_by_alias(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diag
 
 def _load_entry_point(point: EntryPoint, plugin: ScenePlugin, diagnostics: Diagnostics) -> type[Plugin] | None:
     try:
-        found = point.load()
+        loaded = point.load()
     except (Exception, SystemExit) as error:  # noqa: BLE001 - an installed package may raise anything
         message = f"plugin {plugin.filename!r}: loading entry point {point.name!r} ({point.value}) failed"
         diagnostics.error("SK-PLUGIN-008", f"{message}: {type(error).__name__}: {error}", plugin.where)
         return None
-    return _checked_class(found, plugin, diagnostics)
+    return _checked_class(loaded, plugin, diagnostics)
 
 
 def _string_literals(file: Path) -> set[str]:
@@ -163,10 +173,8 @@ def _import_file(name: str, file: Path, plugin: ScenePlugin, diagnostics: Diagno
         with _sibling_modules(file.resolve().parent):
             spec.loader.exec_module(module)
     except (Exception, SystemExit) as error:  # noqa: BLE001 - a user's module may raise anything
-        from simkit.plugins.gz.gz_system_plugin import line_of  # 12 ms: gz's modules
-
         del sys.modules[key]
-        message = f"plugin {plugin.filename!r}: importing {name!r} from {file} failed{line_of(error)}"
+        message = f"plugin {plugin.filename!r}: importing {name!r} from {file} failed{user_code_line(error)}"
         diagnostics.error("SK-PLUGIN-008", f"{message}: {type(error).__name__}: {error}", plugin.where)
         return None
     return module
@@ -194,16 +202,23 @@ def _sibling_modules(folder: Path) -> Iterator[None]:
 
 
 def _classes_of(module: object) -> list[type]:
-    """Return the plugin classes that a module defines; those with gz's hooks only if none is derived from `Plugin`."""
-    own = [c for _, c in inspect.getmembers(module, inspect.isclass) if c.__module__ == getattr(module, "__name__", "")]
-    derived = [c for c in own if issubclass(c, Plugin) and not inspect.isabstract(c)]
-    if derived or callable(getattr(module, "get_system", None)):
+    """Return the plugin classes that a module defines; systems only if no class is derived from `Plugin`."""
+    classes = _own_classes(module)
+    derived = [cls for cls in classes if issubclass(cls, Plugin) and not inspect.isabstract(cls)]
+    if derived or makes_systems(module):
         return derived
-    return [c for c in own if has_hooks(c)]
+    return [cls for cls in classes if has_hooks(cls)]
 
 
-def _checked_class(found: object, plugin: ScenePlugin, diagnostics: Diagnostics) -> type[Plugin] | None:
-    cls = as_class(found)
+def _own_classes(module: object) -> list[type]:
+    """Return the classes that a module defines, without those that it imports."""
+    name = getattr(module, "__name__", "")
+    return [cls for _, cls in inspect.getmembers(module, inspect.isclass) if cls.__module__ == name]
+
+
+def _checked_class(candidate: object, plugin: ScenePlugin, diagnostics: Diagnostics) -> type[Plugin] | None:
+    cls = as_class(candidate)
     if cls is None:
-        diagnostics.error("SK-PLUGIN-008", f"{plugin.filename!r} is not {describe_allowed_plugins()}", plugin.where)
+        message = f"{plugin.filename!r} is not {describe_allowed_plugins()}"
+        diagnostics.error("SK-PLUGIN-008", message, plugin.where, missing_system_pack([candidate]))
     return cls

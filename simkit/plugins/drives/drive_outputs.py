@@ -6,8 +6,15 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, ClassVar
 
-from simkit.plugins.drives.odometry import BodyTwist, planar_covariance
-from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, LatePose, odometry_message, transforms
+from simkit.plugins.drives.odometry import planar_covariance
+from simkit.plugins.drives.odometry_messages import (
+    ODOMETRY,
+    TRANSFORMS,
+    BodyTwist,
+    LatePose,
+    odometry_message,
+    transforms,
+)
 from simkit.plugins.joint_states import JOINT_STATE, joint_readings, joint_state_message
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.options import Options
@@ -82,6 +89,11 @@ class DriveOutputs(SharedByCopies):
         self._states = plugin.advertise("joint_states", JOINT_STATE) if options.publish_wheel_joint_state else None
 
     @property
+    def odometry_topic(self) -> str:
+        """Topic of the odometry; empty if it is not published."""
+        return "" if self._odom is None else self._odom.topic
+
+    @property
     def wants_odometry(self) -> bool:
         """True while the odometry or transform topic has a subscriber."""
         odom, tf = self._odom, self._tf
@@ -107,11 +119,11 @@ class DriveOutputs(SharedByCopies):
     def _links_with(self, pose: LatePose) -> list[tuple[str, str, LatePose]]:
         """Return the parent frame, the child frame and the pose of the base and of each published joint."""
         options = self._options
-        found = [(options.odometry_frame, options.robot_base_frame, pose)] if options.publishes_odom_tf else []
+        transforms = [(options.odometry_frame, options.robot_base_frame, pose)] if options.publishes_odom_tf else []
         for above, below in self._links if options.publish_wheel_tf else ():
             parent, child = self._sim.link(above), self._sim.link(below)
-            found.append((parent.name, child.name, parent.pose.inverse() @ child.pose))
-        return found
+            transforms.append((parent.name, child.name, parent.pose.inverse() @ child.pose))
+        return transforms
 
     def tell_joints(self) -> None:
         """Publish joint states."""

@@ -153,9 +153,9 @@ class EntityPoses(SharedByCopies):
             place = pose_numbers(entity.within.scene.pose_world.inverse() @ entity.handle.scene.pose_world)
             return _CompiledEntity(entity.frame, entity.child, place)
         back = pose_numbers(its_offset.inverse())
-        own, rows = pose_numbers(offset), (self._row(body), self._row(base))
-        are_bodies = own == _IDENTITY, back == _IDENTITY
-        return _CompiledEntity(entity.frame, entity.child, None, rows[0], own, rows[1], back, *are_bodies)
+        entity_offset, rows = pose_numbers(offset), (self._row(body), self._row(base))
+        are_bodies = entity_offset == _IDENTITY, back == _IDENTITY
+        return _CompiledEntity(entity.frame, entity.child, None, rows[0], entity_offset, rows[1], back, *are_bodies)
 
     def _body_and_offset(self, handle: Any) -> tuple[int, Pose]:
         """Return MuJoCo's body of a link or model, and the pose of the link or model in the body's frame."""

@@ -143,7 +143,7 @@ class KinematicMover(SharedByCopies):
                 data.qfrc_applied[dof : dof + 6] += _solve_force(mobility[:, dof : dof + 6], lacking)
                 data.qvel[dof : dof + 3] = velocity
                 data.qvel[dof + 3 : dof + 6] = matmul(turning, data.xmat[body].reshape(3, 3))
-                physics.one_shot = True
+                physics.push_once()
                 physics.changed_body(VELOCITY, body)
 
     def _mobilities(self, data: mujoco.MjData) -> Vector:
@@ -208,14 +208,14 @@ class KinematicPlugin(ModelPlugin):
     def bounded(self, linear: Triple, angular: Triple) -> tuple[Triple, Triple]:
         """Return a commanded twist with at most `LARGEST_STEP` and `LARGEST_TURN` in a step; warn if it was larger."""
         step = self.sim.timestep
-        kept = [_shortened(linear, LARGEST_STEP / step), _shortened(angular, LARGEST_TURN / step)]
-        if kept != [linear, angular]:
+        shortened = [_shortened(linear, LARGEST_STEP / step), _shortened(angular, LARGEST_TURN / step)]
+        if shortened != [linear, angular]:
             text = (
                 f"a command asks for {math.hypot(*linear):.4g} m/s and {math.hypot(*angular):.4g} rad/s; the model "
                 f"gets {LARGEST_STEP / step:g} m/s and {LARGEST_TURN / step:g} rad/s at most"
             )
             self._once.warn("SK-PHYS-033", "bound", text, "send a smaller command")
-        return kept[0], kept[1]
+        return shortened[0], shortened[1]
 
     def before_step(self) -> None:
         """Set the velocities for the next step."""

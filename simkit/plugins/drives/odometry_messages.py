@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from simkit import msgs
 from simkit.msgs.cdr_template import CdrTemplate, packs
-from simkit.plugins.drives.odometry import BodyTwist
 from simkit.pose import Pose, Vector
+
+if TYPE_CHECKING:
+    from simkit.msgs import Message
+
 
 ODOMETRY = "nav_msgs/msg/Odometry"
 TRANSFORMS = "tf2_msgs/msg/TFMessage"
@@ -37,6 +41,14 @@ _TRANSFORM_FIELDS = (
     *(f"transform.rotation.{axis}" for axis in "xyzw"),
 )
 _NO_COVARIANCE = bytes(36 * 8)
+
+
+@dataclass(frozen=True, slots=True)
+class BodyTwist:
+    """Velocities in the body's own axes: linear [m/s] and angular [rad/s], each (x, y, z)."""
+
+    linear: Sequence[float] | Vector = (0.0, 0.0, 0.0)
+    angular: Sequence[float] | Vector = (0.0, 0.0, 0.0)
 
 
 def odometry_message(
@@ -190,7 +202,7 @@ def _pack_planar_transform(time_ns: int, frame: str, child: str, x: float, y: fl
 
 
 @functools.cache
-def message_types() -> Mapping[str, Any]:
+def message_types() -> Mapping[str, type[Message]]:
     """Return message classes by name; calling a class is several times faster than `msgs.make`."""
     geometry = "Point Vector3 Quaternion Pose Twist PoseWithCovariance TwistWithCovariance Transform TransformStamped"
     others = (ODOMETRY, TRANSFORMS, "std_msgs/msg/Header", "builtin_interfaces/msg/Time")

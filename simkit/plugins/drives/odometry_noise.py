@@ -10,6 +10,7 @@ differ from the values in the drive.
 
 from __future__ import annotations
 
+import copy
 import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -17,9 +18,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from simkit.linear_algebra import matmul
-from simkit.plugins.drives.odometry import UNKNOWN, BodyTwist, DeadReckoning
+from simkit.plugins.drives.odometry import UNKNOWN, DeadReckoning, base_motion
+from simkit.plugins.drives.odometry_messages import BodyTwist
 from simkit.plugins.options import Options, number
-from simkit.pose import Pose, Vector, quat_from_rpy, quat_multiply
+from simkit.pose import Pose, Vector, quat_from_rpy, quat_multiply, wrap_angle
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.random_streams import RandomStream
@@ -109,6 +111,12 @@ class NoisyOdometry:
         self.covariance: Vector = np.zeros((3, 3))
         self.twist, self.twist_covariance = BodyTwist(), np.zeros((2, 2))
 
+    def independent_copy(self) -> NoisyOdometry:
+        """Return a copy that continues alone, with the numbers of the present seed."""
+        copied = copy.copy(self)
+        copied.reckoning, copied._stream = replace(self.reckoning), self._stream.independent_copy()
+        return copied
+
     def advance(self, left: float, right: float, elapsed: float, sideways: float = 0.0) -> None:
         """Advance the estimate to new wheel angles.
 
@@ -150,7 +158,7 @@ class NoisyOdometry:
 
     def _propagate_covariance(self, rolled: list[float], variances: Vector) -> None:
         """Propagate the covariance of the pose over one motion, and add the covariance of the motion (equation 5.9)."""
-        distance, turn = (rolled[0] + rolled[1]) / 2, (rolled[1] - rolled[0]) / self._separation
+        distance, _, turn = base_motion(rolled[0], rolled[1], self._separation)
         middle = self.reckoning.yaw + turn / 2
         cos, sin, arm = math.cos(middle), math.sin(middle), distance / (2 * self._separation)
         along = np.array([[1, 0, -distance * sin], [0, 1, distance * cos], [0, 0, 1]])
@@ -166,7 +174,7 @@ class NoisyOdometry:
 
     def _update_twist(self, rolled: list[float], variances: Vector, elapsed: float, sideways: float) -> None:
         width = self._separation
-        ahead, turn = (rolled[0] + rolled[1]) / 2, (rolled[1] - rolled[0]) / width
+        ahead, _, turn = base_motion(rolled[0], rolled[1], width)
         self.twist = BodyTwist((ahead / elapsed, sideways / elapsed, 0.0), (0.0, 0.0, turn / elapsed))
         by_wheel = np.array([[0.5, 0.5], [-1 / width, 1 / width]]) / elapsed
         self.twist_covariance = matmul(by_wheel * variances, by_wheel.T)
@@ -199,7 +207,7 @@ class EquivalentWheelAngles:
         """
         x, y, yaw = _planar(pose)
         dx, dy = x - self._last[0], y - self._last[1]
-        turn = math.remainder(yaw - self._last[2], 2 * math.pi)
+        turn = wrap_angle(yaw - self._last[2])
         middle = self._last[2] + turn / 2
         # ratio of arc to chord, the inverse of the ratio in `DeadReckoning.go`
         arc = turn / 2 / math.sin(turn / 2) if abs(turn) > 1e-4 else 1 + turn * turn / 24

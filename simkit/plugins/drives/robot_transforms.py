@@ -54,24 +54,28 @@ class StaticTransforms(WorldPlugin):
 
     def load(self, parent: Simulation, params: Params) -> None:
         self._static = self.advertise("/tf_static", TRANSFORMS, latched=True)
-        self._known: tuple[str, ...] = ()
+        self._known: tuple[object, ...] = ()
         self.after_step()
 
     def reset(self) -> None:
-        self._known = tuple(self.sim.models)
+        self._known = self._names()
         # the compiled world keeps them, because resets come in thousands and each would compute the same transforms
         self._publish(self.sim.engine.names.shared("static transforms", lambda: list(self._all())))
 
     def after_step(self) -> None:
         """Publish all transforms again if the models have changed."""
-        names = tuple(self.sim.models)
+        names = self._names()
         if names != self._known:
             self._known = names
             self._publish(list(self._all()))
 
-    def _publish(self, found: Sequence[tuple[str, str, Pose]]) -> None:
-        if found:
-            self._static.publish_later(partial(transforms, 0, *found))
+    def _names(self) -> tuple[object, ...]:
+        """Return the names on which the transforms depend: models, and frames of sensors."""
+        return tuple(self.sim.models), tuple(sensor.frame_id for sensor in self.sim.contents.sensors.values())
+
+    def _publish(self, links: Sequence[tuple[str, str, Pose]]) -> None:
+        if links:
+            self._static.publish_later(partial(transforms, 0, *links))
 
     def _all(self) -> Iterator[tuple[str, str, Pose]]:
         names = frame_names(self.sim)

@@ -5,25 +5,31 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
-import numpy as np
-
+from simkit.elementary_functions import arithmetic_of
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.options import Options, number
 from simkit.pose import Vector
+
+Number = Any
+"""A float, or an array with a float for each of several drives."""
 
 _QUANTITIES = ("velocity", "acceleration", "jerk")
 
 
 @dataclass(frozen=True, slots=True)
 class SpeedLimiter(SharedByCopies):
-    """Bounds of a commanded speed and its first two derivatives (SI units); infinite if there is no limit."""
+    """Bounds of a commanded speed and its first two derivatives (SI units); infinite if there is no limit.
+
+    The speeds are numbers, or arrays with one number for each of several drives, which get the same bits.
+    """
 
     velocity: tuple[float, float] = (-math.inf, math.inf)
     acceleration: tuple[float, float] = (-math.inf, math.inf)
     jerk: tuple[float, float] = (-math.inf, math.inf)
 
-    def limit(self, target: float, last: float, before_last: float, step: float) -> float:
+    def limit(self, target: Number, last: Number, before_last: Number, step: float) -> Number:
         """Return the speed to command now, limited in jerk, then acceleration, then speed (gz-math's SpeedLimiter).
 
         Args:
@@ -32,32 +38,15 @@ class SpeedLimiter(SharedByCopies):
             before_last: Speed of the command before that.
             step: Time between commands [s].
         """
+        of = arithmetic_of(target)
+        larger, smaller = of.maximum, of.minimum
         old = (last - before_last) / step
-        jerk = _clamp(((target - last) / step - old) / step, self.jerk)
-        acceleration = _clamp(old + jerk * step, self.acceleration)
+        jerk = larger(self.jerk[0], smaller(self.jerk[1], ((target - last) / step - old) / step))
+        acceleration = larger(self.acceleration[0], smaller(self.acceleration[1], old + jerk * step))
         reached = last + acceleration * step
         # without an active limit the speed is exactly the target, free of rounding errors
-        if abs(reached - target) <= 1e-12 * max(1.0, abs(target)):
-            reached = target
-        return _clamp(reached, self.velocity)
-
-
-class SpeedLimiterArrays:
-    """Several limiters that limit arrays of speeds, one column for each limiter, with the bits of `SpeedLimiter`."""
-
-    def __init__(self, limiters: Sequence[SpeedLimiter]) -> None:
-        self._bounds = [np.array([getattr(one, quantity) for one in limiters]).T for quantity in _QUANTITIES]
-
-    def limit(self, target: Vector, last: Vector, before_last: Vector, step: float) -> Vector:
-        """Return the speeds to command now; see `SpeedLimiter.limit`."""
-        velocity, acceleration, jerk = self._bounds
-        old = (last - before_last) / step
-        wanted = np.maximum(jerk[0], np.minimum(jerk[1], ((target - last) / step - old) / step))
-        gain = np.maximum(acceleration[0], np.minimum(acceleration[1], old + wanted * step))
-        reached = last + gain * step
-        is_target = np.abs(reached - target) <= 1e-12 * np.maximum(1.0, np.abs(target))
-        speeds: Vector = np.maximum(velocity[0], np.minimum(velocity[1], np.where(is_target, target, reached)))
-        return speeds
+        is_target = abs(reached - target) <= 1e-12 * larger(1.0, abs(target))
+        return larger(self.velocity[0], smaller(self.velocity[1], of.where(is_target, target, reached)))
 
 
 class SpeedLimitOptions(Options):
@@ -114,11 +103,11 @@ def speed_limiter(options: LimiterOptions) -> SpeedLimiter:
 
 def limit_each(
     limiters: Sequence[SpeedLimiter],
-    targets: Sequence[float],
-    last: Sequence[float],
-    before_last: Sequence[float],
+    targets: Sequence[Number] | Vector,
+    last: Sequence[Number] | Vector,
+    before_last: Sequence[Number] | Vector,
     step: float,
-) -> tuple[float, ...]:
+) -> tuple[Number, ...]:
     """Return the speeds to command now, each limited by its own limiter.
 
     Args:
@@ -130,7 +119,3 @@ def limit_each(
     """
     speeds = zip(limiters, targets, last, before_last, strict=True)
     return tuple(limiter.limit(target, latest, before, step) for limiter, target, latest, before in speeds)
-
-
-def _clamp(value: float, bounds: tuple[float, float]) -> float:
-    return max(bounds[0], min(bounds[1], value))

@@ -10,7 +10,8 @@ import numpy as np
 
 from simkit.compiler.contact_friction import has_directional_friction
 from simkit.linear_algebra import matmul
-from simkit.plugins.drives.odometry import BodyTwist, DeadReckoning
+from simkit.plugins.drives.odometry import DeadReckoning, base_motion
+from simkit.plugins.drives.odometry_messages import BodyTwist
 from simkit.pose import Pose
 from simkit.runtime.contact.moving_surface import Belt, BeltMotion
 
@@ -36,9 +37,9 @@ def belt_of(
         now: Callback that returns the current motion of the belt.
         friction: Coefficients along and across the belt; None to use the values of the file.
     """
-    found = sim.engine.names.link(link)
-    x, y, z = matmul((found.offset @ track).matrix, np.array((0.0, 1.0, 0.0)))
-    return Belt(found.geoms, found.body, (float(x), float(y), float(z)), now, friction)
+    named = sim.engine.names.link(link)
+    x, y, z = matmul((named.offset @ track).matrix, np.array((0.0, 1.0, 0.0)))
+    return Belt(named.geoms, named.body, (float(x), float(y), float(z)), now, friction)
 
 
 def needs_direction(link: SceneLink) -> bool:
@@ -74,8 +75,8 @@ class TrackOdometry:
     def at(self, now: int) -> tuple[Pose, BodyTwist]:
         """Return the vehicle's pose, and its twist in its own axes, at time `now` [ns]."""
         left, right = self._speeds
-        turning = (right - left) / self._separation
-        return self._reckoned(now).pose, BodyTwist(((left + right) / 2, 0.0, 0.0), (0.0, 0.0, turning))
+        ahead, _, turning = base_motion(left, right, self._separation)
+        return self._reckoned(now).pose, BodyTwist((ahead, 0.0, 0.0), (0.0, 0.0, turning))
 
     def _reckoned(self, now: int) -> DeadReckoning:
         reckoning, elapsed = copy.copy(self._reckoning), (now - self._since) * 1e-9

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, cast
 
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.drives.odometry import COMMAND_TYPES, BodyTwist
-from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, odometry_message, transforms
+from simkit.plugins.drives.odometry import COMMAND_TYPES
+from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, BodyTwist, odometry_message, transforms
 from simkit.plugins.drives.speed_limits import SpeedLimiter, SpeedLimitOptions, limit_each
 from simkit.plugins.drives.wheel_joints import find_wheels
 from simkit.plugins.find_entities import read_topic
@@ -18,7 +18,7 @@ from simkit.plugins.one_time_warnings import are_usable
 from simkit.plugins.options import Options, number, text
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
+    from simkit.compiler import ActuatorRef, SpecBuilder
     from simkit.msgs import Twist, TwistStamped
     from simkit.pose import Pose, Vector
     from simkit.runtime import Model
@@ -78,6 +78,17 @@ class TwistDrive(ModelPlugin):
         self._target: Speeds = (0.0,) * len(self._limiters)
         self._last = self._before_last = self._target
         self._settled = True  # the speeds have reached the command
+
+    @property
+    def wheels(self) -> list[list[tuple[str, ActuatorRef]]]:
+        """Scoped name of the joint and servo of each wheel, by role."""
+        sides = zip(self._joint_names, self._servos, strict=True)
+        return [list(zip(names, servos, strict=True)) for names, servos in sides]
+
+    @property
+    def speed_history(self) -> tuple[Speeds, Speeds, Speeds]:
+        """Target speeds, speeds of the last command, and of the command before that."""
+        return self._target, self._last, self._before_last
 
     def open_topics(self, parent: Model, params: Params) -> None:
         """Open the topics of commands, odometry and its transform."""

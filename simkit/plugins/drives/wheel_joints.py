@@ -24,7 +24,7 @@ def find_wheels(scene: SceneModel, sides: Mapping[str, Sequence[str]], params: P
         The usable joints by role.
     """
     side_by_joint: dict[str, str] = {}
-    found: dict[str, list[SceneJoint]] = {side: [] for side in sides}
+    wheels_by_side: dict[str, list[SceneJoint]] = {side: [] for side in sides}
     for side, name in ((side, name) for side, names in sides.items() for name in names):
         joint = find_axis_joint(scene, name, params)
         if joint is None:
@@ -39,8 +39,8 @@ def find_wheels(scene: SceneModel, sides: Mapping[str, Sequence[str]], params: P
             params.error("SK-PLUGIN-051", message)
             continue
         _report_position_limits(joint, params)
-        found[side].append(joint)
-    return found
+        wheels_by_side[side].append(joint)
+    return wheels_by_side
 
 
 def find_drive_joint(scene: SceneModel, name: str, role: str, params: Params) -> SceneJoint | None:

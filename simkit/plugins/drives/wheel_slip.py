@@ -166,8 +166,8 @@ def _wheel_joint(scene: SceneModel, link: SceneLink, block: Params) -> SceneJoin
     """Return the only joint that a wheel turns on, or None after an error."""
     joints = [joint for joint in scene.all_joints() if joint.child_link == link.scoped]
     if len(joints) != 1 or len(joints[0].axes) != 1:
-        found = ", ".join(f"{joint.name!r} ({joint.type})" for joint in joints) or "none"
-        message = f"link {link.name!r} is the child of {found}; a wheel that slips needs one joint with one axis"
+        listed = ", ".join(f"{joint.name!r} ({joint.type})" for joint in joints) or "none"
+        message = f"link {link.name!r} is the child of {listed}; a wheel that slips needs one joint with one axis"
         block.error("SK-PLUGIN-091", message)
         return None
     return joints[0]
@@ -185,16 +185,16 @@ def set_compliances(sim: Simulation, links: set[str], lateral: float, longitudin
     Returns:
         The scoped names of the links that are wheels.
     """
-    found: list[str] = []
+    changed_links: list[str] = []
     for plugin in sim.engine.friction.owners():
         if not isinstance(plugin, WheelSlipBase):
             continue
         for wheel, pair in zip(plugin.wheels, plugin.compliances, strict=True):
             if wheel.contact.link in links:
-                found.append(wheel.contact.link)
+                changed_links.append(wheel.contact.link)
                 for parameter, value in zip(pair, (lateral, longitudinal), strict=True):
                     sim.set_parameter(parameter.node, parameter.name, value)
-    return found
+    return changed_links
 
 
 class WheelSlip(WheelSlipBase):
@@ -228,12 +228,14 @@ class _ClassicWheelSlip(WheelSlipBase):
         """Return each wheel with its forward speed, its speed along the axle and its rim speed [m/s]."""
         data = self.sim.engine.physics.fresh()
         down = quat_rotate(self._model.pose.quaternion, self._down)
-        found = []
+        measurements = []
         for wheel, link, joint in zip(self.wheels, self._links, self._joints, strict=True):
             axle = data.xaxis[self.sim.engine.names.joint(wheel.contact.joint).joint_ids[0]]
             velocity, rim = link.linear_velocity, wheel.radius * float(joint.velocity)
-            found.append((wheel, float(matmul(np.cross(down, axle), velocity)), float(matmul(axle, velocity)), rim))
-        return found
+            measurements.append(
+                (wheel, float(matmul(np.cross(down, axle), velocity)), float(matmul(axle, velocity)), rim)
+            )
+        return measurements
 
     def set_all(self, side: int, value: float) -> None:
         """Set one compliance of every wheel.

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.plugins.base import NEVER
-from simkit.plugins.drives.odometry import COMMAND_TYPES, Angles, Motion, TravelOdometry, joint_angles
+from simkit.plugins.drives.odometry import COMMAND_TYPES, Angles, Motion, TravelOdometry
 from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS
 from simkit.plugins.drives.speed_limits import speed_limits
 from simkit.plugins.drives.twist_drive import TwistDrive, WheeledDriveOptions
@@ -16,6 +16,7 @@ from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.find_entities import read_topic
 from simkit.plugins.one_time_warnings import are_usable
 from simkit.plugins.options import OptionsOf, boolean, integer, number, text, texts
+from simkit.runtime.handles.joint import joint_angles
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -118,8 +119,8 @@ class AckermannSteering(TwistDrive):
         elements = params.all(name)
         if not elements:
             params.text(name, required=True)
-        found = [find_drive_joint(scene, element.value, "steered wheel", element) for element in elements]
-        joints = [joint for joint in found if joint is not None]
+        steered = [find_drive_joint(scene, element.value, "steered wheel", element) for element in elements]
+        joints = [joint for joint in steered if joint is not None]
         return [
             (j.scoped, builder.add_velocity_servo(j.scoped, max_effort=j.axes[0].effort, owner=self.name))
             for j in joints

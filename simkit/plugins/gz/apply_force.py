@@ -141,19 +141,19 @@ class ApplyLinkWrench(WorldPlugin):
         self._set_wrenches()
 
     def _on_clear(self, message: Entity) -> None:
-        found = self._name_and_type(message)
-        if found is None:
+        name_and_kind = self._name_and_type(message)
+        if name_and_kind is None:
             return
-        name, kind = found
+        name, kind = name_and_kind
         cleared = self._target(name, kind)
-        kept = []
+        remaining = []
         for wrench in self._persistent:
             target = self._target(wrench.name, wrench.type)
             is_same = target is cleared if cleared is not None else wrench.name == name
             if not is_same:
-                kept.append(wrench)
+                remaining.append(wrench)
         self._log_if_verbose("no longer pushes %s", name)
-        self._persistent = kept
+        self._persistent = remaining
         self._set_wrenches()
 
     def before_step(self) -> None:
@@ -162,12 +162,12 @@ class ApplyLinkWrench(WorldPlugin):
     # ------------------------------------------------------------------ inside
 
     def _read_wrench(self, message: EntityWrench) -> _Wrench | None:
-        found = self._name_and_type(message.entity)
+        name_and_kind = self._name_and_type(message.entity)
         force, torque = _xyz(message.wrench.force), _xyz(message.wrench.torque)
         if not are_usable(*force, *torque):
             self._once.not_finite("a wrench")
             return None
-        return None if found is None else _Wrench(*found, force, torque)
+        return None if name_and_kind is None else _Wrench(*name_and_kind, force, torque)
 
     def _name_and_type(self, entity: Entity) -> tuple[str, int] | None:
         """Return the name and type of the entity in a message, or log a warning and return None."""
@@ -240,8 +240,8 @@ class ApplyJointForce(ModelPlugin):
         for extra in names[1:]:
             message = f"plugin {self.name!r} uses one <joint_name>; {extra.value!r} is not used"
             params.diagnostics.warning("SK-PLUGIN-044", message, extra.where, "add one plugin for each joint")
-        found = find_joints(scene, params, most=1)
-        self._scoped = found[0].scoped if found else ""
+        joints = find_joints(scene, params, most=1)
+        self._scoped = joints[0].scoped if joints else ""
         self._joint_name = names[0].value if names else ""
 
     def load(self, parent: Model, params: Params) -> None:

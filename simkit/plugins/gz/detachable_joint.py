@@ -70,9 +70,9 @@ class DetachableJoint(ModelPlugin):
 
     def _find(self, models: Iterable[SceneModel], params: Params) -> str:
         """Return the scoped name of the child link, or warn and return an empty text."""
-        found = {m.scoped: m for top in models for m in top.all_models()}
+        models_by_name = {m.scoped: m for top in models for m in top.all_models()}
         name = self._own if self._child_model == "__model__" else self._child_model
-        named = [m for scoped, m in found.items() if scoped == name or scoped.endswith("::" + name)]
+        named = [m for scoped, m in models_by_name.items() if scoped == name or scoped.endswith("::" + name)]
         # if several models have that name, prefer a model inside this model
         inner = [m for m in named if m.scoped == name or m.scoped.startswith(self._own)] or named[:1]
         links = [link.scoped for m in inner for link in m.all_links() if link.scoped.endswith("::" + self._child_link)]
@@ -88,15 +88,15 @@ class DetachableJoint(ModelPlugin):
     _is_missing_reported = False
 
     def load(self, parent: Model, params: Params) -> None:
-        own = f"/model/{parent.name}/detachable_joint"
+        topic_prefix = f"/model/{parent.name}/detachable_joint"
         old = self.options.topic
-        detach = read_topic(params, "detach_topic" if params.has("detach_topic") else "topic", f"{own}/detach")
+        detach = read_topic(params, "detach_topic" if params.has("detach_topic") else "topic", f"{topic_prefix}/detach")
         if old and valid_topic(old) != detach:
             message = f"<topic> is {old!r} and <detach_topic> is {detach!r}: <detach_topic> is used"
             params.diagnostics.warning("SK-PARAM-004", message, self.where)
         state = read_topic(params, "output_topic", f"/model/{self._child_model}/detachable_joint/state")
         self.listen(detach, EMPTY, self._on_detach)
-        self.listen(read_topic(params, "attach_topic", f"{own}/attach"), EMPTY, self._on_attach)
+        self.listen(read_topic(params, "attach_topic", f"{topic_prefix}/attach"), EMPTY, self._on_attach)
         self._state = self.advertise(state, STRING)
         # an initial attachment is published in the first step
         self._is_attached = False

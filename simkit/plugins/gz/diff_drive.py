@@ -10,18 +10,22 @@ import numpy as np
 
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
-from simkit.plugins.drives.odometry import LONGEST, MEAN_STEPS, TrueMotion, WheelOdometry, wheel_angles
+from simkit.plugins.drives.drive_rule import DifferentialDriveRule, DriveWheel
+from simkit.plugins.drives.odometry import FleetOdometry, TrueMotion, WheelOdometry, WheelOdometryRows, rim_speeds
 from simkit.plugins.drives.odometry_messages import ODOMETRY, odometry_message, planar_odometry, planar_transform
 from simkit.plugins.drives.odometry_noise import NoisyOdometry, OdometryNoiseOptions, odometry_noise
-from simkit.plugins.drives.speed_limits import speed_limits
+from simkit.plugins.drives.speed_limits import limit_each, speed_limits
 from simkit.plugins.drives.twist_drive import Speeds, TwistDrive, WheeledDriveOptions
 from simkit.plugins.options import OptionsOf, block, boolean, texts
-from simkit.pose import Pose, Vector
+from simkit.pose import Pose
+from simkit.runtime.array_rules import NEVER, Floats, Ids, Ticks, TopicRule, is_due
+from simkit.runtime.handles.joint import wheel_angles
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.msgs import Bool
-    from simkit.runtime import Model
+    from simkit.runtime import Model, Publisher
+    from simkit.runtime.state_arrays import StateArrays
     from simkit.scene import SceneModel
 
 
@@ -108,8 +112,7 @@ class DiffDrive(TwistDrive):
 
     def _command(self) -> None:
         linear, angular = self.next_speeds()
-        half = angular * self._separation / 2
-        self.turn_wheels((linear - half, linear + half))
+        self.turn_wheels(rim_speeds(linear, angular, self._separation))
 
     # ------------------------------------------------------------------ readings
 
@@ -128,8 +131,29 @@ class DiffDrive(TwistDrive):
             noisy.advance(*angles, elapsed)
             covariances = noisy.messages_covariance() if noisy.noise.wheel_variance else ()
             self.publish_odometry(noisy.reckoning.pose, noisy.twist, *covariances)
-        if self._truth is not None and self._truth.wanted:
-            self._truth.publish(odometry_message(now, "world", self._child, *self._true.state()))
+        if self._truth is not None:
+            self._publish_truth(self._truth)
+
+    def publish_planar(self, ahead: float, turn: float) -> None:
+        """Publish the pose of `odometry` and a forward speed [m/s] and turning rate [rad/s], as `after_step` does."""
+        way, now = self._odometry.reckoning, self.sim.time_ns
+        fields = now, self._frame, self._child, way.x, way.y, way.yaw
+        if self._odom.wanted:
+            self._odom.publish_later(partial(planar_odometry, *fields, ahead, turn))
+        if self._tf.wanted:
+            self._tf.publish_later(partial(planar_transform, *fields))
+        if self._truth is not None:
+            self._publish_truth(self._truth)
+
+    def _publish_truth(self, publisher: Publisher) -> None:
+        if publisher.wanted:
+            message = odometry_message(self.sim.time_ns, "world", self._child, *self._true.state())
+            publisher.publish(message)
+
+    # ------------------------------------------------------------------ many simulations
+
+    def array_rule(self) -> DiffDriveRule:
+        return DiffDriveRule(self)
 
 
 class DriveFleet:
@@ -138,17 +162,14 @@ class DriveFleet:
     def __init__(self, drives: Sequence[DiffDrive]) -> None:
         self._drives, self._sim = list(drives), drives[0].sim
         self._physics = self._sim.engine.physics
-        self._wheels = np.array([wheel._first_qpos for drive in drives for wheel in drive._pair], dtype=np.intp)
-        self._rows: list[Vector] = []
+        names = self._sim.engine.names
+        sides = [[names.joint(drive._pair[side].scoped).qpos[0] for drive in drives] for side in (0, 1)]
+        self._wheels = np.array(sides, dtype=np.intp)
         self._odometries = [drive._odometry for drive in drives]
         for odometry in self._odometries:
             odometry.catch_up()  # with the angles that the previous fleet has stored for this drive
             odometry.noter = self.hand_over
-        self._radius = np.array([odometry._radius for odometry in self._odometries])
-        self._separation = np.array([odometry._separation for odometry in self._odometries])
-        # wheel angles after the last integration, and at the steps before
-        self._reckoned: tuple[Vector, list[Vector]] | None = None
-        self._twists: list[tuple[float, float]] = []
+        self._odometry = FleetOdometry(self._odometries)
 
     def holds(self, drives: Sequence[DiffDrive]) -> bool:
         """Check whether the fleet consists of these drives with their current odometry objects."""
@@ -156,6 +177,10 @@ class DriveFleet:
             drive is mine and drive._odometry is odometry
             for drive, mine, odometry in zip(drives, self._drives, self._odometries, strict=True)
         )
+
+    def hand_over(self) -> None:
+        """Give the odometry of each drive the fleet's stored angles and results."""
+        self._odometry.hand_over()
 
     # ------------------------------------------------------------------ before a step
 
@@ -165,9 +190,7 @@ class DriveFleet:
             for drive in rota:  # a state was restored, and the schedule still has the fleet of the old odometry objects
                 drive.before_step()
             return
-        self._rows.append(self._physics.data.qpos.take(self._wheels))
-        if len(self._rows) >= LONGEST:
-            self.hand_over()
+        self._odometry.note(self._physics.data.qpos.take(self._wheels))
         if [True for drive in self._drives if not drive._settled]:
             for drive in rota:
                 if not drive._settled:
@@ -177,78 +200,17 @@ class DriveFleet:
 
     def after_step(self, rota: Iterable[DiffDrive]) -> None:
         """Run `DiffDrive.after_step` for all drives."""
-        if self._drives[0]._odometry is not self._odometries[0] or not self._take_over():
+        is_restored = self._drives[0]._odometry is not self._odometries[0]
+        if is_restored or any(drive._noisy is not None for drive in self._drives) or not self._odometry.join():
             for drive in rota:
                 drive.after_step()
             return
-        self._reckon()
-        now, physics, tick = self._sim.time_ns, self._physics, self._physics.tick
-        for drive, odometry, twist in zip(rota, self._odometries, self._twists, strict=True):
-            way, odom, tf = odometry.reckoning, drive._odom, drive._tf
-            fields = now, drive._frame, drive._child, way.x, way.y, way.yaw
-            if odom.wanted:
-                odom.publish_later(partial(planar_odometry, *fields, *twist))
-            if tf.wanted:
-                tf.publish_later(partial(planar_transform, *fields))
-            if drive._truth is not None and drive._truth.wanted:
-                drive._truth.publish(odometry_message(now, "world", drive._child, *drive._true.state()))
+        self._odometry.reckon(self._physics.data.qpos.take(self._wheels))
+        physics, tick = self._physics, self._physics.tick
+        for drive, twist in zip(rota, self._odometry.twists(), strict=True):
+            drive.publish_planar(*twist)
             if physics.tick != tick:  # a subscriber restored another state
                 return
-
-    def _take_over(self) -> bool:
-        """Copy the state of the odometries into the fleet, which then continues their integration.
-
-        Returns:
-            False if the fleet cannot integrate: the odometries have different numbers of stored steps, or one has
-                noise.
-        """
-        if self._reckoned is not None:
-            return True
-        first, all_of = self._odometries[0], self._odometries
-        if first._at is None or first._noted or not first._recent:
-            return False
-        for drive, odometry in zip(self._drives, all_of, strict=True):
-            alike = odometry._at is not None and len(odometry._recent) == len(first._recent)
-            if not alike or odometry._noted or drive._noisy is not None:
-                return False
-        at = np.array([odometry._at for odometry in all_of]).reshape(-1)
-        recent = np.array([odometry._recent for odometry in all_of])  # drive, step, wheel
-        self._reckoned = at, list(recent.transpose(1, 0, 2).reshape(len(first._recent), -1))
-        return True
-
-    def _reckon(self) -> None:
-        """Integrate the odometry of all drives, with the same results as `WheelOdometry.reckon`."""
-        assert self._reckoned is not None
-        (last, recent), rows = self._reckoned, self._rows
-        mean, step = MEAN_STEPS, self._odometries[0]._step
-        angles = self._physics.data.qpos.take(self._wheels)
-        for point in (*rows[mean::mean], angles):
-            rolled = (point - last).reshape(-1, 2) * self._radius[:, None]
-            for odometry, (left, right) in zip(self._odometries, rolled.tolist(), strict=True):
-                odometry.reckoning.advance(left, right, odometry._separation)
-            last = point
-        recent = [*recent, *rows][-mean:]
-        self._reckoned, self._rows = (angles, recent), []
-        left, right = ((angles - recent[0]).reshape(-1, 2) * self._radius[:, None]).T
-        elapsed = len(recent) * step
-        ahead, turn = (left + right) / 2 / elapsed, (right - left) / self._separation / elapsed
-        self._twists = list(zip(ahead.tolist(), turn.tolist(), strict=True))
-
-    # ------------------------------------------------------------------ results for the odometries
-
-    def hand_over(self) -> None:
-        """Copy the fleet's stored angles and results into the odometry of each drive."""
-        held, self._reckoned = self._reckoned, None
-        if held is not None:
-            ends, before = held[0].reshape(-1, 2).tolist(), np.stack(held[1]).reshape(len(held[1]), -1, 2)
-            recent = before.transpose(1, 0, 2).tolist()
-            for odometry, end, steps, twist in zip(self._odometries, ends, recent, self._twists, strict=True):
-                odometry.take((end[0], end[1]), [(left, right) for left, right in steps], twist)
-        if self._rows:
-            columns = np.stack(self._rows).reshape(len(self._rows), -1, 2).transpose(1, 0, 2).tolist()
-            self._rows = []
-            for odometry, steps in zip(self._odometries, columns, strict=True):
-                odometry.note_all([(left, right) for left, right in steps])
 
 
 def fleet_of(drives: Sequence[DiffDrive]) -> DriveFleet:
@@ -269,3 +231,78 @@ class SeparateReadings(DriveFleet):
             drive.after_step()
             if drive.sim.tick != tick:
                 return
+
+
+class DiffDriveRule(DifferentialDriveRule):
+    """Drive of Gazebo Sim in n simulations.
+
+    The limited speeds change at every step until they have reached the command.
+    """
+
+    def __init__(self, plugin: DiffDrive) -> None:
+        wheels = [
+            DriveWheel(plugin.sim.joint(name), servo, side, plugin._separation, plugin._radius)
+            for side, wheels_of_side in enumerate(plugin.wheels)
+            for name, servo in wheels_of_side
+        ]
+        super().__init__(plugin, plugin.command_topic, wheels)
+        self._drive = plugin
+
+    def bind(self, states: StateArrays) -> None:
+        super().bind(states)
+        count, drive = states.count, self._drive
+        self._last, self._before_last = np.zeros((count, 2)), np.zeros((count, 2))
+        self._settled, self._enabled = np.zeros(count, np.bool_), np.zeros(count, np.bool_)
+        self.odometry: WheelOdometryRows = WheelOdometryRows(
+            count, drive._radius, drive._separation, drive.period, self.grid
+        )
+
+    def take(self, row: int, tick: int) -> None:
+        drive = self._drive
+        self.target[row], self._last[row], self._before_last[row] = drive.speed_history
+        self._settled[row], self._enabled[row] = drive._settled, drive._enabled
+        if drive._noisy is not None:
+            self.take_noise(row, drive._noisy, drive._last_ns)
+        elif self.observes_wheels:
+            self.odometry.take(row, tick, drive._odometry, wheel_angles(*drive._pair))
+
+    # ------------------------------------------------------------------ steps
+
+    def aim(self, ids: Ids, targets: Floats) -> None:
+        is_on = self._enabled[ids]
+        super().aim(ids[is_on], targets[is_on])
+        self._settled[ids[is_on]] = False
+
+    def next_stop(self, ids: Ids, tick: int) -> int:
+        if not self._settled[ids].all():
+            return tick + 1
+        return self.odometry.next_stop(tick) if self.observes_wheels else NEVER
+
+    def before_step(self, ids: Ids, ticks: Ticks) -> None:
+        """Advance the limited speeds by one step towards the command."""
+        ids = ids[~self._settled[ids]]
+        if not len(ids):
+            return
+        last, before_last, drive = self._last[ids], self._before_last[ids], self._drive
+        limited = limit_each(drive._limiters, self.target[ids].T, last.T, before_last.T, drive.period)
+        speeds = np.stack(limited, axis=1)
+        self._settled[ids] = ((speeds == last) & (last == before_last)).all(axis=1)
+        self._before_last[ids], self._last[ids] = last, speeds
+        rims = self.rims(speeds)
+        self.turn_wheels(ids, rims, np.ones(rims.shape, np.bool_))
+
+    def after_step(self, ids: Ids, ticks: Ticks) -> None:
+        if not self.observes_wheels:
+            return
+        if not self.has_noise:
+            self.odometry.note(ids, ticks, self.wheel_angles(ids))
+        elif is_due(self.grid, int(ticks[0])):
+            self.advance_noise(ids, ticks)
+
+    def reading(self, topic: str) -> TopicRule | None:
+        drive = self._drive
+        if topic == drive._odom.topic:
+            return self.wheel_odometry()
+        if drive._truth is not None and topic == drive._truth.topic:
+            return self.true_odometry(drive._true)
+        return None

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit import msgs
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
-from simkit.pose import rpy_from_quat
+from simkit.pose import rpy_from_quat, wrap_angle
 
 if TYPE_CHECKING:
     from simkit.runtime import Model
-
-PoseMessage = Any
-"""Message with poses, or a pose, transform, position or rotation inside it; these types share no base class."""
 
 Planar = tuple[float, float, float]
 """Planar pose: x, y [m] and yaw [rad]."""
@@ -55,21 +52,21 @@ class DriveToPoseController(ModelPlugin):
         )
         self._target: Planar | None = None
         self._robot_pose: Planar | None = None
-        self._pose: PoseMessage = None
-        own = f"/model/{parent.name}"
-        self._speed = self.advertise(valid_topic(f"{own}/cmd_vel"), TWIST)
-        self._reached = self.advertise(valid_topic(f"{own}/reached_pose"), POSE)
-        self._pose_topic = valid_topic(f"{own}/pose")
+        self._pose: msgs.Message = None
+        model_topic = f"/model/{parent.name}"
+        self._speed = self.advertise(valid_topic(f"{model_topic}/cmd_vel"), TWIST)
+        self._reached = self.advertise(valid_topic(f"{model_topic}/reached_pose"), POSE)
+        self._pose_topic = valid_topic(f"{model_topic}/pose")
         self.subscribe(self._pose_topic, self._on_pose)
-        self.listen(valid_topic(f"{own}/cmd_pose"), TARGETS, self._on_target)
+        self.listen(valid_topic(f"{model_topic}/cmd_pose"), TARGETS, self._on_target)
         self._set_pace()
 
     # ------------------------------------------------------------------ messages
 
     def _on_target(self, message: msgs.PoseArray | msgs.PoseStamped | msgs.Pose | msgs.TFMessage) -> None:
-        found = _first_pose(message)
-        target = None if found is None else _planar(found)
-        if found is None:
+        pose = _first_pose(message)
+        target = None if pose is None else _planar(pose)
+        if pose is None:
             self._once.left_out("empty", "a target message without a pose is ignored")
         elif target is None:
             self._once.not_finite("a target")
@@ -78,11 +75,11 @@ class DriveToPoseController(ModelPlugin):
             self._warn_about_missing_plugins()
             self._set_pace()
 
-    def _on_pose(self, message: PoseMessage) -> None:
-        found = _first_pose(message)
-        planar = None if found is None else _planar(found)
+    def _on_pose(self, message: msgs.Message) -> None:
+        pose = _first_pose(message)
+        planar = None if pose is None else _planar(pose)
         if planar is not None:
-            self._robot_pose, self._pose = planar, found
+            self._robot_pose, self._pose = planar, pose
 
     def _warn_about_missing_plugins(self) -> None:
         """Warn if no plugin publishes the robot's pose, or if no plugin subscribes to the published speeds."""
@@ -121,13 +118,13 @@ class DriveToPoseController(ModelPlugin):
         distance = math.hypot(x, y)
         is_there = distance <= self._position_tolerance.value
         heading = target[2] if is_there else math.atan2(y, x)
-        turn = math.remainder(heading - robot[2], math.tau)
+        turn = wrap_angle(heading - robot[2])
         if abs(turn) > self._angle_tolerance.value:
             return 0.0, turn
         return (0.0 if is_there else distance), 0.0
 
 
-def _first_pose(message: PoseMessage) -> PoseMessage:
+def _first_pose(message: msgs.Message) -> msgs.Message:
     """Return the first Pose or Transform of a message, or None if there is no pose."""
     if hasattr(message, "transforms"):
         return message.transforms[0].transform if message.transforms else None
@@ -136,11 +133,11 @@ def _first_pose(message: PoseMessage) -> PoseMessage:
     return getattr(message, "pose", message)
 
 
-def _position_and_rotation(pose: PoseMessage) -> tuple[PoseMessage, PoseMessage]:
+def _position_and_rotation(pose: msgs.Message) -> tuple[msgs.Message, msgs.Message]:
     return (pose.position, pose.orientation) if hasattr(pose, "position") else (pose.translation, pose.rotation)
 
 
-def _planar(pose: PoseMessage) -> Planar | None:
+def _planar(pose: msgs.Message) -> Planar | None:
     """Return x [m], y [m] and yaw [rad] of a pose; None if a number is NaN or infinite.
 
     A quaternion of zeros, as in an empty message, counts as no rotation.
@@ -148,11 +145,11 @@ def _planar(pose: PoseMessage) -> Planar | None:
     place, turn = _position_and_rotation(pose)
     quaternion = (turn.w, turn.x, turn.y, turn.z)
     yaw = float(rpy_from_quat(quaternion)[2]) if any(quaternion) else 0.0
-    found = float(place.x), float(place.y), yaw
-    return found if all(map(math.isfinite, found)) else None
+    x_y_yaw = float(place.x), float(place.y), yaw
+    return x_y_yaw if all(map(math.isfinite, x_y_yaw)) else None
 
 
-def _as_pose(pose: PoseMessage) -> PoseMessage:
+def _as_pose(pose: msgs.Message) -> msgs.Message:
     place, turn = _position_and_rotation(pose)
     return msgs.make(
         POSE,

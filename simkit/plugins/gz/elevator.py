@@ -94,12 +94,12 @@ class Elevator(ModelPlugin):
         self._joint_names = [cabin, *(f"{door}{k}" for k in range(count))]
 
     def load(self, parent: Model, params: Params) -> None:
-        own = f"/model/{parent.name}"
+        model_topic = f"/model/{parent.name}"
         axes = [JointAxis(self.sim.joint(name)) for name in (self._cabin, *self._doors)]
         self._lift, self._door_axes = axes[0], axes[1:]
-        topics = [valid_topic(f"{own}/joint/{name}/0/cmd_pos") for name in self._joint_names]
+        topics = [valid_topic(f"{model_topic}/joint/{name}/0/cmd_pos") for name in self._joint_names]
         self._movers = [self.advertise(topic, DOUBLE) for topic in topics]
-        self._state = self.advertise(read_topic(params, "state_topic", f"{own}/state"), INT)
+        self._state = self.advertise(read_topic(params, "state_topic", f"{model_topic}/state"), INT)
         self._phase: Phase = "idle"
         self._targets: list[int] = []
         self._stored_commands: list[int] = []
@@ -108,9 +108,9 @@ class Elevator(ModelPlugin):
         self._was_blocked = False
         self._blocked = [False] * len(self._doors)
         self.after_step_rate = NEVER
-        self.listen(read_topic(params, "cmd_topic", f"{own}/cmd"), INT, self._on_command)
+        self.listen(read_topic(params, "cmd_topic", f"{model_topic}/cmd"), INT, self._on_command)
         for k, name in enumerate(self._joint_names[1:]):
-            self.subscribe(valid_topic(f"{own}/{name}/lidar"), partial(self._on_scan, k))
+            self.subscribe(valid_topic(f"{model_topic}/{name}/lidar"), partial(self._on_scan, k))
         rates = [rate for rate in (self.options.update_rate, self.options.state_publish_rate) if rate > 0]
         publish_while_subscribed(self, self._state, min(rates, default=0.0), "publish_floor")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final, cast
 
 from simkit import msgs
 from simkit.msgs.topic_names import valid_topic
@@ -16,6 +16,7 @@ from simkit.plugins.joints.joint_axis import JointAxis, has_axis, suggest_names
 from simkit.plugins.joints.joint_commands import ControlledJoints
 from simkit.plugins.joints.joint_trajectory import (
     INTERPOLATIONS,
+    Interpolation,
     JointPath,
     JointTarget,
     TrajectoryPoint,
@@ -135,7 +136,7 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
         # Gazebo reads an attribute, but its manual describes an element
         attribute = self.options.use_header_start_time_attribute
         self._by_header = params.boolean("use_header_start_time", attribute.lower() in ("true", "1"))
-        self._rule: Any = self.options.interpolation
+        self._rule = cast("Interpolation", self.options.interpolation)
         topic = valid_topic(self.options.topic or f"/model/{parent.name}/joint_trajectory")
         self.listen(topic, TRAJECTORY, self._on_trajectory)
         self._progress = self.advertise(f"{topic}_progress", PROGRESS)
@@ -174,13 +175,13 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
 
     def _repeated(self, params: Params, element: str, default: float) -> list[float]:
         """Return one number per joint: the values of the repeated element in order, and then the default."""
-        found: tuple[float, ...] = getattr(self.options, element)
+        values: tuple[float, ...] = getattr(self.options, element)
         count = len(self._scoped)
-        if len(found) > count:
-            message = f"plugin {self.name!r} has {len(found)} <{element}> for {count} joint{'s'[: count != 1]}"
+        if len(values) > count:
+            message = f"plugin {self.name!r} has {len(values)} <{element}> for {count} joint{'s'[: count != 1]}"
             hint = "use one for each joint, in the order of <joint_name>; surplus values have no effect"
             params.diagnostics.warning("SK-PLUGIN-044", message, params.all(element)[count].where, hint)
-        return [*found, *[default] * count][:count]
+        return [*values, *[default] * count][:count]
 
     def controllers(self) -> list[tuple[JointAxis, Pid]]:
         pairs = [(a.joint, pid) for a in self._axes.values() for pid in (a.position_pid, a.velocity_pid)]

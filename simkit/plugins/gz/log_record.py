@@ -95,8 +95,8 @@ class LogRecord(WorldPlugin):
             try:
                 patterns.append(re.compile(element.value))
             except re.error as error:
-                found = f"found <record_topic>{element.value}</record_topic>"
-                element.error("SK-PARAM-002", f"{found}; expected a topic or a regular expression: {error}")
+                problem = f"found <record_topic>{element.value}</record_topic>"
+                element.error("SK-PARAM-002", f"{problem}; expected a topic or a regular expression: {error}")
         return frozenset(plain), tuple(patterns)
 
     def _report_unused(self, params: Params) -> None:
@@ -153,8 +153,8 @@ class LogRecord(WorldPlugin):
         self._publish_state()
 
     def _is_recorded(self, topic: str) -> bool:
-        own = topic in (self._sdf.topic, self._state.topic) or topic in self._plain
-        return own or any(pattern.fullmatch(topic) for pattern in self._patterns)
+        is_listed = topic in (self._sdf.topic, self._state.topic) or topic in self._plain
+        return is_listed or any(pattern.fullmatch(topic) for pattern in self._patterns)
 
     def after_step(self) -> None:
         recorder = self._log.recorder

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING
 from simkit.compiler.contact_friction import has_directional_friction
 from simkit.float_sum import float_sum
 from simkit.params import Params
-from simkit.plugins.drives.odometry import Angles, Motion, TravelOdometry, joint_angles
+from simkit.plugins.drives.odometry import Angles, Motion, TravelOdometry
 from simkit.plugins.drives.speed_limits import speed_limits
 from simkit.plugins.drives.twist_drive import Speeds, TwistDrive, WheeledDriveOptions
 from simkit.plugins.options import OptionsOf, number, texts
+from simkit.runtime.handles.joint import joint_angles
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -119,7 +120,11 @@ class MecanumDrive(TwistDrive):
 def _report_missing_rollers(scene: SceneModel, wheels: Sequence[SceneJoint], params: Params) -> None:
     """Warn about wheels with equal friction in every direction, because such wheels do not roll sideways."""
     surfaces = {link.scoped: [c.surface for c in link.collisions] for link in scene.all_links()}
-    plain = [j for j in wheels if (own := surfaces.get(j.child_link)) and not any(map(has_directional_friction, own))]
+    plain = [
+        j
+        for j in wheels
+        if (wheel_surfaces := surfaces.get(j.child_link)) and not any(map(has_directional_friction, wheel_surfaces))
+    ]
     if plain:
         names = ", ".join(repr(joint.child_link.rsplit("::", 1)[-1]) for joint in plain)
         message = f"mecanum drive: friction of {names} is equal in every direction, so these wheels have no rollers"

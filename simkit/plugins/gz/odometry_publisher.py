@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -11,15 +12,17 @@ import numpy as np
 
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.drives.odometry import MEAN_STEPS, BodyTwist, TrueMotion
-from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, odometry_message, transforms
+from simkit.plugins.drives.odometry import MEAN_STEPS, TrueMotion
+from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, BodyTwist, odometry_message, transforms
 from simkit.plugins.find_entities import read_topic
 from simkit.plugins.options import Options, OptionsOf, integer, number, text, vector3
 from simkit.pose import IDENTITY, Pose, Vector, quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate
+from simkit.runtime.array_rules import CannotBatchError, Floats, Ids, PluginRule, Ticks, TopicRule, next_due
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.runtime import Model
+    from simkit.runtime.state_arrays import StateArrays
     from simkit.scene import SceneModel
 
 
@@ -64,17 +67,17 @@ class OdometryPublisher(ModelPlugin):
         self._noise = self.options.gaussian_noise
 
     def load(self, parent: Model, params: Params) -> None:
-        own = f"/model/{parent.name}"
+        model_topic = f"/model/{parent.name}"
         self._frame = params.text("odom_frame", f"{parent.name}/odom")
         self._base = params.text("robot_base_frame", f"{parent.name}/base_footprint")
         self._true = TrueMotion(parent, self.sim.link(self._canonical))
         self._trail: deque[tuple[float, ...]] = deque(maxlen=MEAN_STEPS)
         self._stream = self.random("gaussian_noise", 6) if self._noise > 0 else None
         self._index = 0
-        covariance = read_topic(params, "odom_covariance_topic", f"{own}/odometry_with_covariance")
-        self._odom = self.advertise(read_topic(params, "odom_topic", f"{own}/odometry"), ODOMETRY)
+        covariance = read_topic(params, "odom_covariance_topic", f"{model_topic}/odometry_with_covariance")
+        self._odom = self.advertise(read_topic(params, "odom_topic", f"{model_topic}/odometry"), ODOMETRY)
         self._noisy = self.advertise(covariance, ODOMETRY)
-        self._tf = self.advertise(read_topic(params, "tf_topic", f"{own}/pose"), TRANSFORMS)
+        self._tf = self.advertise(read_topic(params, "tf_topic", f"{model_topic}/pose"), TRANSFORMS)
         self._tf.present = lambda: transforms(self.sim.time_ns, (self._frame, self._base, self._reading()[0]))
 
     def before_step(self) -> None:
@@ -140,3 +143,64 @@ class OdometryPublisher(ModelPlugin):
             linear += quat_rotate(back, positions[k] - positions[k - 1]) / step
         count = len(turns) - 1
         return linear / count, angular / count
+
+    def array_rule(self) -> OdometryPublisherRule:
+        return OdometryPublisherRule(self)
+
+
+class OdometryPublisherRule(PluginRule):
+    """Odometry from the true motion in n simulations."""
+
+    def __init__(self, plugin: OdometryPublisher) -> None:
+        self._plugin = plugin
+
+    def bind(self, states: StateArrays) -> None:
+        self._states = states
+
+    def reading(self, topic: str) -> TopicRule | None:
+        plugin = self._plugin
+        if topic not in (plugin._odom.topic, plugin._noisy.topic):
+            return None
+        poses = plugin._true.place_rows(self._states)
+        if plugin._stream is not None:
+            raise CannotBatchError(f"topic {plugin._odom.topic} with <gaussian_noise>")
+        return MeanMotionRows(plugin, self._states.count, poses)
+
+
+class MeanMotionRows(TopicRule):
+    """Pose of a model and its mean twist over the last steps, in n simulations.
+
+    Args:
+        plugin: publisher of the simulation that resets all others.
+        count: number of simulations.
+        poses: function that returns the present poses of the model (x, y, z, qw, qx, qy, qz) in some simulations.
+    """
+
+    def __init__(self, plugin: OdometryPublisher, count: int, poses: Callable[[Ids], Floats]) -> None:
+        self.grid = plugin.sim.engine.clock.grid(plugin.after_step_rate or 0.0)
+        self._plugin, self._poses = plugin, poses
+        # poses before the last steps, at the index of the tick modulo their number
+        self._trails, self._first_tick = np.zeros((count, MEAN_STEPS, 7)), np.zeros(count, np.int64)
+
+    def take(self, row: int) -> None:
+        trail, tick = self._plugin._trail, self._plugin.sim.tick
+        self._first_tick[row] = tick - len(trail)
+        for back, pose in enumerate((self._plugin._true.place(), *reversed(trail))):
+            if back < MEAN_STEPS:  # the present pose takes the place of the oldest one
+                self._trails[row, (tick - back) % MEAN_STEPS] = pose
+
+    def next_stop(self, tick: int) -> int:
+        return max(tick + 1, next_due(self.grid, tick) - MEAN_STEPS)
+
+    def note(self, ids: Ids, ticks: Ticks) -> None:
+        self._trails[ids, ticks % MEAN_STEPS] = self._poses(ids)
+
+    def read(self, ids: Ids, ticks: Ticks) -> Floats:
+        values = np.zeros((len(ids), 6))
+        for values_of_row, row, tick, pose in zip(values, ids.tolist(), ticks.tolist(), self._poses(ids), strict=True):
+            before = range(max(tick - MEAN_STEPS, int(self._first_tick[row])), tick)
+            trail = np.vstack((*(self._trails[row, k % MEAN_STEPS] for k in before), pose))
+            place, twist = self._plugin.reading_of(trail)
+            yaw = Pose((0.0, 0.0, 0.0), place.quaternion).rpy[2]  # of the quaternion that the message would have
+            values_of_row[:] = *place.position[:2], yaw, *twist.linear[:2], twist.angular[2]
+        return values

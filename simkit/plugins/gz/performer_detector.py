@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin, WorldPlugin
 from simkit.plugins.find_entities import read_required_name, read_topic
-from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, Message
 from simkit.plugins.options import Options, OptionsOf, block, blocks, pose, text, texts, vector3
 from simkit.plugins.publish_on_demand import watch_while_subscribed
 from simkit.plugins.world.service_entities import pose_fields
@@ -154,14 +153,14 @@ class PerformerDetector(ModelPlugin):
 
         The detector does not publish these performers, except at the very start of the simulation.
         """
-        found = () if self.sim.tick == self._born else self._performer_states()
-        self._inside = tuple(name for name, _, is_inside in found if is_inside)
+        states = () if self.sim.tick == self._born else self._performer_states()
+        self._inside = tuple(name for name, _, is_inside in states if is_inside)
 
     def look(self) -> None:
         """Publish the performers that entered or left this model's box since the last step."""
-        found = self._performer_states()
-        names = tuple(name for name, _, is_inside in found if is_inside)
-        for name, place, is_inside in found:
+        states = self._performer_states()
+        names = tuple(name for name, _, is_inside in states if is_inside)
+        for name, place, is_inside in states:
             if is_inside != (name in self._inside):
                 others = tuple(inside for inside in self._inside if inside != name)
                 self._inside = (*others, name) if is_inside else others
@@ -171,7 +170,9 @@ class PerformerDetector(ModelPlugin):
     def _performers(self) -> tuple[Performer, ...]:
         """Return the performers of the world's plugins, which do not change during a run."""
         plugins = self.sim.engine.structure.all_plugins()
-        return tuple(found for plugin in plugins if isinstance(plugin, Performers) for found in plugin.performers)
+        return tuple(
+            performer for plugin in plugins if isinstance(plugin, Performers) for performer in plugin.performers
+        )
 
     def _performer_states(self) -> list[tuple[str, Pose, bool]]:
         """Return each performer's model, its world pose, and whether its box overlaps this model's box."""
@@ -179,37 +180,23 @@ class PerformerDetector(ModelPlugin):
         present = [performer for performer in self._known if performer.model in models]
         if not present:
             return []
-        own = self._model.pose
-        centre = own.position if self._is_centred else own.position + quat_rotate(own.quaternion, self._offset)
-        (x, y, z), (a, b, c), found = centre.tolist(), self._half, []
+        frame = self._model.pose
+        centre = frame.position if self._is_centred else frame.position + quat_rotate(frame.quaternion, self._offset)
+        (x, y, z), (a, b, c), states = centre.tolist(), self._half, []
         for performer in present:
             pose = models[performer.model].pose
             (u, v, w), (p, q, r) = pose.position.tolist(), performer.half
             is_inside = abs(u - x) <= a + p and abs(v - y) <= b + q and abs(w - z) <= c + r
-            found.append((performer.model, pose, is_inside))
-        return found
+            states.append((performer.model, pose, is_inside))
+        return states
 
     def _publish(self, name: str, pose: Pose, state: bool) -> None:
-        own = self._model.pose
+        frame = self._model.pose
         header = msgs.header(self.sim.time_ns, self._model.name)
-        fields = pose_fields(own.inverse() @ pose)
+        fields = pose_fields(frame.inverse() @ pose)
         if self._poses.wanted:
             self._poses.publish(msgs.make(POSE, header=header, pose=fields))
         if self._details.wanted:
             keys, values = [key for key, _ in self._data], [value for _, value in self._data]
             status = {"name": name, "pose": fields, "state": state, "count": len(self._inside)}
             self._details.publish(msgs.make(STATUS, header=header, **status, keys=keys, values=values))
-
-
-def pose_of_status(status: msgs.PerformerStatus) -> Message:
-    """Return the `gz.msgs.Pose` that Gazebo's detector publishes for a status, with Gazebo's header data."""
-    found: Any = MESSAGE_CLASSES["Pose"](name=status.name)
-    for ours, theirs in ((found.position, status.pose.position), (found.orientation, status.pose.orientation)):
-        for axis in ours.FIELDS:
-            if axis != "header":
-                setattr(ours, axis, getattr(theirs, axis))
-    found.header.stamp.sec, found.header.stamp.nsec = status.header.stamp.sec, status.header.stamp.nanosec
-    own = (("frame_id", status.header.frame_id), ("state", str(int(status.state))), ("count", str(status.count)))
-    for key, value in (*own, *zip(status.keys, status.values, strict=True)):
-        found.header.data.add(key=key, value=[value])
-    return found  # type: ignore[no-any-return]

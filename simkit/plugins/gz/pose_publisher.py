@@ -156,8 +156,8 @@ class PosePublisher(ModelPlugin):
     def _on_link(self, link: SceneLink) -> Iterator[PosedEntity]:
         children: dict[str, tuple[SceneVisual | SceneCollision | SceneSensor, ...]]
         children = {"visual": link.visuals, "collision": link.collisions, "sensor": link.sensors}
-        for kind, found in children.items():
-            for child in found if self._published_kinds[kind] else ():
+        for kind, entities in children.items():
+            for child in entities if self._published_kinds[kind] else ():
                 yield PosedEntity(link.scoped, child.scoped, child.pose_link)
 
 

@@ -89,9 +89,12 @@ def with_sensors_colours(scene: Scene) -> Scene:
 
 
 def _coloured(world: SceneWorld, plugins: tuple[ScenePlugin, ...], models: tuple[SceneModel, ...]) -> SceneWorld:
-    found = [*plugins, *(plugin for model in models for nested in model.all_models() for plugin in nested.plugins)]
+    all_plugins = [
+        *plugins,
+        *(plugin for model in models for nested in model.all_models() for plugin in nested.plugins),
+    ]
     colours: dict[str, Any] = {}
-    for plugin in found:
+    for plugin in all_plugins:
         if _is_sensors_system(plugin):
             for name, place in _COLOURS.items():
                 colour = _colour(plugin.params, name)

@@ -66,13 +66,13 @@ class TouchTimer(ModelPlugin):
 
     def after_step(self) -> None:
         sim = self.sim
-        own, target, model = sim.engine.names.shared(f"touch {id(self)}", self._masks)
-        found = find_contacts(sim.mj_model, sim.engine.physics.fresh(), own)
-        if found is None or not target[found.geoms].any():
+        watched, target, model = sim.engine.names.shared(f"touch {id(self)}", self._masks)
+        contacts = find_contacts(sim.mj_model, sim.engine.physics.fresh(), watched)
+        if contacts is None or not target[contacts.geoms].any():
             self._since = -1
             return
         if self.is_exclusive:
-            first, second = found.geoms.T
+            first, second = contacts.geoms.T
             if not ((target[first] & model[second]) | (model[first] & target[second])).all():
                 self._since = -1
                 return
@@ -89,8 +89,8 @@ class TouchTimer(ModelPlugin):
         """Return the masks of watched geoms, target geoms and geoms of this model."""
         collisions = collision_table(self.sim.engine.compiled)
         targets = {name for name in collisions.names if self._is_target(name)}
-        own = {name for name in collisions.names if name.startswith(f"{self.scoped}::")}
-        return collisions.mask(self._watched), collisions.mask(targets), collisions.mask(own)
+        collisions_of_model = {name for name in collisions.names if name.startswith(f"{self.scoped}::")}
+        return collisions.mask(self._watched), collisions.mask(targets), collisions.mask(collisions_of_model)
 
     def _is_target(self, scoped: str) -> bool:
         """Check whether a collision's name contains the target, in simkit's or in Gazebo's notation.
@@ -147,16 +147,16 @@ class TouchPlugin(TouchTimer):
 
     def _find(self, collisions: list[SceneCollision], scene: SceneModel, params: Params) -> tuple[str, ...]:
         """Return the scoped names of the collisions that `<collision>` names."""
-        found: dict[str, None] = {}
+        scoped_names: dict[str, None] = {}
         for element in params.all("collision"):
             same = [c.scoped for c in collisions if f"::{c.scoped}".endswith(f"::{element.value}")]
-            found.update(dict.fromkeys(same))
+            scoped_names.update(dict.fromkeys(same))
             if not same:
                 listed = [c.name for c in collisions]
                 shown = ", ".join(map(repr, listed)) or "none"
                 message = f"model {scene.scoped!r} has no collision {element.value!r}; it has: {shown}"
                 element.error("SK-PLUGIN-003", message, did_you_mean(element.value, listed))
-        return tuple(found)
+        return tuple(scoped_names)
 
     def load(self, parent: Model, params: Params) -> None:
         sensors = [

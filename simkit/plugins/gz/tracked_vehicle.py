@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 from simkit import msgs
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
-from simkit.plugins.drives.odometry import COMMAND_TYPES, BodyTwist
-from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, odometry_message, transforms
+from simkit.plugins.drives.odometry import COMMAND_TYPES
+from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, BodyTwist, odometry_message, transforms
 from simkit.plugins.drives.speed_limits import LimiterOptions, speed_limiter
 from simkit.plugins.drives.tracks import TrackOdometry, belt_of, needs_direction, report_missing_collisions
 from simkit.plugins.drives.twist_drive import OdometryOptions, Speeds, TwistDrive
@@ -219,8 +219,8 @@ class TrackedVehicle(TwistDrive):
     names = ("gz::sim::systems::TrackedVehicle",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        own = params.has("body_link")
-        self._canonical = find_named_link(scene, "body_link", params) if own else scene.canonical_link
+        is_named = params.has("body_link")
+        self._canonical = find_named_link(scene, "body_link", params) if is_named else scene.canonical_link
         self._sides = [
             self._read_side("left_track", self.options.left_track, scene),
             self._read_side("right_track", self.options.right_track, scene),
@@ -233,12 +233,14 @@ class TrackedVehicle(TwistDrive):
         if self.options.debug:
             params.note("SK-PLUGIN-100", "<debug> of tracked vehicles has no effect in simkit")
 
-    def _read_side(self, element: str, found: Sequence[TrackOptions], scene: SceneModel) -> list[tuple[str, str]]:
+    def _read_side(
+        self, element: str, track_options: Sequence[TrackOptions], scene: SceneModel
+    ) -> list[tuple[str, str]]:
         """Return the speed and centre topics of the track controllers on one side."""
-        if not found:
+        if not track_options:
             self.params.text(element, required=True)
         tracks = []
-        for options in found:
+        for options in track_options:
             block, name = options.params, options.link
             named = block.child("link")
             if named is not None and name:

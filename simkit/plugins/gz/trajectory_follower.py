@@ -94,8 +94,8 @@ class TrajectoryFollower(ModelPlugin):
             message = "<zero_vel_on_bearing_reached> has no effect: the link has a joint to its parent or to the world"
             self._once.warn("SK-PLUGIN-131", "held", message, "set <link_name> to the root link of the model")
         self._set_pace()
-        own = f"/model/{parent.name}/trajectory_follower/pause"
-        self.listen(read_topic(params, "topic", own), BOOL, self._on_pause)
+        default_topic = f"/model/{parent.name}/trajectory_follower/pause"
+        self.listen(read_topic(params, "topic", default_topic), BOOL, self._on_pause)
 
     def _on_pause(self, message: Bool) -> None:
         self._is_paused = bool(message.data)
@@ -146,19 +146,19 @@ def _waypoints(params: Params, start: Pose, name: str) -> list[Point]:
         others = " and ".join(f"<{kind}>" for kind in kinds[1:])
         message = f"plugin {name!r} follows <{kinds[0]}>; {others} {'has' if len(kinds) == 2 else 'have'} no effect"
         params.diagnostics.warning("SK-PLUGIN-130", message, params.where, "keep one of the elements")
-    found = {
+    waypoints_by_kind = {
         "waypoints": _listed_waypoints(params.block("waypoints"), kinds[0] == "waypoints"),
         "circle": _circle_waypoints(params.block("circle"), start, kinds[0] == "circle"),
         "line": _line_waypoints(params.block("line"), start, kinds[0] == "line"),
     }
-    return found[kinds[0]]
+    return waypoints_by_kind[kinds[0]]
 
 
 def _listed_waypoints(block: Params, is_followed: bool) -> list[Point]:
-    found = [(x, y) for x, y in (waypoint.vector("waypoint", 2) for waypoint in block.each("waypoint"))]
-    if is_followed and not found:
+    points = [(x, y) for x, y in (waypoint.vector("waypoint", 2) for waypoint in block.each("waypoint"))]
+    if is_followed and not points:
         block.error("SK-PARAM-001", "<waypoints> needs <waypoint>: x and y [m] in the world")
-    return found
+    return points
 
 
 def _circle_waypoints(block: Params, start: Pose, is_followed: bool) -> list[Point]:

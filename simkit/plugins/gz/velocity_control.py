@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, cast
 
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
@@ -54,8 +54,8 @@ class VelocityControl(KinematicPlugin):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self.options.read_all()
-        found = [(element.value, find_link(scene, element.value, params)) for element in params.all("link_name")]
-        self._link_names = {name: link.scoped for name, link in found if link is not None}
+        named_links = [(element.value, find_link(scene, element.value, params)) for element in params.all("link_name")]
+        self._link_names = {name: link.scoped for name, link in named_links if link is not None}
         self._links = {link.scoped: link.pose_world for link in scene.all_links()}
         self._canonical, self._pose = scene.canonical_link, scene.pose_world
 
@@ -71,10 +71,12 @@ class VelocityControl(KinematicPlugin):
         self._rests: dict[frozenset[str], KinematicMotion] = {}
         for name in [name for name, part in self._parts.items() if not part] + ([] if self._whole else [""]):
             self._report_fixed(name)
-        own = f"/model/{parent.name}"
-        self.listen(valid_topic(self.options.topic or f"{own}/cmd_vel"), COMMAND_TYPES, self._on_command)
+        model_topic = f"/model/{parent.name}"
+        self.listen(valid_topic(self.options.topic or f"{model_topic}/cmd_vel"), COMMAND_TYPES, self._on_command)
         for name in self._link_names:
-            self.listen(valid_topic(f"{own}/link/{name}/cmd_vel"), COMMAND_TYPES, partial(self._on_link_command, name))
+            self.listen(
+                valid_topic(f"{model_topic}/link/{name}/cmd_vel"), COMMAND_TYPES, partial(self._on_link_command, name)
+            )
 
     def _report_fixed(self, link: str) -> None:
         entity = f"link {link!r} of model {self.scoped!r}" if link else f"model {self.scoped!r}"
@@ -94,8 +96,8 @@ class VelocityControl(KinematicPlugin):
             self._link_targets.pop(link, None)  # the latest command is the last entry
             self._link_targets[link] = motion
 
-    def _motion_of(self, message: Any) -> Motion | None:
-        twist = getattr(message, "twist", message)
+    def _motion_of(self, message: Twist | TwistStamped) -> Motion | None:
+        twist = cast("Twist", getattr(message, "twist", message))
         linear, angular = ((float(v.x), float(v.y), float(v.z)) for v in (twist.linear, twist.angular))
         if are_usable(*linear, *angular):
             return self.bounded(linear, angular)

@@ -9,8 +9,8 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
-from simkit.compiler.meshes.companion_files import read_pixels
-from simkit.compiler.meshes.mesh_part import MeshFileError
+from simkit.loaders.meshes.companion_files import read_pixels
+from simkit.loaders.meshes.mesh_part import MeshFileError
 from simkit.params import Params
 from simkit.plugins.base import Plugin, SensorPlugin
 from simkit.plugins.options import Options, OptionsOf, integer, number, text
@@ -77,19 +77,19 @@ class Thermal(Plugin):
         return not quirks and self.scoped in (scene.scoped, *(link.scoped for link in scene.links))
 
     def load(self, parent: object, params: Params) -> None:
-        found = self._temperature
+        temperature = self._temperature
         if self._picture is not None:
-            found = HeatSignature(self._picture, *_sorted_range(self._range, self.sim))
-        if found is not None:
-            self.sim.contents.temperatures[self.scoped] = found
+            temperature = HeatSignature(self._picture, *_sorted_range(self._range, self.sim))
+        if temperature is not None:
+            self.sim.contents.temperatures[self.scoped] = temperature
 
 
 def _read_kelvins(params: Params, name: str) -> float:
-    found = params.number(name)
-    if found < 0:
-        message = f"found <{name}> {found:g}; expected at least 0 K: 0 is used, as in Gazebo"
+    temperature = params.number(name)
+    if temperature < 0:
+        message = f"found <{name}> {temperature:g}; expected at least 0 K: 0 is used, as in Gazebo"
         params.diagnostics.warning(_WITHOUT_EFFECT, message, params.block(name).where)
-    return max(found, 0.0)
+    return max(temperature, 0.0)
 
 
 def _read_range(params: Params) -> tuple[float | None, float | None]:
@@ -161,10 +161,10 @@ class ThermalSensor(SensorPlugin):
     def _resolution(self, params: Params) -> float | None:
         if not params.has("resolution"):
             return None
-        found = self.options.resolution
-        if found > 0:
-            return found
-        message = f"found <resolution> {found:g}; expected a number above 0: the default is used, as in Gazebo"
+        resolution = self.options.resolution
+        if resolution > 0:
+            return resolution
+        message = f"found <resolution> {resolution:g}; expected a number above 0: the default is used, as in Gazebo"
         params.diagnostics.warning(_WITHOUT_EFFECT, message, params.block("resolution").where)
         return None
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from simkit.plugins.find_entities import find_joint
 from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.pose import Vector
 from simkit.scene import SceneJoint, SceneModel
+
+if TYPE_CHECKING:
+    from simkit.runtime import Joint
 
 
 class JointAxis(SharedByCopies):
@@ -26,27 +29,26 @@ class JointAxis(SharedByCopies):
             looked up at each access.
     """
 
-    def __init__(self, joint: Any, index: int = 0) -> None:
+    def __init__(self, joint: Joint, index: int = 0) -> None:
         self.joint, self.index, self.name = joint, index, joint.name
         self._is_alone = len(joint.scene.axes) == 1
 
     @property
     def dof(self) -> int:
         """Index among MuJoCo's degrees of freedom."""
-        dof: int = self.joint.mj_dofs[self.index]
-        return dof
+        return self.joint.mj_dofs[self.index]
 
     @property
     def position(self) -> float:
         """Position [rad or m]."""
         value = self.joint.position
-        return float(value) if self._is_alone else float(value[self.index])
+        return value if isinstance(value, float) else float(value[self.index])
 
     @property
     def velocity(self) -> float:
         """Velocity [rad/s or m/s]."""
         value = self.joint.velocity
-        return float(value) if self._is_alone else float(value[self.index])
+        return value if isinstance(value, float) else float(value[self.index])
 
     @property
     def effort_limit(self) -> float:
@@ -98,7 +100,7 @@ def find_joints(scene: SceneModel, params: Params, axis: int = 0, most: int | No
         axis: Index of the required axis; joints with fewer axes are an error.
         most: Number of `<joint_name>` elements to read; None for all.
     """
-    found = []
+    joints = []
     element = "joint_name"
     elements = params.all(element)[:most]
     if not elements:
@@ -109,8 +111,8 @@ def find_joints(scene: SceneModel, params: Params, axis: int = 0, most: int | No
             continue
         joint = find_joint(scene, joint_name.value, joint_name)
         if joint is not None and has_axis(joint, axis, joint_name):
-            found.append(joint)
-    return found
+            joints.append(joint)
+    return joints
 
 
 def has_axis(joint: SceneJoint, axis: int, params: Params) -> bool:

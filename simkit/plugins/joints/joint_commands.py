@@ -103,11 +103,11 @@ class JointCommander(ControlledJoints, ModelPlugin):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         faults = params.diagnostics.error_count
-        found = find_joints(scene, params, axis=self._index)
+        joints = find_joints(scene, params, axis=self._index)
         if params.diagnostics.error_count > faults:  # the plugin will not be loaded, so report all other errors now
             for element in FIELDS:
                 params.number(element)
-        self._scoped = [joint.scoped for joint in found]
+        self._scoped = [joint.scoped for joint in joints]
         self._first_name = next((e.value for e in params.all("joint_name") if e.value), "")
 
     def load(self, parent: Model, params: Params) -> None:
@@ -138,10 +138,10 @@ class JointCommander(ControlledJoints, ModelPlugin):
                 self._once.warn("SK-PLUGIN-042", "number", message)
         else:
             _ = self.options.actuator_number
-        own = f"/model/{parent.name}"
-        topic = "/actuators" if self._number >= 0 else f"{own}/{self.own_topic}"
+        model_topic = f"/model/{parent.name}"
+        topic = "/actuators" if self._number >= 0 else f"{model_topic}/{self.own_topic}"
         inner = self.options.sub_topic
-        topic = self.options.topic or (f"{own}/{inner}" if inner else topic)
+        topic = self.options.topic or (f"{model_topic}/{inner}" if inner else topic)
         if self._number >= 0:
             self.listen(valid_topic(topic), ACTUATORS, self._on_actuators)
         else:
@@ -241,10 +241,12 @@ class JointCommander(ControlledJoints, ModelPlugin):
             unused: Names of the elements that may be present.
             reason: End of the message.
         """
-        found = [name for name in unused if params.all(name)]
-        if found:
-            listed = ", ".join(f"<{name}>" for name in found)
-            message = f"plugin {self.name!r}: {listed} {'has' if len(found) == 1 else 'have'} no effect {reason}"
+        unused_elements = [name for name in unused if params.all(name)]
+        if unused_elements:
+            listed = ", ".join(f"<{name}>" for name in unused_elements)
+            message = (
+                f"plugin {self.name!r}: {listed} {'has' if len(unused_elements) == 1 else 'have'} no effect {reason}"
+            )
             params.diagnostics.warning("SK-PLUGIN-043", message, self.where)
 
 

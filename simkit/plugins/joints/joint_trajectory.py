@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, Literal
+from typing import TYPE_CHECKING, Final, Literal, TypeVar
 
 from simkit.plugins.one_time_warnings import are_usable
+from simkit.pose import Vector
 
 if TYPE_CHECKING:
     from simkit.msgs import Duration, JointTrajectory, Time
 
+Values = TypeVar("Values", float, Vector)
 Interpolation = Literal["none", "linear", "cubic", "quintic"]
 INTERPOLATIONS: Final = ("none", "linear", "cubic", "quintic")
 SECOND: Final = 1_000_000_000
@@ -117,24 +119,24 @@ class JointPath:
             joint: Index of the joint among the names.
             rule: "linear", "cubic" or "quintic".
         """
-        held = [p for p in points if joint < len(p.positions)]
-        if not held:
+        via_points = [p for p in points if joint < len(p.positions)]
+        if not via_points:
             return None
-        if held[0].time > 0:
+        if via_points[0].time > 0:
             first = TrajectoryPoint(0, (start.position,) * (joint + 1), (start.velocity,) * (joint + 1))
-            held = [first, *held]
+            via_points = [first, *via_points]
         spline = {"linear": _linear, "cubic": _cubic, "quintic": _quintic}[rule]
-        times, pieces = [held[0].time], []
-        for i in range(1, len(held)):
-            a, b = held[i - 1], held[i]
+        times, pieces = [via_points[0].time], []
+        for i in range(1, len(via_points)):
+            a, b = via_points[i - 1], via_points[i]
             if b.time <= times[-1]:
                 continue
             ends = a.positions[joint], b.positions[joint]
-            velocities = _velocity(held, joint, i - 1), _velocity(held, joint, i)
+            velocities = _velocity(via_points, joint, i - 1), _velocity(via_points, joint, i)
             accelerations = _value_of_joint(a.accelerations, joint), _value_of_joint(b.accelerations, joint)
             pieces.append(spline(ends, velocities, accelerations, (b.time - a.time) / SECOND))
             times.append(b.time)
-        last = JointTarget(held[-1].positions[joint], _value_of_joint(held[-1].velocities, joint))
+        last = JointTarget(via_points[-1].positions[joint], _value_of_joint(via_points[-1].velocities, joint))
         return cls(tuple(times), tuple(pieces), last)
 
     def at(self, now: int) -> JointTarget:
@@ -172,16 +174,30 @@ def _linear(ends: Pair, _: Pair, __: Pair, t: float) -> tuple[float, ...]:
 
 
 def _cubic(ends: Pair, velocities: Pair, _: Pair, t: float) -> tuple[float, ...]:
-    """Return the coefficients of rising powers of the Hermite cubic over a time t."""
-    rise, (v0, v1) = ends[1] - ends[0], velocities
-    return ends[0], v0, (3.0 * rise / t - 2.0 * v0 - v1) / t, (-2.0 * rise / t + v0 + v1) / t**2
+    return cubic(*ends, *velocities, t)
 
 
 def _quintic(ends: Pair, velocities: Pair, accelerations: Pair, t: float) -> tuple[float, ...]:
-    """Return the coefficients of rising powers of the quintic over a time t."""
-    rise, (v0, v1), (a0, a1) = ends[1] - ends[0], velocities, accelerations
+    return quintic(*ends, *velocities, *accelerations, t)
+
+
+def cubic(p0: Values, p1: Values, v0: Values, v1: Values, t: float) -> tuple[Values, ...]:
+    """Return the coefficients of rising powers of the Hermite cubic between two points, `t` [s] apart.
+
+    The positions p0 and p1 [rad or m] and the velocities v0 and v1 [per s] are of one joint or of several.
+    """
+    rise = p1 - p0
+    return p0, v0, (3.0 * rise / t - 2.0 * v0 - v1) / t, (-2.0 * rise / t + v0 + v1) / t**2
+
+
+def quintic(p0: Values, p1: Values, v0: Values, v1: Values, a0: Values, a1: Values, t: float) -> tuple[Values, ...]:
+    """Return the coefficients of rising powers of the quintic between two points; see `cubic`.
+
+    It also has the accelerations a0 and a1 [per s²] at the points.
+    """
+    rise = p1 - p0
     return (
-        ends[0],
+        p0,
         v0,
         a0 / 2.0,
         (20.0 * rise - (8.0 * v1 + 12.0 * v0) * t - (3.0 * a0 - a1) * t**2) / (2.0 * t**3),

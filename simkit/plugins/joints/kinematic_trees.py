@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import mujoco
 import numpy as np
@@ -64,7 +64,7 @@ class KinematicTrees:
     damped: Flags
     is_damped: bool
     all: Integers
-    is_any: Any
+    is_any: Flags
     place: Integers
     units: Vector
     hold: Vector
@@ -84,16 +84,16 @@ class KinematicTrees:
         order = np.array([last[key] for key in keys])
         chosen = tuple(axes[i] for i in order.tolist())
         dofs, damped = np.array([axis.dof for axis in chosen]), model.dof_damping > 0.0
-        own: list[list[int]] = [[] for _ in numbers]
+        driven_dofs: list[list[int]] = [[] for _ in numbers]
         for key, dof in zip(keys, dofs.tolist(), strict=True):
-            own[tree_of[key]].append(dof)
+            driven_dofs[tree_of[key]].append(dof)
         others = [np.flatnonzero(damped & (model.dof_treeid == tree)).tolist() for tree in numbers]
-        both = [[*mine, *(d for d in more if d not in mine)] for mine, more in zip(own, others, strict=True)]
+        both = [[*mine, *(d for d in more if d not in mine)] for mine, more in zip(driven_dofs, others, strict=True)]
         table, is_any = _padded(both)
         slots = np.nonzero(is_any)[1]
         units = np.zeros((table.shape[1], model.nv))
         units[slots, table[is_any]] = 1.0
-        is_used = _padded(own)[1]
+        is_used = _padded(driven_dofs)[1]
         tree, slot = np.nonzero(is_used)
         joints = model.dof_jntid[dofs]
         return cls(
@@ -122,24 +122,24 @@ class KinematicTrees:
 
     def spread(self, values: Vector) -> Vector:
         """Return joint values in the slots of their trees (trees, slots), with zeros in the unused slots."""
-        found = np.zeros(self.is_used.shape)
-        found[self.is_used] = values
-        return found
+        table = np.zeros(self.is_used.shape)
+        table[self.is_used] = values
+        return table
 
     def times(self, matrices: Vector, values: Vector) -> Vector:
         """Multiply a matrix of each tree (trees, slots, slots) by the values of its joints (n,)."""
-        found: Vector = matmul(matrices, self.spread(values)[..., None])[..., 0][self.is_used]
-        return found
+        products: Vector = matmul(matrices, self.spread(values)[..., None])[..., 0][self.is_used]
+        return products
 
     def any_of_tree(self, flags: Flags) -> Flags:
         """Check for each tree whether a flag of its joints (n,) is set; the result has shape (trees,)."""
-        found: Flags = np.logical_or.reduceat(flags, self.starts)
-        return found
+        is_set: Flags = np.logical_or.reduceat(flags, self.starts)
+        return is_set
 
     def most_of_tree(self, values: Vector) -> Vector:
         """Return the largest value of each tree's joints (trees,)."""
-        found: Vector = np.maximum.reduceat(values, self.starts)
-        return found
+        largest: Vector = np.maximum.reduceat(values, self.starts)
+        return largest
 
 
 def _padded(rows: list[list[int]]) -> tuple[Integers, Flags]:
@@ -151,23 +151,27 @@ def _padded(rows: list[list[int]]) -> tuple[Integers, Flags]:
 
 def _weights(model: mujoco.MjModel, dofs: Sequence[int]) -> Vector:
     """Return the weight of each joint's tree: [N] for a slider; for a hinge, times the links' reach [N·m]."""
-    reach, found = _reaches(model), []
+    reach, weights = _reaches(model), []
     for dof in dofs:
         joint, body = int(model.dof_jntid[dof]), int(model.dof_bodyid[dof])
         weight = float(model.body_subtreemass[model.body_rootid[body]]) * _GRAVITY
         is_slider = model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_SLIDE
-        found.append(weight * (1.0 if is_slider else reach[body] + norm(model.jnt_pos[joint])))
-    return np.array(found)
+        weights.append(weight * (1.0 if is_slider else reach[body] + norm(model.jnt_pos[joint])))
+    return np.array(weights)
 
 
 def _reaches(model: mujoco.MjModel) -> list[float]:
     """Return the largest distance from the frame of each body to any point of the body or its descendants [m]."""
-    own = np.linalg.norm(model.body_ipos, axis=1)
+    body_reaches = np.linalg.norm(model.body_ipos, axis=1)
     # a body without geoms has no shape, so the radius of gyration of its inertia is its size
     gyration = np.sqrt(model.body_inertia.max(axis=1) / np.maximum(model.body_mass, mujoco.mjMINVAL))
-    own += np.where(model.body_geomnum == 0, gyration, 0.0)
-    np.maximum.at(own, model.geom_bodyid, np.linalg.norm(model.geom_pos, axis=1) + model.geom_rbound)
-    reach, shifts, parents = own.tolist(), np.linalg.norm(model.body_pos, axis=1).tolist(), model.body_parentid.tolist()
+    body_reaches += np.where(model.body_geomnum == 0, gyration, 0.0)
+    np.maximum.at(body_reaches, model.geom_bodyid, np.linalg.norm(model.geom_pos, axis=1) + model.geom_rbound)
+    reach, shifts, parents = (
+        body_reaches.tolist(),
+        np.linalg.norm(model.body_pos, axis=1).tolist(),
+        model.body_parentid.tolist(),
+    )
     for body in range(model.nbody - 1, 0, -1):  # MuJoCo sorts each body after its parent
         reach[parents[body]] = max(reach[parents[body]], shifts[body] + reach[body])
     return reach  # type: ignore[no-any-return]

@@ -98,13 +98,24 @@ class Pid:
         """
         if step <= 0.0 or not math.isfinite(error):
             return 0.0
-        self.integral = _within(self.integral + self.i * step * error, self.i_min, self.i_max)
-        slope = (error - self.last) / step
+        rate = (error - self.last) / step
         self.last = error
-        unlimited = self.offset - self.p * error - self.integral - self.d * slope
-        self.command = _within(unlimited, self.command_min, self.command_max)
+        unlimited = self.advance(error, rate, step)
         self.swings.see(error, self.command != unlimited)
         return self.command
+
+    def advance(self, error: float, rate: float, step: float) -> float:
+        """Advance the integral term, set `command`, and return the command without its limits.
+
+        Args:
+            error: Measured minus commanded value.
+            rate: Rate of the error [1/s].
+            step: Time since the last call [s].
+        """
+        self.integral = _within(self.integral + self.i * step * error, self.i_min, self.i_max)
+        unlimited = self.offset - self.p * error - self.integral - self.d * rate
+        self.command = _within(unlimited, self.command_min, self.command_max)
+        return unlimited
 
     def restart(self) -> None:
         """Clear the state, as before the first call."""

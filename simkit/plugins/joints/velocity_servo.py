@@ -155,8 +155,8 @@ def _better_efforts(
 
 
 def _between(values: Vector, low: Vector, high: Vector) -> Vector:
-    found: Vector = np.minimum(np.maximum(values, low), high)
-    return found
+    bounded: Vector = np.minimum(np.maximum(values, low), high)
+    return bounded
 
 
 def _tree_by_tree(function: Callable[..., Vector], *matrices: Vector) -> Vector:
@@ -168,11 +168,11 @@ def _tree_by_tree(function: Callable[..., Vector], *matrices: Vector) -> Vector:
     try:
         return function(*matrices)
     except np.linalg.LinAlgError:
-        found = np.zeros_like(matrices[-1])
+        results = np.zeros_like(matrices[-1])
         for index, of_tree in enumerate(zip(*matrices, strict=True)):
             with suppress(np.linalg.LinAlgError):
-                found[index] = function(*of_tree)
-        return found
+                results[index] = function(*of_tree)
+        return results
 
 
 class _EffortEvaluation:
@@ -203,7 +203,7 @@ class _EffortEvaluation:
         """Set efforts; NaN and infinite values become so large that the physics reports its divergence."""
         physics = self._sim.engine.physics
         physics.data.qfrc_applied[self.layout.dofs] = np.where(np.abs(efforts) <= LARGEST, efforts, LARGEST)
-        physics.one_shot = True
+        physics.push_once()
         if physics.sleep.watches:
             for body in self.layout.bodies:
                 physics.changed_body(CONTROL, body)

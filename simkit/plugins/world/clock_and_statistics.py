@@ -6,7 +6,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterator
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit import msgs
 from simkit.msgs.topic_names import valid_topic
@@ -97,11 +97,11 @@ class WorldStats(WorldPlugin):
             if publisher.wanted:
                 publisher.publish(self._statistics(topic))
 
-    def _statistics(self, _topic: str) -> Any:
+    def _statistics(self, _topic: str) -> msgs.WorldStatistics:
         sim, wall = self.sim, self._wall
         wall.look()
         step_ns = sim.engine.clock.time_ns(1)
-        return msgs.make(
+        statistics: msgs.WorldStatistics = msgs.make(
             STATISTICS,
             header=msgs.header(sim.time_ns, ""),
             sim_time=msgs.time(sim.time_ns),
@@ -114,8 +114,9 @@ class WorldStats(WorldPlugin):
             step_size=msgs.time(0 if sim.paused else step_ns),
             stepping=sim.control.pausing.is_stepping and not sim.paused,
         )
+        return statistics
 
-    def _clock(self, _topic: str) -> Any:
+    def _clock(self, _topic: str) -> Callable[[], msgs.Clock]:
         return partial(_clock_message, self.sim.time_ns)
 
     def _all_poses(self, _topic: str) -> Callable[[], msgs.TFMessage]:

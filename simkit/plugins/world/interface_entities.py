@@ -7,7 +7,7 @@ import itertools
 import math
 import re
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -84,7 +84,9 @@ def find(sim: Simulation, name: str, kinds: tuple[str, ...] = _KINDS) -> tuple[s
 # ---------------------------------------------------------------------- states
 
 
-def entity_state(sim: Simulation, request: Any) -> dict[str, object]:
+def entity_state(
+    sim: Simulation, request: msgs.simulation_interfaces__srv__GetEntityState_Request
+) -> dict[str, object]:
     """Return pose and velocity of an entity in the world."""
     return {"state": _state_fields(sim, *find(sim, request.entity))}
 
@@ -95,7 +97,7 @@ def _state_fields(sim: Simulation, kind: str, scoped: str) -> dict[str, object]:
     return {"header": msgs.header(sim.time_ns, "world"), "pose": pose, "twist": twist_fields(linear, angular)}
 
 
-def set_entity_state(sim: Simulation, request: Any) -> None:
+def set_entity_state(sim: Simulation, request: msgs.simulation_interfaces__srv__SetEntityState_Request) -> None:
     """Set pose, velocity or both of an entity, in the world or in the frame that the header names."""
     kind, scoped = find(sim, request.entity)
     if request.set_acceleration:
@@ -113,14 +115,14 @@ def set_entity_state(sim: Simulation, request: Any) -> None:
         handle.set_velocity(*velocity)
 
 
-def _state_pose(sim: Simulation, state: Any) -> Pose:
+def _state_pose(sim: Simulation, state: msgs.simulation_interfaces__msg__EntityState) -> Pose:
     try:
         return requested_pose(sim, state.header, state.pose, "pose")
     except RequestRefused as error:
         raise Refusal(_INVALID_POSE, str(error)) from error
 
 
-def _state_velocity(sim: Simulation, state: Any) -> tuple[Vector, Vector]:
+def _state_velocity(sim: Simulation, state: msgs.simulation_interfaces__msg__EntityState) -> tuple[Vector, Vector]:
     """Return linear [m/s] and angular velocity [rad/s] of a state, world frame."""
     frame, twist = frame_of(sim, state.header.frame_id), state.twist
     return frame.rotate(vector_of(twist.linear, "twist.linear")), frame.rotate(
@@ -128,50 +130,50 @@ def _state_velocity(sim: Simulation, state: Any) -> tuple[Vector, Vector]:
     )
 
 
-def requested_pose(sim: Simulation, header: Any, pose: Any, what: str) -> Pose:
+def requested_pose(sim: Simulation, header: msgs.Header, pose: msgs.Pose, what: str) -> Pose:
     """Return a pose of a request in the world frame; the header names its frame.
 
     Raises:
         RequestRefused: there is no such frame, a number is NaN, infinite or outside of the world, or the quaternion is
             not normalised.
     """
-    frame, found = frame_of(sim, header.frame_id), pose_of(pose, what)
+    frame, pose_in_frame = frame_of(sim, header.frame_id), pose_of(pose, what)
     length = math.hypot(*(float(getattr(pose.orientation, axis)) for axis in "xyzw"))
     if abs(length * length - 1.0) > _QUATERNION_TOLERANCE:
         raise RequestRefused(f"found {what}.orientation of length {length:.4g}; expected a quaternion of length 1")
-    position = frame.transform(found.position)
+    position = frame.transform(pose_in_frame.position)
     if not np.abs(position).max() <= _FARTHEST:
-        farthest = max(map(abs, found.position.tolist()))
+        farthest = max(map(abs, pose_in_frame.position.tolist()))
         raise RequestRefused(f"found {what}.position at {farthest:.4g} m; a world ends at {_FARTHEST:g} m")
-    return frame @ found
+    return frame @ pose_in_frame
 
 
 # ---------------------------------------------------------------------- lists
 
 
-def list_entities(sim: Simulation, request: Any) -> dict[str, object]:
+def list_entities(sim: Simulation, request: msgs.GetEntities_Request) -> dict[str, object]:
     """Return the names of all models that the filters select."""
     return {"entities": _selected(sim, request.filters)}
 
 
-def list_states(sim: Simulation, request: Any) -> dict[str, object]:
+def list_states(sim: Simulation, request: msgs.GetEntitiesStates_Request) -> dict[str, object]:
     """Return the names and states of all models that the filters select."""
     names = _selected(sim, request.filters)
     return {"entities": names, "states": [_state_fields(sim, "model", name) for name in names]}
 
 
-def entity_info(sim: Simulation, request: Any) -> dict[str, object]:
+def entity_info(sim: Simulation, request: msgs.GetEntityInfo_Request) -> dict[str, object]:
     """Return the category of a model."""
     _, scoped = find(sim, request.entity, ("model",))
     return {"info": {"category": {"category": _category(sim, scoped)}}}
 
 
-def _selected(sim: Simulation, filters: Any) -> list[str]:
+def _selected(sim: Simulation, filters: msgs.EntityFilters) -> list[str]:
     if len(filters.tags.tags):
         raise Refusal(ResultCode.UNSUPPORTED, "entities have no tags")
     is_short = len(filters.filter) <= _LONGEST_FILTER and filters.filter.count("|") <= _MOST_ALTERNATIVES
-    found = [token for token in _QUANTIFIERS.findall(filters.filter) if token] if is_short else []
-    if not is_short or len(found) > _MOST_QUANTIFIERS or any(token.startswith(")") for token in found):
+    tokens = [token for token in _QUANTIFIERS.findall(filters.filter) if token] if is_short else []
+    if not is_short or len(tokens) > _MOST_QUANTIFIERS or any(token.startswith(")") for token in tokens):
         allowed = (
             f"at most {_LONGEST_FILTER} characters, {_MOST_ALTERNATIVES} of | and "
             f"{_MOST_QUANTIFIERS} of * + ? {{}}, none of them after a group"
@@ -207,7 +209,7 @@ def _category(sim: Simulation, scoped: str) -> int:
 # ---------------------------------------------------------------------- bounds
 
 
-def entity_bounds(sim: Simulation, request: Any) -> dict[str, object]:
+def entity_bounds(sim: Simulation, request: msgs.GetEntityBounds_Request) -> dict[str, object]:
     """Return the box around the collisions of a model or a link, along the axes of its own frame."""
     kind, scoped = find(sim, request.entity, ("model", "link"))
     corners = _corners(sim, kind, scoped, handle_of(sim, kind, scoped).pose)
@@ -218,7 +220,7 @@ def entity_bounds(sim: Simulation, request: Any) -> dict[str, object]:
     return {"bounds": {"type": _BOX, "points": [vector_fields(corners[1]), vector_fields(corners[0])]}}
 
 
-def _corners(sim: Simulation, kind: str, scoped: str, frame: Pose = IDENTITY) -> np.ndarray[Any, Any] | None:
+def _corners(sim: Simulation, kind: str, scoped: str, frame: Pose = IDENTITY) -> Vector | None:
     """Return the lower and the upper corner of the box around all collisions, shape (2, 3); None without collisions.
 
     Args:
@@ -242,7 +244,7 @@ def _corners(sim: Simulation, kind: str, scoped: str, frame: Pose = IDENTITY) ->
     return np.array([np.min(points, axis=0), np.max(points, axis=0)]) if points else None
 
 
-def _bounds_test(bounds: Any) -> Callable[[Simulation, str], bool] | None:
+def _bounds_test(bounds: msgs.Bounds) -> Callable[[Simulation, str], bool] | None:
     """Return the condition that a model's box in the world overlaps the bounds; None for empty bounds."""
     kind, points = int(bounds.type), [np.array(vector_of(point, "bounds")) for point in bounds.points]
     if kind == _EMPTY:
@@ -256,15 +258,15 @@ def _bounds_test(bounds: Any) -> Callable[[Simulation, str], bool] | None:
     low, high = np.minimum(*points), np.maximum(*points)
 
     def overlaps(sim: Simulation, name: str) -> bool:
-        found = _corners_or_point(sim, name)
-        return bool((found[0] <= high).all() and (found[1] >= low).all())
+        corners = _corners_or_point(sim, name)
+        return bool((corners[0] <= high).all() and (corners[1] >= low).all())
 
     return overlaps
 
 
-def _corners_or_point(sim: Simulation, name: str) -> Any:
-    found = _corners(sim, "model", name)
-    return found if found is not None else np.array([sim.model(name).pose.position] * 2)
+def _corners_or_point(sim: Simulation, name: str) -> Vector:
+    corners = _corners(sim, "model", name)
+    return corners if corners is not None else np.array([sim.model(name).pose.position] * 2)
 
 
 def _distance(sim: Simulation, name: str, centre: Vector) -> float:

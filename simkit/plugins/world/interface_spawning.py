@@ -6,8 +6,9 @@ import os
 import re
 from collections.abc import Container, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
+from simkit import msgs
 from simkit.errors import InputError, LoadError
 from simkit.plugins.world.interface_entities import Refusal, ResultCode, requested_pose, result_fields
 from simkit.plugins.world.service_entities import (
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
     _Arguments = tuple[str, str, Pose]
+    _Request = msgs.SpawnEntity | msgs.simulation_interfaces__srv__SpawnEntity_Request
 
 NAME_NOT_UNIQUE, NAME_INVALID, UNSUPPORTED_FORMAT, NO_RESOURCE = 101, 102, 103, 104
 NAMESPACE_INVALID, PARSE_ERROR, MISSING_ASSETS, INVALID_POSE = 105, 106, 107, 109
@@ -32,20 +34,22 @@ _FAILURES: Final = (Refusal, RequestRefused, InputError)
 _FORMATS: Final = ("", ".sdf", ".urdf", ".xacro", ".xml", ".world", ".model")
 
 
-def spawn_entity(sim: Simulation, request: Any) -> dict[str, object]:
+def spawn_entity(sim: Simulation, request: _Request) -> dict[str, object]:
     """Spawn a model at a pose in the world, or in the frame that the header of the pose names."""
     with _published_codes():
         return {"entity_name": spawn_entities(sim.spawn, *_arguments(sim, request)).name}
 
 
-def spawn_several(sim: Simulation, request: Any) -> dict[str, object]:
+def spawn_several(
+    sim: Simulation, request: msgs.simulation_interfaces__srv__SpawnEntities_Request
+) -> dict[str, object]:
     """Spawn a model for each request of a list; the other models are spawned too if one request fails."""
     group = _SpawnGroup(sim)
-    for number, one in enumerate(request.spawn_requests):
-        group.add(number, one)
+    for number, spawn_request in enumerate(request.spawn_requests):
+        group.add(number, spawn_request)
     group.spawn_waiting()
     results = [group.results[number] for number in range(len(request.spawn_requests))]
-    failed = [str(number) for number, found in enumerate(results) if "entity_name" not in found]
+    failed = [str(number) for number, fields in enumerate(results) if "entity_name" not in fields]
     if not failed:
         return {"results": results}
     text = f"{len(failed)} of {len(results)} requests failed: {', '.join(failed[:10])}{', …' if failed[10:] else ''}"
@@ -62,9 +66,9 @@ class _SpawnGroup:
     def __init__(self, sim: Simulation) -> None:
         self.results: dict[int, dict[str, object]] = {}
         self._sim = sim
-        self._waiting: dict[str, tuple[int, Any, _Arguments]] = {}
+        self._waiting: dict[str, tuple[int, _Request, _Arguments]] = {}
 
-    def add(self, number: int, request: Any) -> None:
+    def add(self, number: int, request: _Request) -> None:
         """Let the model of a request wait; if the request may depend on a waiting model, spawn that one first."""
         for _ in range(2):
             try:
@@ -93,7 +97,7 @@ class _SpawnGroup:
             for (number, _, _), model in zip(waiting, models, strict=True):
                 self._accept(number, model.name)
 
-    def _spawn_alone(self, number: int, request: Any) -> None:
+    def _spawn_alone(self, number: int, request: _Request) -> None:
         try:
             self._accept(number, str(spawn_entity(self._sim, request)["entity_name"]))
         except _FAILURES as error:
@@ -107,7 +111,7 @@ class _SpawnGroup:
         self.results[number] = {"result": result_fields(error)}
 
 
-def _arguments(sim: Simulation, request: Any, waiting: Container[str] = ()) -> _Arguments:
+def _arguments(sim: Simulation, request: _Request, waiting: Container[str] = ()) -> _Arguments:
     """Return source, name and pose of a new model, as arguments of `sim.spawn`.
 
     Args:
@@ -139,7 +143,7 @@ def _published_codes() -> Iterator[None]:
         raise Refusal(NAME_INVALID if error.code == "SK-NAME-005" else ResultCode.FAILED, str(error)) from error
 
 
-def delete_entity(sim: Simulation, request: Any) -> None:
+def delete_entity(sim: Simulation, request: msgs.simulation_interfaces__srv__DeleteEntity_Request) -> None:
     """Remove a top-level model."""
     name = request.entity
     if name not in sim.models:
@@ -151,7 +155,7 @@ def delete_entity(sim: Simulation, request: Any) -> None:
     sim.remove(name)
 
 
-def _source(request: Any) -> str:
+def _source(request: _Request) -> str:
     """Return the text or URI of a resource, with the namespace added to the plugins of a text."""
     resource, namespace = request.entity_resource, request.entity_namespace
     uri, text = resource.uri, resource.resource_string
@@ -171,7 +175,7 @@ def _source(request: Any) -> str:
     return add_namespace(text, namespace.strip("/")) if namespace else str(text)
 
 
-def _pose(sim: Simulation, stamped: Any) -> Pose:
+def _pose(sim: Simulation, stamped: msgs.PoseStamped) -> Pose:
     try:
         return requested_pose(sim, stamped.header, stamped.pose, "initial_pose")
     except RequestRefused as error:

@@ -39,7 +39,10 @@ class RequestRefused(Exception):
 
 
 def answer_handler(
-    sim: Simulation, name: str, execute: Callable[[Any], dict[str, object] | str | None], has_status: bool = True
+    sim: Simulation,
+    name: str,
+    execute: Callable[[msgs.Message], dict[str, object] | str | None],
+    has_status: bool = True,
 ) -> Callable[[object], dict[str, object]]:
     """Return a service handler that answers `success`, or the reason for a failure.
 
@@ -54,23 +57,25 @@ def answer_handler(
         from simkit.runtime.handles.handle import UnknownName
 
         try:
-            found = execute(request)
+            outcome = execute(request)
         except (RequestRefused, InputError, UnknownName) as error:
             why = str(error)
             sim.engine.log.warning("%s: %s", name, why)
             return {"success": False, "status_message": why} if has_status else {"success": False}
-        fields = found if isinstance(found, dict) else {}
-        if isinstance(found, str) and found:
+        fields = outcome if isinstance(outcome, dict) else {}
+        if isinstance(outcome, str) and outcome:
             if has_status:
-                fields = {"status_message": found}
+                fields = {"status_message": outcome}
             else:
-                sim.engine.log.warning("%s: %s", name, found)
+                sim.engine.log.warning("%s: %s", name, outcome)
         return {"success": True, **fields}
 
     return handle
 
 
-def command_handler(sim: Simulation, name: str, execute: Callable[[Any], str | None]) -> Callable[[object], None]:
+def command_handler(
+    sim: Simulation, name: str, execute: Callable[[msgs.Message], str | None]
+) -> Callable[[object], None]:
     """Return a handler for a command without a response, such as a topic; a failure is logged."""
     answer = answer_handler(sim, name, execute, has_status=False)
 
@@ -105,8 +110,8 @@ def add_namespace(xml: str, namespace: str) -> str:
             else:
                 content = re.sub(r"<ros\s*>", lambda m: m[0] + element, content, count=1)
         elif "<robotNamespace" in content:
-            own = f"<robotNamespace>{namespace}</robotNamespace>"
-            content = _ROBOT_NAMESPACE.sub(lambda _: own, content)
+            element_of_ros_1 = f"<robotNamespace>{namespace}</robotNamespace>"
+            content = _ROBOT_NAMESPACE.sub(lambda _: element_of_ros_1, content)
         else:
             content = f"<ros>{element}</ros>{content}"
         return f"{match[1]}>{content}</plugin>"
@@ -142,17 +147,17 @@ def find_entity(sim: Simulation, name: str, kinds: Sequence[str], what: str = ""
     Raises:
         RequestRefused: no entity has this name; the text suggests the closest name.
     """
-    own = name.removeprefix(f"{sim.world.name}::")
+    scoped_name = name.removeprefix(f"{sim.world.name}::")
     for kind in kinds:
-        if own in scoped_names(sim, kind):
-            return kind, own
+        if scoped_name in scoped_names(sim, kind):
+            return kind, scoped_name
     for kind in kinds:
         for scoped in scoped_names(sim, kind):
-            if scoped.endswith(f"::{own}"):
+            if scoped.endswith(f"::{scoped_name}"):
                 return kind, scoped
     there = [scoped for kind in kinds for scoped in scoped_names(sim, kind)]
     what = what or " or ".join(kinds)
-    near = did_you_mean(own, list(dict.fromkeys([*there, *(scoped.rpartition("::")[2] for scoped in there)])))
+    near = did_you_mean(scoped_name, list(dict.fromkeys([*there, *(scoped.rpartition("::")[2] for scoped in there)])))
     listed = ", ".join(there[:10]) + (", …" if len(there) > 10 else "")
     raise RequestRefused(f"there is no {what} {name!r}; {near or 'there is ' + (listed or 'none')}")
 
@@ -188,8 +193,8 @@ def frame_of(sim: Simulation, name: str) -> Pose:
     """
     if name in _WORLD or name == sim.world.name:
         return IDENTITY
-    found: Pose = handle_of(sim, *find_entity(sim, name, ("model", "link", "light", "visual"), "reference frame")).pose
-    return found
+    pose: Pose = handle_of(sim, *find_entity(sim, name, ("model", "link", "light", "visual"), "reference frame")).pose
+    return pose
 
 
 def handle_of(sim: Simulation, kind: str, scoped: str) -> Any:

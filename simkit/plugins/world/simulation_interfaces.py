@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit import msgs
 from simkit.errors import InputError
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
     from simkit.runtime.communication.action_server import GoalHandle
 
-Handler = Callable[["Simulation", Any], dict[str, object] | None]
+Handler = Callable[["Simulation", "msgs.Message"], dict[str, object] | None]
 
 PLAYING, PAUSED = 1, 2
 STOPPED: Final = 0
@@ -102,21 +102,23 @@ class SimulationInterfaces(WorldPlugin):
             offer(name, f"{PACKAGE}/srv/{interface}", _answering(sim, name, handler))
         offer("/get_simulator_features", f"{PACKAGE}/srv/GetSimulatorFeatures", self._features)
         action = self.act("/simulate_steps", f"{PACKAGE}/action/SimulateSteps", self._begin_steps, self._cancel_steps)
-        action.is_immediate = True  # the world is paused, so no step would come that delivers the goal
+        action.deliver_at_once()  # the world is paused, so no step would come that delivers the goal
         sim.control.pausing.on_change(self._abort_if_paused)
         sim.communication.on_demand.add(lambda: self._goal is not None, None, self._follow_steps)
 
     def _features(self, _: object) -> dict[str, object]:
         served = self.sim.communication.services.names()
         features = msgs.type_of(f"{PACKAGE}/msg/SimulatorFeatures")
-        found = [
+        feature_numbers = [
             int(getattr(features, feature))
             for interface, names in _FEATURES.items()
             if served.get(service_name(interface), "").startswith(PACKAGE)
             for feature in names
         ]
         info = "simkit: entities are models; SetEntityState and GetEntityState also take links and lights"
-        return {"features": {"features": found, "spawn_formats": ["sdf", "urdf", "mjcf"], "custom_info": info}}
+        return {
+            "features": {"features": feature_numbers, "spawn_formats": ["sdf", "urdf", "mjcf"], "custom_info": info}
+        }
 
     # ------------------------------------------------------------------ state of the simulation
 
@@ -126,7 +128,7 @@ class SimulationInterfaces(WorldPlugin):
             return PLAYING
         return STOPPED if self._is_stopped and self.sim.tick == 0 else PAUSED
 
-    def _set_state(self, sim: Simulation, request: Any) -> None:
+    def _set_state(self, sim: Simulation, request: msgs.SetSimulationState_Request) -> None:
         target = int(request.state.state)
         if target not in (STOPPED, PLAYING, PAUSED):
             named = _STATE_NAMES[target] if target < len(_STATE_NAMES) else str(target)
@@ -138,7 +140,7 @@ class SimulationInterfaces(WorldPlugin):
         sim.paused = target != PLAYING
         self._is_stopped = target == STOPPED
 
-    def _reset_simulation(self, sim: Simulation, request: Any) -> None:
+    def _reset_simulation(self, sim: Simulation, request: msgs.ResetSimulation_Request) -> None:
         scope, is_paused = int(request.scope) or _ALL, sim.paused
         parts = scope & (_TIME | _STATE | _SPAWNED)
         if (scope != _ALL and scope != parts) or (parts & _TIME and parts != _TIME | _STATE | _SPAWNED):
@@ -157,7 +159,7 @@ class SimulationInterfaces(WorldPlugin):
 
     # ------------------------------------------------------------------ steps
 
-    def _step_simulation(self, sim: Simulation, request: Any) -> None:
+    def _step_simulation(self, sim: Simulation, request: msgs.StepSimulation_Request) -> None:
         self._start_steps(int(request.steps))
 
     def _start_steps(self, steps: int) -> None:
@@ -225,11 +227,11 @@ def _current_world(sim: Simulation, _: object) -> dict[str, object]:
 
 def _spawnables(sim: Simulation, request: msgs.GetSpawnables_Request) -> dict[str, object]:
     """Return simkit's models and those of the resource paths; the message of the result lists the sources."""
-    models = sim.control.list_models() if sim.control.list_models is not None else {}
-    found = [{"entity_resource": {"uri": source}, "description": name} for name, source in models.items()]
+    models = sim.control.list_models()
+    spawnables = [{"entity_resource": {"uri": source}, "description": name} for name, source in models.items()]
     listed = ", ".join(request.sources)
     text = f"sources are not searched: {listed}; name folders by --resource-path" if listed else ""
-    return {"result": {"result": ResultCode.OK, "error_message": text}, "spawnables": found}
+    return {"result": {"result": ResultCode.OK, "error_message": text}, "spawnables": spawnables}
 
 
 def _refuse(reason: str) -> Handler:
@@ -246,11 +248,11 @@ def _answering(sim: Simulation, name: str, handler: Handler) -> Callable[[object
         from simkit.runtime.handles.handle import UnknownName
 
         try:
-            found = handler(sim, request)
+            response = handler(sim, request)
         except (Refusal, RequestRefused, InputError, UnknownName) as error:
             if not isinstance(error, Refusal) or error.code != ResultCode.UNSUPPORTED:
                 sim.engine.log.warning("%s: %s", name, error)
             return {"result": result_fields(error)}
-        return {"result": {"result": ResultCode.OK}, **(found or {})}
+        return {"result": {"result": ResultCode.OK}, **(response or {})}
 
     return handle

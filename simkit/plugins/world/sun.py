@@ -116,8 +116,8 @@ def _start(options: SunOptions) -> float:
         params.error("SK-PARAM-001", f"<{params.name}> needs <start>: {_DATE}")
         return 0.0
     try:
-        found = datetime.fromisoformat(text)
-        return (found if found.tzinfo else found.replace(tzinfo=UTC)).timestamp()
+        moment = datetime.fromisoformat(text)
+        return (moment if moment.tzinfo else moment.replace(tzinfo=UTC)).timestamp()
     except (ValueError, OverflowError):
         params.block("start").error("SK-PARAM-002", f"found <start>{text}</start>; expected {_DATE}")
         return 0.0
@@ -126,8 +126,8 @@ def _start(options: SunOptions) -> float:
 def _site(options: SunOptions, world: SphericalCoordinates | None) -> Site:
     """Return the location in the plugin's parameters, or else the world's location."""
     params = options.params
-    own = params.has("latitude_deg"), params.has("longitude_deg")
-    if world is None and not all(own):
+    has_angles = params.has("latitude_deg"), params.has("longitude_deg")
+    if world is None and not all(has_angles):
         hint = "or add <spherical_coordinates> to the world"
         params.error("SK-PARAM-001", f"<{params.name}> needs <latitude_deg> and <longitude_deg> [degrees]", hint)
     elif world is not None and world.surface != "EARTH_WGS84":

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -104,8 +104,8 @@ class SunPath(SharedByCopies):
             -(t + 1) * t * (t - 2) / 2,
             (t + 1) * t * (t - 1) / 6,
         )
-        found: Vector = matmul(np.array(weights), self._directions[row : row + 4])
-        return found / math.sqrt(matmul(found, found))
+        direction: Vector = matmul(np.array(weights), self._directions[row : row + 4])
+        return direction / math.sqrt(matmul(direction, direction))
 
     def _computed_directions(self, times: Vector) -> Vector:
         site = self.site
@@ -162,7 +162,7 @@ def clear_sky(elevation: float, pressure: float) -> float:
 
 
 @cache
-def _algorithm() -> Callable[..., Any]:
+def _algorithm() -> Callable[..., Vector]:
     """Return the function `spa.solar_position` of pvlib.
 
     Only the file of this function is loaded. The file needs only NumPy, while the whole package takes more than a
@@ -178,5 +178,5 @@ def _algorithm() -> Callable[..., Any]:
     else:
         spa = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(spa)
-    found: Callable[..., Any] = spa.solar_position
-    return found
+    solar_position: Callable[..., Vector] = spa.solar_position
+    return solar_position

@@ -179,10 +179,10 @@ class WorldServices(WorldPlugin):
     def _requested_pose(self, factory: msgs.EntityFactory) -> Pose | None:
         """Return the requested pose of a model; None for the pose in its file."""
         sources = {"sdf": factory.sdf, "sdf_filename": factory.sdf_filename, "clone_name": factory.clone_name}
-        given = [field for field, value in sources.items() if value]
-        if len(given) != 1:
+        sources_in_request = [field for field, value in sources.items() if value]
+        if len(sources_in_request) != 1:
             raise RequestRefused(
-                f"found {' and '.join(given) or 'none'} of sdf, sdf_filename and clone_name; expected one"
+                f"found {' and '.join(sources_in_request) or 'none'} of sdf, sdf_filename and clone_name; expected one"
             )
         requested = pose_of(factory.pose)
         # a ROS message always has a pose and a frame, so the identity in the default frame means the pose in the file

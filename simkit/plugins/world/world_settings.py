@@ -59,9 +59,9 @@ def set_physics(sim: Simulation, request: SetPhysicsProperties_Request, *, keeps
     if not keeps_gravity:
         sim.gravity = gravity
     sim.control.pausing.pace = rate * sim.timestep if rate > 0.0 else None
-    own = _config_fields(sim)
-    requested = {name: getattr(request.ode_config, name) for name in own}
-    changed = [name for name, value in requested.items() if value and value != own[name]]
+    current = _config_fields(sim)
+    requested = {name: getattr(request.ode_config, name) for name in current}
+    changed = [name for name, value in requested.items() if value and value != current[name]]
     return f"not supported by this physics engine: {', '.join(changed)}" if changed else ""
 
 

@@ -71,12 +71,12 @@ class BagFile(Protocol):
         """Close the file."""
 
 
-def unreadable(path: Path, reason: object) -> InputError:
+def unreadable(path: Path, reason: object, hint: str = "") -> InputError:
     """Return the error for a bag that cannot be read."""
-    return InputError(f"SK-CLI-035 {path} cannot be read: {reason}", "SK-CLI-035")
+    return InputError("SK-CLI-035", f"{path} cannot be read: {reason}", help=hint)
 
 
 def damaged(path: Path, reason: object) -> InputError:
     """Return the error for a bag that is damaged at some place."""
     hint = f"save what is readable with `simkit bag recover {path}`"
-    return InputError(f"SK-CLI-035 {path} is damaged: {reason}\n    help: {hint}", "SK-CLI-035")
+    return InputError("SK-CLI-035", f"{path} is damaged: {reason}", help=hint)

@@ -68,15 +68,15 @@ def bag_layout(path: Path) -> BagLayout:
 def _folder_layout(path: Path) -> BagLayout:
     metadata = path / "metadata.yaml"
     try:
-        found = sorted(file.name for file in path.iterdir() if file.suffix in _SUFFIXES)
+        bag_names = sorted(file.name for file in path.iterdir() if file.suffix in _SUFFIXES)
         exists = metadata.exists()
     except OSError as error:
         raise unreadable(path, read_failure(error)) from None
-    if not exists and not found:
+    if not exists and not bag_names:
         raise unreadable(path, "it is not a bag: it has neither metadata.yaml nor an MCAP file")
     try:
         if not exists:
-            return BagLayout(path, found, problem="it has no metadata.yaml", inside=path)
+            return BagLayout(path, bag_names, problem="it has no metadata.yaml", inside=path)
         information = read_yaml(read_input_text(metadata, inside=path))["rosbag2_bagfile_information"]
         # older versions wrote paths that begin with the name of the folder
         names = [Path(name).name for name in information["relative_file_paths"]]
@@ -90,10 +90,10 @@ def _folder_layout(path: Path) -> BagLayout:
             inside=path,
         )
     except (NotYaml, KeyError, TypeError, AttributeError, ValueError) as error:
-        if not found:
+        if not bag_names:
             raise unreadable(path, f"its metadata.yaml is invalid ({error}), and it has no other files") from None
         problem = "its metadata.yaml is invalid" + ("" if hidden_text.is_hiding() else f" ({error})")
-        return BagLayout(path, found, problem=problem, inside=path)
+        return BagLayout(path, bag_names, problem=problem, inside=path)
     except OSError as error:
         raise unreadable(metadata, read_failure(error)) from None
 
@@ -104,7 +104,7 @@ def open_files(layout: BagLayout, stack: ExitStack) -> list[BagFile]:
     Raises:
         InputError: SK-CLI-035 a file is missing or unreadable.
     """
-    found: list[BagFile] = []
+    files: list[BagFile] = []
     for name in layout.names:
         path = layout.folder / name
         if _first_bytes(path, layout.inside).startswith(_ZSTD):
@@ -114,8 +114,8 @@ def open_files(layout: BagLayout, stack: ExitStack) -> list[BagFile]:
             raise unreadable(path, "it is not an SQLite database")
         file: BagFile = SqliteFile(path) if is_database else McapFile(path)
         stack.callback(file.close)
-        found.append(file)
-    return found
+        files.append(file)
+    return files
 
 
 def _first_bytes(path: Path, inside: Path | None = None) -> bytes:
@@ -141,7 +141,7 @@ def _extract(path: Path, folder: Path) -> Path:
                 size += len(piece)
                 if size > limit:
                     hint = f"decompress it with `zstd -d {path}`, if you trust it"
-                    raise unreadable(path, f"its content is more than {limit >> 20} MiB\n    help: {hint}")
+                    raise unreadable(path, f"its content is more than {limit >> 20} MiB", hint)
                 file.write(piece)
     except OSError as error:
         raise unreadable(path, read_failure(error)) from None

@@ -108,10 +108,10 @@ class BagMotion:
 
     def _place(self, frame: str, pose: Pose) -> None:
         """Place the model whose link has the name of the frame; an unknown frame is that of the only moving model."""
-        found = self._links.get(_plain(frame), self._only)
-        if found is None:
+        owner = self._links.get(_plain(frame), self._only)
+        if owner is None:
             return
-        model, link = found
+        model, link = owner
         if frame not in self._origins:
             is_world = norm(link.pose.position[:2] - pose.position[:2]) < _NEAR
             self._origins[frame] = IDENTITY if is_world else link.pose

@@ -104,8 +104,8 @@ class McapFile:
             self._check_beginning()
             try:
                 is_indexed = self._read_index()
-            except DamagedRecord as found:
-                self.damage, is_indexed = f"its index is damaged ({found})", False
+            except DamagedRecord as damaged:
+                self.damage, is_indexed = f"its index is damaged ({damaged})", False
             if not is_indexed:
                 self._scan()
                 if not self.damage and not self._has_end():
@@ -124,7 +124,7 @@ class McapFile:
 
     def topics(self) -> list[BagTopic]:
         """Return the topics with their numbers of messages."""
-        found: list[BagTopic] = []
+        topics: list[BagTopic] = []
         for number, channel in self._definitions.channels.items():
             try:
                 schema = self._definitions.schema(channel)
@@ -133,8 +133,8 @@ class McapFile:
                     raise damaged(self._path, error) from None
                 continue
             entry = (schema.definition, channel.latched, channel.encoding)
-            found.append(BagTopic(channel.topic, schema.name, self._counts[number], *entry))
-        return found
+            topics.append(BagTopic(channel.topic, schema.name, self._counts[number], *entry))
+        return topics
 
     def messages(self, topics: frozenset[str], start: int | None) -> Iterator[BagMessage]:
         """Yield the messages of some topics (empty: all) from a time [ns] on, in the order of their times.
@@ -166,8 +166,8 @@ class McapFile:
         self._file.seek(0)
         magic = self._file.read(len(MAGIC))
         if magic != MAGIC:
-            found = "it is empty" if not magic else f"it begins with {magic!r}; an MCAP file begins with {MAGIC!r}"
-            raise unreadable(self._path, found)
+            beginning = "it is empty" if not magic else f"it begins with {magic!r}; an MCAP file begins with {MAGIC!r}"
+            raise unreadable(self._path, beginning)
         try:
             header = read_record(self._file, len(MAGIC), self._size)
             if header.opcode != HEADER:

@@ -107,9 +107,9 @@ class Fields:
         layout = struct.Struct(layout) if isinstance(layout, str) else layout
         if layout.size > len(self._body) - self._at:
             raise ValueError(f"a record of {len(self._body)} bytes is too short for its fields")
-        found: tuple[int, ...] = layout.unpack_from(self._body, self._at)
+        numbers: tuple[int, ...] = layout.unpack_from(self._body, self._at)
         self._at += layout.size
-        return found
+        return numbers
 
     def block(self, layout: str = "<I") -> memoryview:
         """Return the bytes after their number."""
@@ -125,11 +125,11 @@ class Fields:
 
     def texts(self) -> dict[str, str]:
         """Return a table of texts."""
-        table, found = Fields(self.block()), {}
+        table, texts = Fields(self.block()), {}
         while table._at < len(table._body):
             key = table.text()
-            found[key] = table.text()
-        return found
+            texts[key] = table.text()
+        return texts
 
 
 class Definitions:
@@ -166,11 +166,11 @@ class Definitions:
         Raises:
             ValueError: the channel or its schema is not defined.
         """
-        found = self.channels.get(number)
-        if found is None:
+        channel = self.channels.get(number)
+        if channel is None:
             raise ValueError(f"channel {number} of a message is not defined")
-        self.schema(found)
-        return found
+        self.schema(channel)
+        return channel
 
     def schema(self, channel: Channel) -> Schema:
         """Return the schema of a channel; an empty one for a channel without a schema.
@@ -180,10 +180,10 @@ class Definitions:
         """
         if channel.schema_id == 0:
             return Schema("__schemaless__", "", b"")
-        found = self.schemas.get(channel.schema_id)
-        if found is None:
+        schema = self.schemas.get(channel.schema_id)
+        if schema is None:
             raise ValueError(f"schema {channel.schema_id} of the topic {channel.topic!r} is not defined")
-        return found
+        return schema
 
 
 def file_size(file: BufferedReader) -> int:
@@ -267,8 +267,8 @@ def chunk_content(chunk: Chunk, position: int) -> memoryview:
     except ValueError as error:
         raise DamagedRecord(position, f"a chunk cannot be decompressed: {error}") from None
     if len(content) != chunk.size:
-        found = f"more than {chunk.size}" if len(content) > chunk.size else str(len(content))
-        raise DamagedRecord(position, f"a chunk has {found} bytes, but its head says {chunk.size}")
+        size = f"more than {chunk.size}" if len(content) > chunk.size else str(len(content))
+        raise DamagedRecord(position, f"a chunk has {size} bytes, but its head says {chunk.size}")
     if chunk.checksum and crc32(content) != chunk.checksum:
         raise DamagedRecord(position, "the checksum of a chunk is wrong")
     return memoryview(content)
@@ -296,8 +296,8 @@ def decompress(compression: str, data: bytes | memoryview, limit: int) -> bytes 
             return zstandard.ZstdDecompressor().stream_reader(data, read_across_frames=True).read(limit + 1)
         from lz4.frame import LZ4FrameDecompressor  # type: ignore[import-untyped]
 
-        found: bytes = LZ4FrameDecompressor().decompress(bytes(data), max_length=limit + 1)
-        return found
+        content: bytes = LZ4FrameDecompressor().decompress(bytes(data), max_length=limit + 1)
+        return content
     except Exception as error:  # noqa: BLE001 - each library has its own errors
         raise ValueError(str(error).strip() or type(error).__name__) from None
 

@@ -109,44 +109,43 @@ class Playback:
             try:
                 self._sim.publish(topic, self._message_to_send(message))
             except MessageError as error:
-                text = f"SK-BAG-015 {self._bag.path}: {message.topic} at {message.time_ns * _NS:.9g} s: {error}"
-                raise InputError(text, "SK-BAG-015") from None
+                text = f"{self._bag.path}: {message.topic} at {message.time_ns * _NS:.9g} s: {error}"
+                raise InputError("SK-BAG-015", text) from None
             self.sent += 1
 
     # ------------------------------------------------------------------ topics
 
     def _world_inputs(self) -> dict[str, tuple[str, ...]]:
         """Return the topics that the world subscribes to, with their types."""
-        found: dict[str, tuple[str, ...]] = {}
+        types_by_topic: dict[str, tuple[str, ...]] = {}
         for topic, endpoint, types, role in self._sim.communication.bus.endpoints():
             if role == "takes" and endpoint.active:
-                found[topic] = (*found.get(topic, ()), *types)
-        return found
+                types_by_topic[topic] = (*types_by_topic.get(topic, ()), *types)
+        return types_by_topic
 
     def _playable_topics(self) -> dict[str, str]:
-        own = {
+        published = {
             topic
             for topic, endpoint, _, role in self._sim.communication.bus.endpoints()
             if role == "publishes" and endpoint.active
         }
         bag_topics = dict.fromkeys(topic.name for topic in self._bag.topics)
-        found = {topic: topic for topic in bag_topics if topic in self._input_types and topic not in own}
-        if not found:
-            inputs = ", ".join(sorted(self._input_types.keys() - own)) or "none"
+        playable = {topic: topic for topic in bag_topics if topic in self._input_types and topic not in published}
+        if not playable:
+            unlisted = self._sim.communication.bus.unlisted
+            inputs = ", ".join(sorted(self._input_types.keys() - published - unlisted)) or "none"
             text = f"the world subscribes to no topic of {self._bag.path}; its inputs: {inputs}"
             hint = "map topics with --play-topic OLD:=NEW (play_topics in a scenario)"
-            raise InputError(f"SK-BAG-016 {text}\n    help: {hint}", "SK-BAG-016")
-        return found
+            raise InputError("SK-BAG-016", text, help=hint)
+        return playable
 
     def _requested_topics(self, topics: Sequence[str]) -> dict[str, str]:
         bag_topics = {topic.name for topic in self._bag.topics}
-        found = {}
+        target_by_topic = {}
         for text in topics:
             old, sign, new = text.partition(":=")
             if not old or (sign and not new):
-                raise InputError(
-                    f"SK-CLI-018 a topic to play: found {text!r}; expected TOPIC or OLD:=NEW", "SK-CLI-018"
-                )
+                raise InputError("SK-CLI-018", f"a topic to play: found {text!r}; expected TOPIC or OLD:=NEW")
             old = absolute_name(old)
             new = absolute_name(new) if sign else old
             for name, names, where in (
@@ -155,9 +154,9 @@ class Playback:
             ):
                 if name not in names:
                     hint = did_you_mean(name, names) or "known: " + (", ".join(sorted(names)) or "none")
-                    raise InputError(f"SK-CLI-030 no topic {name!r} in {where}; {hint}", "SK-CLI-030")
-            found[old] = new
-        return found
+                    raise InputError("SK-CLI-030", f"no topic {name!r} in {where}; {hint}")
+            target_by_topic[old] = new
+        return target_by_topic
 
     # ------------------------------------------------------------------ types
 
@@ -178,20 +177,20 @@ class Playback:
             return counterpart
         allowed = " or ".join(dict.fromkeys(types))
         text = f"{self._bag.path}: {topic} has type {type_name}, but {new} needs {allowed}"
-        raise InputError(f"SK-BAG-015 {text}", "SK-BAG-015")
+        raise InputError("SK-BAG-015", text)
 
     def _message_to_send(self, message: BagMessage) -> Message:
         """Convert a message to the type in which it is sent."""
         target_type = self._sent_types[message.topic, message.type_name]
-        found = self._bag.decode(message)
-        own = _known_full_name(message.type_name)
-        if type(found) is not msgs.type_of(own):  # decoded with the bag's own definition
-            found = msgs.make(own, **message_to_dict(found, store=self._bag.store_of(message.type_name)))
-        if own == target_type:
-            return found
+        decoded = self._bag.decode(message)
+        known_name = _known_full_name(message.type_name)
+        if type(decoded) is not msgs.type_of(known_name):  # decoded with the bag's own definition
+            decoded = msgs.make(known_name, **message_to_dict(decoded, store=self._bag.store_of(message.type_name)))
+        if known_name == target_type:
+            return decoded
         if target_type == _TWIST:
-            return found.twist
-        return msgs.type_of(_STAMPED)(msgs.header(self._sim.time_ns, ""), found)
+            return decoded.twist
+        return msgs.type_of(_STAMPED)(msgs.header(self._sim.time_ns, ""), decoded)
 
 
 def _known_full_name(type_name: str) -> str:

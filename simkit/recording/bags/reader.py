@@ -118,7 +118,7 @@ class BagReader:
         for name in topics:
             if name not in known:
                 hint = did_you_mean(name, known) or "known: " + (", ".join(sorted(known)) or "none")
-                raise InputError(f"SK-CLI-030 no topic {name!r} in {self.path}; {hint}", "SK-CLI-030")
+                raise InputError("SK-CLI-030", f"no topic {name!r} in {self.path}; {hint}")
         for file in self._files:
             for message in file.messages(frozenset(topics), start):
                 yield self._decompressed(message) if self._layout.has_compressed_messages else message
@@ -135,13 +135,13 @@ class BagReader:
 
     def _merged_topics(self) -> list[BagTopic]:
         """Return the topics of all files, sorted by name, with the sums of their counts."""
-        found: dict[tuple[str, str], BagTopic] = {}
+        merged: dict[tuple[str, str], BagTopic] = {}
         for file in self._files:
             for topic in file.topics():
                 key = (topic.name, topic.type_name)
-                before = found.get(key)
-                found[key] = topic if before is None else replace(before, count=before.count + topic.count)
-        return [found[key] for key in sorted(found)]
+                before = merged.get(key)
+                merged[key] = topic if before is None else replace(before, count=before.count + topic.count)
+        return [merged[key] for key in sorted(merged)]
 
     def decode(self, message: BagMessage) -> message_types.Message:
         """Decode a message.
@@ -155,7 +155,7 @@ class BagReader:
         except Exception as error:  # noqa: BLE001 - the decoder may raise anything if the data does not match
             reason = str(error).strip() or type(error).__name__
             text = f"{self.path}: a message on {message.topic} is not a valid {message.type_name}: {reason:.300}"
-            raise InputError(f"SK-CLI-036 {text}", _UNKNOWN_TYPE) from None
+            raise InputError(_UNKNOWN_TYPE, text) from None
 
     def to_dataframe(self, topic: str) -> DataFrame:
         """Return the messages of a topic as a pandas DataFrame, one row for each; see `simkit.to_dataframe`.
@@ -199,7 +199,7 @@ class BagReader:
         for topic in topics:
             if topic.format != "cdr":
                 text = f"{self.path}: the encoding of {topic.name} is {topic.format!r}; expected 'cdr'"
-                raise InputError(f"SK-CLI-036 {text}", _UNKNOWN_TYPE)
+                raise InputError(_UNKNOWN_TYPE, text)
         try:
             is_known = bool(msgs.full_name(type_name))
         except MessageError:
@@ -208,10 +208,10 @@ class BagReader:
         if not definition:
             if is_known:
                 return msgs.type_store()
-            text = f"SK-CLI-036 {self.path}: {type_name} is unknown, and the bag has no definition of it"
-            raise InputError(text, _UNKNOWN_TYPE)
-        found = definition_store(type_name, definition)
-        return msgs.type_store() if is_known and _is_as_in_simkit(type_name, found) else found
+            text = f"{self.path}: {type_name} is unknown, and the bag has no definition of it"
+            raise InputError(_UNKNOWN_TYPE, text)
+        store = definition_store(type_name, definition)
+        return msgs.type_store() if is_known and _is_as_in_simkit(type_name, store) else store
 
 
 def open_bag_to_read(path: str | Path) -> BagReader:

@@ -22,6 +22,7 @@ class RecordError(SimkitError):
     """Error that stopped a recording during a run. The flushed part of the bag is readable."""
 
     code = "SK-BAG-003"
+    _shows_class_code = True
 
 
 class Recorder:
@@ -160,7 +161,11 @@ class Recorder:
             return
         types, data = contents[::2], contents[1::2]
         try:
-            known = [found for found in map(bag.channels.get, zip(topics, types, strict=True)) if found is not None]
+            known = [
+                bag_channel
+                for bag_channel in map(bag.channels.get, zip(topics, types, strict=True))
+                if bag_channel is not None
+            ]
             if len(known) == len(data) and time_of(min(ticks)) // _SECOND == time_of(max(ticks)) // _SECOND:
                 bag.write_all(known, data, [time_of(tick) for tick in ticks])
                 return
@@ -182,6 +187,6 @@ class Recorder:
 
     def _fail(self, error: OSError) -> None:
         self.failure = self.failure or RecordError(
-            f"SK-BAG-003 recording to {self.path} stopped at t={self._sim.time:.3f} s: {error.strerror or error}; "
+            f"recording to {self.path} stopped at t={self._sim.time:.3f} s: {error.strerror or error}; "
             "recover the earlier messages with `simkit bag recover`"
         )

@@ -70,7 +70,7 @@ def recover_bag(source: Path, target: Path, *, overwrite: bool = False) -> Recov
     except (OSError, ValueError) as error:
         raise _nothing(f"{source} cannot be read: {read_failure(error)}") from None
     if any(f.absolute() == target.absolute() for f in files) or source.absolute() == target.absolute():
-        raise InputError(f"SK-BAG-001 {target} is the bag to recover; give another name for the new bag", "SK-BAG-001")
+        raise InputError("SK-BAG-001", f"{target} is the bag to recover; give another name for the new bag")
     check_target(target, overwrite=overwrite)
     salvages = [McapSalvage(file) for file in files]
     with _unfinished_bag(target, overwrite=overwrite) as draft:
@@ -90,7 +90,7 @@ def recover_bag(source: Path, target: Path, *, overwrite: bool = False) -> Recov
 
 
 def _nothing(text: str) -> InputError:
-    return InputError(f"SK-BAG-004 {text}", "SK-BAG-004")
+    return InputError("SK-BAG-004", text)
 
 
 def _copy_messages(file: Path, salvage: McapSalvage, bag: McapBag, channels: dict[object, Channel]) -> None:
@@ -136,4 +136,4 @@ def _unfinished_bag(target: Path, *, overwrite: bool) -> Iterator[Path]:
         finally:
             shutil.rmtree(folder, ignore_errors=True)
     except OSError as error:
-        raise InputError(f"SK-BAG-002 cannot write {target}: {error.strerror or error}", "SK-BAG-002") from None
+        raise InputError("SK-BAG-002", f"cannot write {target}: {error.strerror or error}") from None

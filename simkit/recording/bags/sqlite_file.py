@@ -80,10 +80,10 @@ class SqliteFile:
 
     def _plain_tables(self) -> dict[str, set[str]]:
         """Return the columns of the tables that are stored in the file, without views and generated columns."""
-        found = self._rows("SELECT name FROM sqlite_master WHERE type = 'table' AND rootpage > 0", str)
+        rows = self._rows("SELECT name FROM sqlite_master WHERE type = 'table' AND rootpage > 0", str)
         return {
             name: {column for column, hidden in self._columns(name) if not hidden}
-            for (name,) in found
+            for (name,) in rows
             if name in ("messages", "topics", "message_definitions")
         }
 

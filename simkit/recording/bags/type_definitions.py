@@ -53,7 +53,7 @@ def definition_store(type_name: str, text: str) -> Typestore:
         return with_wide_strings(store, store.fielddefs, store.types)
     except Exception as error:  # noqa: BLE001 - rosbags may raise anything on invalid types
         reason = " ".join(str(error).split())[:_LONGEST_REASON]
-        raise InputError(f"SK-CLI-036 the definition of {type_name!r} is invalid: {reason}", "SK-CLI-036") from None
+        raise InputError("SK-CLI-036", f"the definition of {type_name!r} is invalid: {reason}") from None
 
 
 def define_types(definitions: Mapping[str, str]) -> None:
@@ -65,13 +65,13 @@ def define_types(definitions: Mapping[str, str]) -> None:
     Raises:
         InterfaceError: a definition is invalid.
     """
-    found: dict[str, str] = {}
+    texts: dict[str, str] = {}
     for type_name, text in definitions.items():
         try:
             full_name(type_name)
         except MessageError:
-            found |= {name: part.text for name, part in _parsed(type_name, text).items()}
-    own_interfaces.add_received(found)
+            texts |= {name: part.text for name, part in _parsed(type_name, text).items()}
+    own_interfaces.add_received(texts)
 
 
 def _parsed(type_name: str, text: str) -> dict[str, MessageDefinition]:
@@ -84,7 +84,7 @@ def _parsed(type_name: str, text: str) -> dict[str, MessageDefinition]:
     if len(text) > _LONGEST:
         raise ValueError(f"it has {len(text)} characters; the longest allowed has {_LONGEST}")
     first, *rest = _SEPARATOR.split(text)
-    found = {}
+    parts_by_name = {}
     for name, definition in ((type_name, first), *zip(rest[::2], rest[1::2], strict=True)):
         match = _NAME.fullmatch(name)
         if match is None or (name == type_name and not match[2]):
@@ -93,5 +93,5 @@ def _parsed(type_name: str, text: str) -> dict[str, MessageDefinition]:
         parts, problems = parse_interface(as_message, definition, is_foreign=True)
         if problems:
             raise ValueError(f"{name}: {problems[0].message}")
-        found[type_name if name == type_name else as_message] = parts[0]
-    return found
+        parts_by_name[type_name if name == type_name else as_message] = parts[0]
+    return parts_by_name

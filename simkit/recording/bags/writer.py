@@ -108,15 +108,15 @@ class McapBag:
             latched: True if the publisher keeps the last message for late subscribers.
             renderer: renderer that draws the messages, for the metadata of the channel; empty for none.
         """
-        found = self.channels.get((topic, type_name))
-        if found is None:
+        channel = self.channels.get((topic, type_name))
+        if channel is None:
             metadata = {
                 "offered_qos_profiles": qos_profiles_yaml([qos_profile(latched)]),
                 "topic_type_hash": msgs.rihs(type_name),
                 **({"renderer": renderer} if renderer else {}),
             }
-            found = self.add_channel(topic, type_name, latched, msgs.definition(type_name).encode(), metadata)
-        return found
+            channel = self.add_channel(topic, type_name, latched, msgs.definition(type_name).encode(), metadata)
+        return channel
 
     def add_channel(
         self,
@@ -141,9 +141,9 @@ class McapBag:
         if key not in self._schemas:
             self._schemas[key] = self._writer.register_schema(type_name, encodings[1], definition)
         number = self._writer.register_channel(topic, encodings[0], self._schemas[key], metadata)
-        found = Channel(number, topic, type_name, latched, metadata.get("topic_type_hash", ""))
-        self.channels.setdefault((topic, type_name), found)
-        return found
+        channel = Channel(number, topic, type_name, latched, metadata.get("topic_type_hash", ""))
+        self.channels.setdefault((topic, type_name), channel)
+        return channel
 
     def write_raw(self, channel: Channel, data: bytes, time_ns: int, publish_ns: int | None = None) -> None:
         """Append one serialised message. The time of publication is the recording time, unless it is given."""
@@ -284,16 +284,14 @@ def check_target(path: Path, *, overwrite: bool = False) -> None:
         InputError: SK-BAG-001 the path exists; SK-BAG-002 the path is not writable.
     """
     if _path_exists(path) and not overwrite:
-        raise InputError(f"SK-BAG-001 {path} already exists\n    help: replace it with --force", "SK-BAG-001")
+        raise InputError("SK-BAG-001", f"{path} already exists", help="replace it with --force")
     if path.is_dir() and is_single_file(path):
-        raise InputError(f"SK-BAG-002 cannot write {path}: it is a folder", "SK-BAG-002")
+        raise InputError("SK-BAG-002", f"cannot write {path}: it is a folder")
     if is_single_file(path) and not path.absolute().parent.is_dir():
-        raise InputError(
-            f"SK-BAG-002 cannot write {path}: folder {path.absolute().parent} does not exist", "SK-BAG-002"
-        )
+        raise InputError("SK-BAG-002", f"cannot write {path}: folder {path.absolute().parent} does not exist")
     why = write_obstacle(path)
     if why:
-        raise InputError(f"SK-BAG-002 cannot write {path}: {why}", "SK-BAG-002")
+        raise InputError("SK-BAG-002", f"cannot write {path}: {why}")
 
 
 def _path_exists(path: Path) -> bool:
@@ -306,7 +304,7 @@ def _path_exists(path: Path) -> bool:
         return path.exists()
     except (OSError, ValueError) as error:
         why = getattr(error, "strerror", None) or error
-        raise InputError(f"SK-BAG-002 cannot write {path}: {why}", "SK-BAG-002") from None
+        raise InputError("SK-BAG-002", f"cannot write {path}: {why}") from None
 
 
 def open_bag(path: Path, *, overwrite: bool = False) -> McapBag:
@@ -321,6 +319,6 @@ def open_bag(path: Path, *, overwrite: bool = False) -> McapBag:
             return McapBag(path, overwrite=overwrite)
         return Rosbag2Folder(path, overwrite=overwrite)
     except FileExistsError as error:
-        raise InputError(f"SK-BAG-001 {path} is not overwritten: {error}", "SK-BAG-001") from None
+        raise InputError("SK-BAG-001", f"{path} is not overwritten: {error}") from None
     except OSError as error:
-        raise InputError(f"SK-BAG-002 cannot write {path}: {error.strerror or error}", "SK-BAG-002") from None
+        raise InputError("SK-BAG-002", f"cannot write {path}: {error.strerror or error}") from None

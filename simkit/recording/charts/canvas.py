@@ -154,12 +154,12 @@ def _dash(points: Points, dash: tuple[float, ...]) -> list[Points]:
     along = np.concatenate(([0.0], np.cumsum(steps)))
     edges = np.cumsum(np.tile(dash, int(along[-1] / float_sum(dash)) + 1))
     starts = np.concatenate(([0.0], edges[1::2]))
-    found = []
+    dashes = []
     for start, end in zip(starts, edges[::2], strict=False):
         if start >= along[-1]:
             break
         end = min(end, along[-1])
         inside = points[(along > start) & (along < end)]
         ends = [[float(np.interp(at, along, points[:, i])) for i in (0, 1)] for at in (start, end)]
-        found.append(np.vstack((ends[0], inside, ends[1])))
-    return found
+        dashes.append(np.vstack((ends[0], inside, ends[1])))
+    return dashes

@@ -75,8 +75,8 @@ def check_suffix(name: str) -> None:
     """
     ending = name[name.rfind(".") :].lower() if "." in name else ""
     if ending not in SUFFIXES:
-        text = f"SK-BAG-012 {name}: found the ending {ending!r}; expected {' or '.join(SUFFIXES)}"
-        raise InputError(text, "SK-BAG-012")
+        text = f"{name}: found the ending {ending!r}; expected {' or '.join(SUFFIXES)}"
+        raise InputError("SK-BAG-012", text)
 
 
 def render_chart(chart: Chart, ending: str) -> bytes:
@@ -181,23 +181,23 @@ def _tick_count(axis: Axis) -> float:
 def _equal_scale(x: Axis, y: Axis) -> tuple[Axis, Axis]:
     """Return both axes with the same number of pixels per metre."""
     scale = max((a.high - a.low) / abs(a.end - a.start) for a in (x, y))
-    found = []
+    axes = []
     for a in (x, y):
         middle, half = (a.low + a.high) / 2, scale * abs(a.end - a.start) / 2
-        found.append(Axis(middle - half, middle + half, a.start, a.end, a.base))
-    return found[0], found[1]
+        axes.append(Axis(middle - half, middle + half, a.start, a.end, a.base))
+    return axes[0], axes[1]
 
 
 def _legend(labels: list[str]) -> list[tuple[float, int]]:
     """Return the left end [px] and the row of each legend entry."""
-    found, left, row = [], float(_LEFT), 0
+    places, left, row = [], float(_LEFT), 0
     for label in labels:
         wide = 30 + text_width(label, _SIZE) + 22
         if left > _LEFT and left + wide > _WIDTH - _RIGHT:
             left, row = float(_LEFT), row + 1
-        found.append((left, row))
+        places.append((left, row))
         left += wide
-    return found
+    return places
 
 
 def _shorten(text: str, width: float, size: float) -> str:

@@ -131,7 +131,7 @@ def _split_topic(text: str, topics: Mapping[str, str], where: str) -> tuple[str,
     requested = name.partition(".")[0]
     listed = ", ".join(list(topics)[:20]) + (" …" if len(topics) > 20 else "")
     hint = did_you_mean(requested, topics) or (f"known: {listed}" if topics else "there are no topics")
-    raise InputError(f"SK-CLI-030 no topic {requested!r} in {where}; {hint}", "SK-CLI-030")
+    raise InputError("SK-CLI-030", f"no topic {requested!r} in {where}; {hint}")
 
 
 class _FieldPath:
@@ -146,19 +146,19 @@ class _FieldPath:
         steps, at = [self._root], 0
         rest = rest.rstrip("./")
         while at < len(rest):
-            found = _STEP.match(rest, at)
-            if found is None:
+            step_match = _STEP.match(rest, at)
+            if step_match is None:
                 raise self._field_error(f"{rest!r} is not a field path such as .pose.position.x or .ranges[0]")
-            at = found.end()
-            if found[1] is not None:
-                ends = [self._derived(step, found[1]) for step in steps]
+            at = step_match.end()
+            if step_match[1] is not None:
+                ends = [self._derived(step, step_match[1]) for step in steps]
                 if all(end is not None for end in ends):
                     if at < len(rest):
-                        raise self._field_error(f"{found[1]!r} is a number and has no {rest[at:]!r}")
+                        raise self._field_error(f"{step_match[1]!r} is a number and has no {rest[at:]!r}")
                     return [end for end in ends if end is not None]
-                steps = [self._field(step, found[1]) for step in steps]
+                steps = [self._field(step, step_match[1]) for step in steps]
             else:
-                steps = [inner for step in steps for inner in self._items(step, found[2])]
+                steps = [inner for step in steps for inner in self._items(step, step_match[2])]
             self._count(steps)
         curves = [curve for step in steps for curve in self._numbers(step)]
         self._count(curves)
@@ -188,13 +188,13 @@ class _FieldPath:
                 f"{step.path or 'it'} is {_kind_in_words(step.node)}, not an array: it has no item [{text}]"
             )
         inner, size = step.node[1]
-        found = re.fullmatch(r"\s*(-?\d*)\s*(?:(:)\s*(-?\d*))?\s*", text)
-        if found is None or (not found[2] and not found[1]):
+        match = re.fullmatch(r"\s*(-?\d*)\s*(?:(:)\s*(-?\d*))?\s*", text)
+        if match is None or (not match[2] and not match[1]):
             return [self._named(step, text.strip().strip("'\""))]
-        if found[2] is None:
-            numbers = [int(found[1])]
+        if match[2] is None:
+            numbers = [int(match[1])]
         else:
-            start, stop = int(found[1] or 0), int(found[3]) if found[3] else size if int(step.node[0]) == 3 else None
+            start, stop = int(match[1] or 0), int(match[3]) if match[3] else size if int(step.node[0]) == 3 else None
             if stop is None or (start < 0) != (stop < 0):
                 raise self._path_error(f"[{text}] has no end; give one, such as [{max(start, 0)}:10]")
             numbers = list(range(start, min(stop, start + MOST_CURVES + 1)))
@@ -271,12 +271,12 @@ class _FieldPath:
         if kind != NAME:
             return ()
         fields = dict(field_nodes(step.node[1], self._store))
-        found: tuple[str, ...] = ()
+        names: tuple[str, ...] = ()
         if self._is_quaternion(step.node) or self._orientation_field(step) is not None:
-            found = _ANGLES
+            names = _ANGLES
         elif fields and set(fields) <= {"x", "y", "z"} and len(fields) > 1:
-            found = ("norm",)
-        return tuple(name for name in found if name not in fields)
+            names = ("norm",)
+        return tuple(name for name in names if name not in fields)
 
     def _is_quaternion(self, node: FieldNode) -> bool:
         return int(node[0]) == NAME and [n for n, _ in field_nodes(node[1], self._store)] == ["x", "y", "z", "w"]
@@ -303,10 +303,10 @@ class _FieldPath:
         return "it has no fields"
 
     def _field_error(self, text: str) -> InputError:
-        return InputError(f"SK-CLI-033 {self._text}: {text}", "SK-CLI-033")
+        return InputError("SK-CLI-033", f"{self._text}: {text}")
 
     def _path_error(self, text: str) -> InputError:
-        return InputError(f"SK-BAG-010 {self._text}: {text}", "SK-BAG-010")
+        return InputError("SK-BAG-010", f"{self._text}: {text}")
 
 
 # ---------------------------------------------------------------------- readers

@@ -83,7 +83,7 @@ def _grid(x: Axis, y: Axis, bottom: float, right: float) -> list[str]:
 
 def _path(series: Series, x: Axis, y: Axis) -> str:
     """Return the commands of an SVG path, with one part for each stretch of finite values."""
-    found: list[str] = []
+    pieces: list[str] = []
     last_column = -1.0
     for times, values in split_line(series):
         px = x.at(times)
@@ -93,8 +93,8 @@ def _path(series: Series, x: Axis, y: Axis) -> str:
         with np.errstate(over="ignore"):
             py = np.clip(y.at(values), -1e4, 1e4)
         points = thin_line(np.column_stack((px, py)), 0.5)
-        found.append(path_data(points) + ("h.01" if len(points) == 1 else ""))
-    return "".join(found)
+        pieces.append(path_data(points) + ("h.01" if len(points) == 1 else ""))
+    return "".join(pieces)
 
 
 def _dots(series: Series, x: Axis, y: Axis) -> str:

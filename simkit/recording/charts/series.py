@@ -66,12 +66,12 @@ def bag_series(bag: BagReader, curves: Sequence[Curve]) -> list[Series]:
     Raises:
         InputError: SK-CLI-035 the bag is truncated; SK-CLI-036 a message does not match its type.
     """
-    found = _SeriesCollector(curves)
+    collector = _SeriesCollector(curves)
     topics = list(dict.fromkeys(curve.topic for curve in curves))
     origin = bag.time_origin
     for message in bag.messages(topics) if topics else ():
-        found.take(message.topic, (message.time_ns - origin) * 1e-9, bag.decode(message))
-    return found.series()
+        collector.take(message.topic, (message.time_ns - origin) * 1e-9, bag.decode(message))
+    return collector.series()
 
 
 class SeriesTap:
@@ -141,10 +141,10 @@ def series_over(series: Sequence[Series], base: Series) -> list[Series]:
         series: series for the vertical axis.
         base: series for the horizontal axis.
     """
-    found = []
+    over_base = []
     for curve in series:
         index = np.searchsorted(base.times, curve.times + 1e-9, side="right") - 1
         known = index >= 0
         x_values, values = base.values[index[known]], curve.values[known]
-        found.append(replace(curve, times=x_values, values=values, base_unit=base.unit))
-    return found
+        over_base.append(replace(curve, times=x_values, values=values, base_unit=base.unit))
+    return over_base

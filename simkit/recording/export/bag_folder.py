@@ -47,7 +47,7 @@ def check_folder(path: Path, *, overwrite: bool) -> None:
             if not _is_export(path):
                 raise _folder_error(f"{path} is not an export of simkit and is not overwritten")
             if not overwrite:
-                raise _folder_error(f"{path} already exists\n    help: replace it with --force")
+                raise _folder_error(f"{path} already exists", "replace it with --force")
         why = write_obstacle(path)
         if why:
             raise _folder_error(f"cannot write {path}: {why}")
@@ -109,8 +109,8 @@ def write_index(folder: Path, rows: dict[str, object]) -> None:
     (folder / INDEX).write_text(text + "\n", encoding="utf-8", errors="replace")
 
 
-def _folder_error(text: str) -> InputError:
-    return InputError(f"SK-BAG-013 {text}", "SK-BAG-013")
+def _folder_error(text: str, hint: str = "") -> InputError:
+    return InputError("SK-BAG-013", text, help=hint)
 
 
 WriterFactory = Callable[[], MessageWriter]
@@ -179,7 +179,7 @@ def export_bag(path: Path, target: Path, options: ExportOptions) -> list[Exporte
     with open_bag_to_read(path) as bag:
         topics = _selected_topics(bag, options)
         with export_folder(target, overwrite=options.overwrite) as folder:
-            found = _write_topics(bag, topics, folder, options)
+            exports = _write_topics(bag, topics, folder, options)
             write_index(
                 folder,
                 {
@@ -196,11 +196,11 @@ def export_bag(path: Path, target: Path, options: ExportOptions) -> list[Exporte
                             **({"beside": exported.beside} if exported.beside else {}),
                             **({"notes": exported.notes} if exported.notes else {}),
                         }
-                        for exported in found
+                        for exported in exports
                     ],
                 },
             )
-    return found
+    return exports
 
 
 def _selected_topics(bag: BagReader, options: ExportOptions) -> list[BagTopic]:
@@ -208,12 +208,12 @@ def _selected_topics(bag: BagReader, options: ExportOptions) -> list[BagTopic]:
     for pattern in options.topics:
         if not any(matches_topic(name, [pattern]) for name in names):
             hint = did_you_mean(pattern, names) or "known: " + (", ".join(sorted(set(names))) or "none")
-            raise InputError(f"SK-CLI-030 no topic {pattern!r} in {bag.path}; {hint}", "SK-CLI-030")
+            raise InputError("SK-CLI-030", f"no topic {pattern!r} in {bag.path}; {hint}")
     chosen = [topic for topic in bag.topics if not options.topics or matches_topic(topic.name, options.topics)]
-    found = [topic for topic in chosen if not matches_topic(topic.name, options.skip)]
-    if not found:
-        raise InputError(f"SK-BAG-011 the options select none of the {len(names)} topics of {bag.path}", "SK-BAG-011")
-    return found
+    selected = [topic for topic in chosen if not matches_topic(topic.name, options.skip)]
+    if not selected:
+        raise InputError("SK-BAG-011", f"the options select none of the {len(names)} topics of {bag.path}")
+    return selected
 
 
 def _write_topics(bag: BagReader, topics: list[BagTopic], folder: Path, options: ExportOptions) -> list[ExportedTopic]:
@@ -239,7 +239,7 @@ def _write_topics(bag: BagReader, topics: list[BagTopic], folder: Path, options:
 def _file_names(topics: list[BagTopic]) -> dict[tuple[str, str], str]:
     """Return a unique file name for each topic: the topic's name with `_` for slashes."""
     used_names = {INDEX.removesuffix(".json")}
-    found = {}
+    names = {}
     for topic in topics:
         base = _NOT_IN_FILE_NAMES.sub("_", topic.name.strip("/").replace("/", "_")).strip(".")[:120] or "topic"
         name, number = base, 1
@@ -247,8 +247,8 @@ def _file_names(topics: list[BagTopic]) -> dict[tuple[str, str], str]:
             number += 1
             name = f"{base}_{number}"
         used_names.add(name.lower())
-        found[topic.name, topic.type_name] = name
-    return found
+        names[topic.name, topic.type_name] = name
+    return names
 
 
 class _TopicExport:

@@ -44,8 +44,8 @@ def to_dataframe(
         if topic is None:
             names = list(dict.fromkeys(known.name for known in source.topics))
             if len(names) != 1:
-                text = f"SK-CLI-030 {source.path} has {len(names)} topics; give one of them"
-                raise InputError(f"{text}: {', '.join(names) or 'none'}", "SK-CLI-030")
+                text = f"{source.path} has {len(names)} topics; give one of them"
+                raise InputError("SK-CLI-030", f"{text}: {', '.join(names) or 'none'}")
             topic = names[0]
         check_text(topic, "the topic")
         return source.to_dataframe(absolute_name(topic))

@@ -174,9 +174,7 @@ class VideoFile(MessageWriter):
         else:
             self._writer = None
             self._early = []
-            raise InputError(
-                "SK-BAG-014 --images mp4: OpenCV has no video encoder\n    help: use --images png", "SK-BAG-014"
-            )
+            raise InputError("SK-BAG-014", "--images mp4: OpenCV has no video encoder", help="use --images png")
         early, self._early = self._early, []
         for time_ns, frame in early:
             self._add(time_ns, frame)

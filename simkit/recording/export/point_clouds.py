@@ -40,12 +40,12 @@ class CloudFiles(NumberedFiles):
 
     def _write(self, target: Path, message: PointCloud2) -> Path:
         target = target.with_suffix(f".{self._ending}")
-        found = read_points(message)
+        points = read_points(message)
         with target.open("wb") as file:
             if self._ending == "ply":
-                file.write(_ply_bytes(found))
+                file.write(_ply_bytes(points))
             else:
-                arrays = {name: np.ascontiguousarray(found[name]) for name in found.dtype.names or ()}
+                arrays = {name: np.ascontiguousarray(points[name]) for name in points.dtype.names or ()}
                 np.savez_compressed(file, allow_pickle=False, **arrays)
         return target
 

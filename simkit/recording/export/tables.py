@@ -93,7 +93,7 @@ def write_npz(path: Path, times: Sequence[int], columns: Sequence[Column]) -> li
                 numbers = numbers.reshape(len(column.counts), width)
         arrays[column.path] = numbers
     with path.open("wb") as file:
-        np.savez_compressed(file, allow_pickle=False, **{_npz_key(name): found for name, found in arrays.items()})
+        np.savez_compressed(file, allow_pickle=False, **{_npz_key(name): array for name, array in arrays.items()})
     return []
 
 
@@ -111,11 +111,9 @@ def check_parquet() -> None:
     try:
         import_module("pyarrow.parquet")
     except ImportError:
-        text = (
-            "SK-BAG-014 --format parquet needs the package pyarrow, which is not installed\n"
-            f"    help: {install_command('parquet')}, or use --format npz"
-        )
-        raise InputError(text, "SK-BAG-014") from None
+        text = "--format parquet needs the package pyarrow, which is not installed"
+        help_ = f"{install_command('parquet')}, or use --format npz"
+        raise InputError("SK-BAG-014", text, help=help_) from None
 
 
 def write_parquet(path: Path, times: Sequence[int], columns: Sequence[Column]) -> list[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -19,7 +19,7 @@ from simkit.recording.bags.bag_motion import SCAN, BagMotion
 from simkit.recording.pictures.camera import Camera
 from simkit.recording.pictures.frames import Look, Render, choose_camera, draw_frame
 from simkit.recording.pictures.overlay import Marks, Points
-from simkit.recording.pictures.subject import Subject, find_subject, scan_points
+from simkit.recording.pictures.subject import Subject, find_subject, scan_points, scan_traces
 from simkit.recording.pictures.video_file import VIDEO_SUFFIXES, FrameFile, check_video_target, open_video
 from simkit.recording.run_picture import DrivenPath, is_goal, marks_of
 
@@ -81,11 +81,11 @@ def film_options(
         size = (int(width), int(height)) if width.isdecimal() and height.isdecimal() else (0, 0)
         if not all(16 <= length <= _LARGEST for length in size):
             text = f"--resolution {resolution}: expected WIDTHxHEIGHT, each from 16 to {_LARGEST} px, such as 1280x720"
-            raise InputError(f"SK-CLI-018 {text}", "SK-CLI-018")
+            raise InputError("SK-CLI-018", text)
     if fps is not None and not 0.1 <= fps <= _FASTEST:
-        raise InputError(f"SK-CLI-018 --fps {fps:g}: expected 0.1 to {_FASTEST} frames per second", "SK-CLI-018")
+        raise InputError("SK-CLI-018", f"--fps {fps:g}: expected 0.1 to {_FASTEST} frames per second")
     if camera not in CAMERAS:
-        raise InputError(f"SK-CLI-018 --camera {camera}: expected {', '.join(CAMERAS)}", "SK-CLI-018")
+        raise InputError("SK-CLI-018", f"--camera {camera}: expected {', '.join(CAMERAS)}")
     for path, option, suffixes in ((gif, "--gif", (".gif",)), (video, "--video", VIDEO_SUFFIXES)):
         if path is not None:
             check_video_target(path, option, suffixes)
@@ -142,7 +142,7 @@ class Film:
             return
         self._driven.sample()
         marks = marks_of(self._sim, self._driven) if marks is None else marks
-        subject = find_subject(self._sim, list(marks.scans.values()))
+        subject = find_subject(self._sim, scan_traces(self._sim, marks.scans))
         frame = draw_frame(self._sim, self._render, self._aim(subject), self._look, marks, subject)
         for file in self._files:
             file.take(frame)
@@ -157,14 +157,16 @@ class Film:
         """Return the camera of a frame; its direction never changes."""
         middle = subject.robots.mean(axis=0) if len(subject.robots) else None
         if self._camera is None:
-            whole = find_subject(self._sim, [], math.inf if self._options.camera == "fixed" else _ROOM)
-            follows = self._options.camera == "follow" or (self._options.camera == "auto" and not len(whole.room))
+            subject_in_view = find_subject(self._sim, [], math.inf if self._options.camera == "fixed" else _ROOM)
+            follows = self._options.camera == "follow" or (
+                self._options.camera == "auto" and not len(subject_in_view.room)
+            )
             if follows and middle is not None:
                 self._anchor = middle
                 none = np.zeros((0, 3))
                 around = middle + _AROUND * (subject.robots - middle)
-                whole = Subject(around, subject.centres, none, none, subject.heading)
-            self._camera = choose_camera(self._sim, self._render, whole, self._look)
+                subject_in_view = replace(subject, robots=around, traces=none, room=none)
+            self._camera = choose_camera(self._sim, self._render, subject_in_view, self._look)
         if self._anchor is None or middle is None:
             return self._camera
         return self._camera.moved(middle - self._anchor)

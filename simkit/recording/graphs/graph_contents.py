@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any, Final
+from typing import Final
 
 from simkit.msgs.topic_names import is_hidden
 from simkit.msgs.transform_tree import TransformTree
 from simkit.recording.graphs.graph_svg import GraphBox, GraphEdge
+from simkit.run_spec import JsonObject
 
 _OWN_NODES: Final = frozenset(
     {"/ClassicServices", "/ClockPublisher", "/SimulationInterfaces", "/WorldServices", "/WorldStats"}
@@ -16,7 +17,7 @@ _OWN_TOPICS: Final = frozenset({"/clock", "/parameter_events", "/rosout"})
 _LISTED: Final = 4  # services and actions in the box of a node
 
 
-def node_graph(nodes: Mapping[str, Any], *, hidden: bool) -> tuple[list[GraphBox], list[GraphEdge]]:
+def node_graph(nodes: Mapping[str, JsonObject], *, hidden: bool) -> tuple[list[GraphBox], list[GraphEdge]]:
     """Return the graph of nodes and topics.
 
     Args:
@@ -40,8 +41,8 @@ def node_graph(nodes: Mapping[str, Any], *, hidden: bool) -> tuple[list[GraphBox
         space, _, last = name.rpartition("/")
         lines = [*_listed("action", actions), *_listed("service", services)]
         boxes[f"node {name}"] = GraphBox(f"node {name}", "node", last, lines, space)
-        for topic, found in (*publishes.items(), *subscribes.items()):
-            types.setdefault(topic, found[0].replace("/msg/", "/") if found else "")
+        for topic, topic_types in (*publishes.items(), *subscribes.items()):
+            types.setdefault(topic, topic_types[0].replace("/msg/", "/") if topic_types else "")
         for topic in publishes:
             edges[name, topic] = GraphEdge(f"node {name}", f"topic {topic}")
         for topic in subscribes:
@@ -53,9 +54,9 @@ def node_graph(nodes: Mapping[str, Any], *, hidden: bool) -> tuple[list[GraphBox
 
 def _listed(kind: str, names: Iterable[str]) -> list[str]:
     """Return a line for each of the first names, and one for the number of the others."""
-    found = sorted(names)
-    lines = [f"{kind} {name}" for name in found[:_LISTED]]
-    more = len(found) - _LISTED
+    sorted_names = sorted(names)
+    lines = [f"{kind} {name}" for name in sorted_names[:_LISTED]]
+    more = len(sorted_names) - _LISTED
     return lines + ([f"and {more} more {kind}{'s' if more > 1 else ''}"] if more > 0 else [])
 
 

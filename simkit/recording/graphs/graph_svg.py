@@ -103,7 +103,11 @@ def _box(box: GraphBox, place: tuple[float, float, float, float]) -> str:
         f'width="{width:.1f}" height="{height:.1f}" rx="{radius:.0f}"/>'
     ]
     top = y + 6 + _LINE * 0.75
-    lines = [*([(box.above, "small")] if box.above else []), (box.head, "head"), *((one, "small") for one in box.lines)]
+    lines = [
+        *([(box.above, "small")] if box.above else []),
+        (box.head, "head"),
+        *((text, "small") for text in box.lines),
+    ]
     for number, (line, role) in enumerate(lines):
         at = f'x="{x + width / 2:.1f}" y="{top + number * _LINE:.1f}" text-anchor="middle"'
         parts.append(f'<text class="{role}" {at}>{_text(_shortened(line))}</text>')

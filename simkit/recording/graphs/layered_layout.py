@@ -44,8 +44,8 @@ def layered_layout(sizes: Mapping[str, tuple[float, float]], edges: Sequence[Edg
         sizes: width and height of each box [px].
         edges: pairs of boxes; edges of a box with itself are left out.
     """
-    kept = list(dict.fromkeys(edge for edge in edges if edge[0] != edge[1]))
-    forward = _without_cycles(list(sizes), kept)
+    without_loops = list(dict.fromkeys(edge for edge in edges if edge[0] != edge[1]))
+    forward = _without_cycles(list(sizes), without_loops)
     column = _columns(list(sizes), [edge for edge, _ in forward])
     bends: dict[Edge, list[str]] = {}
     height = {name: size[1] for name, size in sizes.items()}
@@ -106,14 +106,14 @@ def _columns(names: Sequence[str], edges: Sequence[Edge]) -> dict[str, int]:
     missing = {name: len(before[name]) for name in names}
     order = [name for name in names if not missing[name]]
     for name in order:
-        column[name] = max((column[one] + 1 for one in before[name]), default=0)
+        column[name] = max((column[neighbour] + 1 for neighbour in before[name]), default=0)
         for end in after[name]:
             missing[end] -= 1
             if not missing[end]:
                 order.append(end)
     for name in reversed(order):
         if after[name] and not before[name]:
-            column[name] = min(column[one] for one in after[name]) - 1
+            column[name] = min(column[neighbour] for neighbour in after[name]) - 1
     return column
 
 
@@ -137,12 +137,14 @@ def _order(columns: list[list[str]], links: Sequence[Edge]) -> None:
         for number in numbers:
             other = columns[number - 1 if sweep % 2 == 0 else number + 1]
             position = {name: place for place, name in enumerate(other)}
-            own = {name: place for place, name in enumerate(columns[number])}
+            row = {name: place for place, name in enumerate(columns[number])}
             mean = {
-                name: sum(position[one] for one in sides[name]) / len(sides[name]) if sides[name] else own[name]
+                name: sum(position[neighbour] for neighbour in sides[name]) / len(sides[name])
+                if sides[name]
+                else row[name]
                 for name in columns[number]
             }
-            columns[number].sort(key=lambda name: (mean[name], own[name]))
+            columns[number].sort(key=lambda name: (mean[name], row[name]))
         count = _crossings(columns, after)
         if count < fewest:
             best, fewest = [list(names) for names in columns], count
@@ -170,7 +172,9 @@ def _heights(columns: Sequence[Sequence[str]], links: Sequence[Edge], height: Ma
             top += height[name] + _GAP
     for sweep in range(_SWEEPS):
         for names in columns if sweep % 2 == 0 else reversed(columns):
-            near = [[middle[one] for one in (*before[name], *after[name])] or [middle[name]] for name in names]
+            near = [
+                [middle[neighbour] for neighbour in (*before[name], *after[name])] or [middle[name]] for name in names
+            ]
             _spread(names, [float_sum(values) / len(values) for values in near], height, middle)
     return middle
 
@@ -202,7 +206,7 @@ def _placed(
     sizes: Mapping[str, tuple[float, float]],
     bends: Mapping[Edge, Sequence[str]],
 ) -> Layout:
-    found = Layout()
+    layout = Layout()
     left = 0.0
     at: dict[str, tuple[float, float]] = {}  # left and right end of each box and bend
     tops = [middles[name] - sizes[name][1] / 2 for name in sizes]
@@ -214,17 +218,17 @@ def _placed(
             start = left + (widest - width) / 2
             at[name] = (start, start + width)
             if name in sizes:
-                found.boxes[name] = (start, middles[name] - sizes[name][1] / 2 - top, *sizes[name])
+                layout.boxes[name] = (start, middles[name] - sizes[name][1] / 2 - top, *sizes[name])
         left += widest + _BETWEEN
     for edge, chain in bends.items():
         points: list[tuple[float, float]] = []
         is_turned = len(chain) > 1 and at[chain[0]][0] > at[chain[-1]][0]
         for number, name in enumerate(chain):
             ends = at[name][::-1] if is_turned else at[name]
-            kept = ends[1:] if number == 0 else ends[:1] if number == len(chain) - 1 else ends
-            points += [(x, middles[name] - top) for x in kept]
-        found.paths[edge] = points
-    found.width = max(left - _BETWEEN, 0.0)
-    bottoms = [box[1] + box[3] for box in found.boxes.values()]
-    found.height = max([*bottoms, *(y for path in found.paths.values() for _, y in path)], default=0.0)
-    return found
+            visible = ends[1:] if number == 0 else ends[:1] if number == len(chain) - 1 else ends
+            points += [(x, middles[name] - top) for x in visible]
+        layout.paths[edge] = points
+    layout.width = max(left - _BETWEEN, 0.0)
+    bottoms = [box[1] + box[3] for box in layout.boxes.values()]
+    layout.height = max([*bottoms, *(y for path in layout.paths.values() for _, y in path)], default=0.0)
+    return layout

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -27,12 +27,14 @@ class Camera:
     Attributes:
         eye, target: position of the camera and of the point in the middle of the image [m], shape (3,).
         width, height: size of the image [px].
+        ceiling: height above which static shapes are not drawn, so that a roof does not hide what is below it [m].
     """
 
     eye: Points
     target: Points
     width: int
     height: int
+    ceiling: float = math.inf
 
     @property
     def distance(self) -> float:
@@ -55,11 +57,11 @@ class Camera:
 
     def moved(self, offset: Points) -> Camera:
         """Return the camera, moved by an offset [m]."""
-        return Camera(self.eye + offset, self.target + offset, self.width, self.height)
+        return replace(self, eye=self.eye + offset, target=self.target + offset)
 
     def resized(self, width: int, height: int) -> Camera:
         """Return the camera with another image size [px]."""
-        return Camera(self.eye, self.target, width, height)
+        return replace(self, width=width, height=height)
 
 
 def view_axes(view: Points) -> Points:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -31,6 +31,8 @@ _STEEP, _LEVEL = math.radians(50), math.radians(20)
 _AZIMUTHS: Final = tuple(math.radians(turn) for turn in (0, 90, -90, 180))
 _TOP: Final = ((math.radians(65), 0.15), (math.radians(82), 0.3))
 """Steeper elevations, which show less of the sides, and the share of a subject that they must show in addition."""
+_COVERED: Final = 0.5  # share that the best viewpoint shows if nothing needs to be opened
+_HEADROOM: Final = 0.05  # [m] between the robots and the lowest shape that can be left out
 _ROBOTS: Final = 0.7  # weight of robots beside that of scans and paths
 
 
@@ -70,6 +72,7 @@ def draw_frame(sim: Simulation, render: Render, camera: Camera, look: Look, mark
         passes=look.passes if look.quality != "fast" else 4 if look.passes > 1 else 1,
         lit=_lit_sphere(subject, camera),
         distances=distances,
+        ceiling=camera.ceiling,
     )
     surroundings = sim.world.surroundings
     if look.backdrop and not surroundings.sky and surroundings.fog is None:
@@ -81,21 +84,58 @@ def choose_camera(sim: Simulation, render: Render, subject: Subject, look: Look)
     """Return the camera that shows most of a subject, among several viewpoints.
 
     A tall subject is seen from the side, a flat one from above. Small images of all viewpoints tell how much of the
-    robots, scans and paths is hidden behind walls.
+    robots, scans and paths is hidden behind walls. If most of it is hidden from everywhere, as below a roof, what is
+    above it is not drawn. In a world without robots, the small shapes of the room take their place.
     """
-    best: tuple[float, Camera] | None = None
     views = list(_views(subject))
     cameras = [frame_points(subject.points, view, look.width, look.height) for view, _ in views]
     if not len(subject.centres) and not len(subject.traces):
-        return cameras[0]
-    shares = [
-        _visible_share(sim, render, camera, subject) - more for camera, (_, more) in zip(cameras, views, strict=True)
-    ]
-    for share, camera in zip(shares, cameras, strict=True):
+        if not len(subject.room_centres):
+            return cameras[0]
+        share = _visible_share(sim, render, cameras[0], subject)
+        if share > _COVERED:
+            return cameras[0]
+        best = share, cameras[0]
+    else:
+        best = _best_camera(
+            sim, render, subject, [(camera, more) for camera, (_, more) in zip(cameras, views, strict=True)]
+        )
+    if best[0] > _COVERED:
+        return best[1]
+    ceiling = _ceiling(subject)
+    opened = [(replace(camera, ceiling=ceiling), more) for camera, (_, more) in zip(cameras, views, strict=True)]
+    above = line_of_sight(math.radians(-90), math.radians(89.9))
+    opened.append((replace(frame_points(subject.points, above, look.width, look.height), ceiling=ceiling), _TOP[-1][1]))
+    below_roof = _best_camera(sim, render, subject, opened)
+    return below_roof[1] if below_roof[0] > best[0] + _ENOUGH else best[1]
+
+
+def _best_camera(
+    sim: Simulation, render: Render, subject: Subject, cameras: Sequence[tuple[Camera, float]]
+) -> tuple[float, Camera]:
+    """Return the first camera that shows most of a subject, and the share that it shows.
+
+    Args:
+        sim: simulation to show.
+        render: function that draws a view.
+        subject: what must be seen.
+        cameras: cameras, the preferred one first, each with the share that it must show in addition.
+    """
+    best: tuple[float, Camera] | None = None
+    for camera, more in cameras:
+        share = _visible_share(sim, render, camera, subject) - more
         if best is None or share > best[0] + _ENOUGH:
             best = share, camera
     assert best is not None
-    return best[1]
+    return best
+
+
+def _ceiling(subject: Subject) -> float:
+    """Return the height above which nothing belongs to the subject [m]: just above the robots, or half of the room."""
+    if len(subject.robots):
+        return float(subject.robots[:, 2].max()) + _HEADROOM
+    room = subject.room if len(subject.room) else subject.traces
+    return float(room[:, 2].min() + room[:, 2].max()) / 2
 
 
 def _views(subject: Subject) -> Iterator[tuple[Points, float]]:
@@ -120,8 +160,12 @@ def _visible_share(sim: Simulation, render: Render, camera: Camera, subject: Sub
     distances = np.full((height, width), np.inf, dtype=np.float32)
     render(
         sim, width, height, eye=camera.eye, target=camera.target, vertical_fov=VERTICAL_FOV, quality="fast",
-        distances=distances,
+        distances=distances, ceiling=camera.ceiling,
     )  # fmt: skip
+    if not len(subject.centres) and not len(subject.traces):  # a room: small shapes in it
+        sizes = np.linalg.norm(np.ptp(subject.room.reshape(-1, 8, 3), axis=1), axis=1)
+        is_small = sizes <= np.median(sizes)
+        return _seen_share(small, distances, subject.room_centres[is_small], float(np.median(sizes)) / 2)
     radius = norm(np.ptp(subject.robots, axis=0)) / 2 if len(subject.robots) else 0.0
     shares, weights = [], []
     for points, slack, weight in (
@@ -130,19 +174,25 @@ def _visible_share(sim: Simulation, render: Render, camera: Camera, subject: Sub
     ):
         if len(points):
             weights.append(weight)
-            pixels, depth = small.project(points[:: max(1, len(points) // 200)])
-            column = np.clip(np.rint(pixels[:, 0]), 0, width - 1).astype(int)
-            row = np.clip(np.rint(pixels[:, 1]), 0, height - 1).astype(int)
-            shares.append(weight * float((depth <= distances[row, column] + slack).mean()))
+            shares.append(weight * _seen_share(small, distances, points[:: max(1, len(points) // 200)], slack))
     return float_sum(shares) / float_sum(weights)
+
+
+def _seen_share(camera: Camera, distances: Distances, points: Points, slack: float) -> float:
+    """Return the share of points that are at most `slack` behind the surface at their pixel [m]."""
+    height, width = distances.shape
+    pixels, depth = camera.project(points)
+    column = np.clip(np.rint(pixels[:, 0]), 0, width - 1).astype(int)
+    row = np.clip(np.rint(pixels[:, 1]), 0, height - 1).astype(int)
+    return float((depth <= distances[row, column] + slack).mean())
 
 
 def _lit_sphere(subject: Subject, camera: Camera) -> tuple[Points, float]:
     """Return the sphere that shadow maps cover: the subject and the ground beside it, or the part near the camera."""
     points = subject.points
     low, high = points.min(axis=0), points.max(axis=0)
-    whole, near = max(0.9 * norm(high - low), 0.05), 1.2 * camera.distance
-    return ((low + high) / 2, whole) if whole <= near else (camera.target, near)
+    radius, near = max(0.9 * norm(high - low), 0.05), 1.2 * camera.distance
+    return ((low + high) / 2, radius) if radius <= near else (camera.target, near)
 
 
 def _shade_backdrop(colours: Colours, distances: Distances) -> Colours:

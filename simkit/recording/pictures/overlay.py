@@ -86,8 +86,8 @@ def _is_visible(pixels: Points, depth: Points, distances: Distances) -> NDArray[
     height, width = distances.shape
     column = np.clip(np.rint(pixels[:, 0]), 0, width - 1).astype(int)
     row = np.clip(np.rint(pixels[:, 1]), 0, height - 1).astype(int)
-    found: NDArray[np.bool_] = depth <= distances[row, column] * (1.0 + _TOLERANCE)
-    return found
+    is_visible: NDArray[np.bool_] = depth <= distances[row, column] * (1.0 + _TOLERANCE)
+    return is_visible
 
 
 def _draw_path(hidden: Colours, seen: Colours, distances: Distances, camera: Camera, path: Points, to: Colour) -> None:

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
+import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from simkit.linear_algebra import matmul, norm
 from simkit.pose import Pose
+from simkit.recording.pictures.stray_models import find_stray_models
 
 if TYPE_CHECKING:
     from simkit.msgs import LaserScan
@@ -37,6 +40,8 @@ class Subject:
         traces: points of scans, paths and goals.
         room: corners of the boxes around all other geoms, without floors, if the whole room fits into the picture.
         heading: yaw of the first robot [rad].
+        room_centres: middle of each box of the room.
+        left_out: names of models that fell out of the world or are far away, and that are not framed.
     """
 
     robots: Points
@@ -44,6 +49,8 @@ class Subject:
     traces: Points
     room: Points
     heading: float
+    room_centres: Points = field(default_factory=lambda: np.zeros((0, 3)))
+    left_out: tuple[str, ...] = ()
 
     @property
     def points(self) -> Points:
@@ -51,26 +58,37 @@ class Subject:
         return np.concatenate((self.robots, self.traces, self.room))
 
 
-def find_subject(sim: Simulation, traces: list[Points], room_size: float = ROOM) -> Subject:
+def find_subject(sim: Simulation, traces: Iterable[tuple[str, Points]], room_size: float = ROOM) -> Subject:
     """Return what a picture of a simulation shows.
 
     Args:
         sim: simulation to show.
-        traces: points of scans, paths and goals [m].
+        traces: points of scans, paths and goals [m], each with the model that it belongs to, or an empty name; those of
+            models that are left out are not framed.
         room_size: largest size of a room that is shown whole, relative to the other points.
     """
-    moving, fixed = _drawn_geoms(sim)
-    boxes = _box_corners(sim, moving)
-    seen = np.concatenate([np.zeros((0, 3)), *traces])
-    walls = _without_floors(_box_corners(sim, fixed))
-    found = np.concatenate((boxes.reshape(-1, 3), seen))
+    drawn = _drawn_geoms(sim)
+    moving_models = _moving_models(sim)
+    moving = [name for name in drawn if name in moving_models]
+    boxes_by_model = {name: _box_corners(sim, geoms) for name, geoms in drawn.items()}
+    corners = {name: boxes.reshape(-1, 3) for name, boxes in boxes_by_model.items()}
+    # a model whose meshes are all missing is at a place too, and has a path
+    corners |= {name: sim.models[name].pose.position[None] for name in moving if not len(corners[name])}
+    left_out = find_stray_models(sim, corners, moving, _ground(sim))
+    none = np.zeros((0, 8, 3))
+    boxes = np.concatenate([none, *(boxes_by_model[name] for name in moving if name not in left_out)])
+    fixed = [name for name in drawn if name not in moving and name not in left_out]
+    walls = _without_floors(np.concatenate([none, *(boxes_by_model[name] for name in fixed)]))
+    seen = np.concatenate([np.zeros((0, 3)), *(points for name, points in traces if name not in left_out)])
+    points = np.concatenate((boxes.reshape(-1, 3), seen))
     room = walls.reshape(-1, 3)
-    if len(found) and (not len(room) or _size(np.concatenate((found, room))) > room_size * _size(found)):
+    if len(boxes) and (not len(room) or _size(np.concatenate((points, room))) > room_size * _size(points)):
         room = np.zeros((0, 3))
-    if not len(found) and not len(room):
+    if not len(points) and not len(room):
         middle, radius = np.array(sim.mj_model.stat.center), max(float(sim.mj_model.stat.extent) / 4, _LEAST)
         room = middle + radius * _CORNERS
-    return Subject(boxes.reshape(-1, 3), boxes.mean(axis=1), seen, room, _heading(sim))
+    centres = walls.mean(axis=1)
+    return Subject(boxes.reshape(-1, 3), boxes.mean(axis=1), seen, room, _heading(sim), centres, left_out)
 
 
 def scan_points(message: LaserScan, pose: Pose) -> Points:
@@ -87,24 +105,51 @@ def scan_points(message: LaserScan, pose: Pose) -> Points:
 
 def last_scans(sim: Simulation) -> dict[str, Points]:
     """Return the points of the newest planar scan of each scanner in the world frame [m], by topic."""
-    found: dict[str, Points] = {}
+    points_by_topic: dict[str, Points] = {}
     for sensor in sim.contents.sensors.values():
         if sensor.kind in SCANNERS:
             message = sensor.latest
             if hasattr(message, "ranges"):
-                found[sensor.topic] = scan_points(message, sensor.pose)
-    return found
+                points_by_topic[sensor.topic] = scan_points(message, sensor.pose)
+    return points_by_topic
 
 
-def _drawn_geoms(sim: Simulation) -> tuple[list[int], list[int]]:
-    """Return the ids of the drawn geoms of models that are not static, and of all others."""
-    moving: list[int] = []
-    fixed: list[int] = []
+def scan_traces(sim: Simulation, scans: Mapping[str, Points]) -> list[tuple[str, Points]]:
+    """Return the points of scans by topic [m], each with the top-level model of its scanner."""
+    owners = {sensor.topic: name.split("::", 1)[0] for name, sensor in sim.contents.sensors.items()}
+    return [(owners.get(topic, ""), points) for topic, points in scans.items()]
+
+
+def _drawn_geoms(sim: Simulation) -> dict[str, list[int]]:
+    """Return the ids of the drawn geoms of each top-level model; those of its collisions where it has no visuals."""
+    moving = _moving_models(sim)
+    drawn: dict[str, list[int]] = {}
     for link in sim.engine.names.links.values():
-        model = sim.models.get(link.model)
-        is_moving = model is not None and not model.static
-        (moving if is_moving else fixed).extend(link.visuals or (link.geoms if is_moving else ()))
-    return moving, fixed
+        draws_collisions = link.model in moving or link.has_missing_visuals
+        drawn.setdefault(link.model, []).extend(link.visuals or (link.geoms if draws_collisions else ()))
+    return drawn
+
+
+def _moving_models(sim: Simulation) -> set[str]:
+    """Return the top-level models that are not static, and do not consist of static models."""
+    return {
+        link.model
+        for link in sim.engine.names.links.values()
+        if not link.static and (model := sim.models.get(link.model)) is not None and not model.static
+    }
+
+
+def _ground(sim: Simulation) -> float:
+    """Return the height of the lowest static collision [m], infinite if there is none."""
+    model, data = sim.mj_model, sim.engine.physics.fresh()
+    static = (model.geom_contype | model.geom_conaffinity != 0) & (model.body_weldid[model.geom_bodyid] == 0)
+    chosen = np.flatnonzero(static)
+    if not len(chosen):
+        return math.inf
+    rows = data.geom_xmat[chosen].reshape(-1, 3, 3)[:, 2]  # the vertical axis in the frame of each geom
+    depths = (np.abs(rows) * model.geom_aabb[chosen, 3:]).sum(axis=1) - (rows * model.geom_aabb[chosen, :3]).sum(axis=1)
+    depths[model.geom_type[chosen] == int(mujoco.mjtGeom.mjGEOM_PLANE)] = 0.0
+    return float((data.geom_xpos[chosen, 2] - depths).min())
 
 
 def _box_corners(sim: Simulation, geoms: list[int]) -> Points:
@@ -114,8 +159,8 @@ def _box_corners(sim: Simulation, geoms: list[int]) -> Points:
     drawn = np.array(bounded, dtype=int)
     corners = model.geom_aabb[drawn, None, :3] + _CORNERS * model.geom_aabb[drawn, None, 3:]
     axes = data.geom_xmat[drawn].reshape(-1, 3, 3)
-    found: Points = np.einsum("nij,nkj->nki", axes, corners) + data.geom_xpos[drawn, None]
-    return found[np.isfinite(found).all(axis=(1, 2))]
+    corners_in_world: Points = np.einsum("nij,nkj->nki", axes, corners) + data.geom_xpos[drawn, None]
+    return corners_in_world[np.isfinite(corners_in_world).all(axis=(1, 2))]
 
 
 def _without_floors(boxes: Points) -> Points:

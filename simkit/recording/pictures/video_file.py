@@ -8,7 +8,7 @@ from __future__ import annotations
 import itertools
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, Final, Protocol
+from typing import TYPE_CHECKING, Any, Final, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,9 @@ from numpy.typing import NDArray
 from simkit.errors import InputError
 from simkit.install_command import install_command
 from simkit.recording.pictures.overlay import MARK_COLOURS
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
 
 Colours = NDArray[np.uint8]
 
@@ -52,12 +55,12 @@ def check_video_target(path: Path, option: str, suffixes: tuple[str, ...]) -> No
     """
     expected = " or ".join(suffixes)
     if path.suffix.lower() not in suffixes:
-        found = path.suffix or "no suffix"
-        raise InputError(f"SK-CLI-053 {option} {path}: found {found}; expected {expected}", "SK-CLI-053")
+        suffix = path.suffix or "no suffix"
+        raise InputError("SK-CLI-053", f"{option} {path}: found {suffix}; expected {expected}")
     if not path.absolute().parent.is_dir():
-        raise InputError(f"SK-CLI-053 {option} {path}: folder {path.absolute().parent} does not exist", "SK-CLI-053")
+        raise InputError("SK-CLI-053", f"{option} {path}: folder {path.absolute().parent} does not exist")
     if path.exists() and not path.is_file():
-        raise InputError(f"SK-CLI-053 {option} {path}: it is not a regular file", "SK-CLI-053")
+        raise InputError("SK-CLI-053", f"{option} {path}: it is not a regular file")
     if path.suffix.lower() != ".gif":
         _import_av()
 
@@ -76,11 +79,8 @@ def _import_av() -> Any:
     try:
         import av
     except ImportError as error:
-        text = (
-            f"SK-CLI-053 videos need the package av ({error})\n"
-            f"    help: {install_command('video')}, or write a GIF with --gif OUT.gif"
-        )
-        raise InputError(text, "SK-CLI-053") from None
+        help_ = f"{install_command('video')}, or write a GIF with --gif OUT.gif"
+        raise InputError("SK-CLI-053", f"videos need the package av ({error})", help=help_) from None
     return av
 
 
@@ -121,7 +121,7 @@ class VideoFile:
         try:
             self._container = self._av.open(str(self._path), "w", options=settings)
         except OSError as error:
-            raise InputError(f"SK-CLI-053 cannot write {self._path}: {error.strerror}", "SK-CLI-053") from None
+            raise InputError("SK-CLI-053", f"cannot write {self._path}: {error.strerror}") from None
         self._stream = self._container.add_stream(codec, rate=self._rate, options=options)
         self._stream.width, self._stream.height, self._stream.pix_fmt = width, height, "yuv420p"
 
@@ -139,9 +139,9 @@ class GifFile:
     def __init__(self, path: Path, rate: Fraction) -> None:
         self._path, self._rate = path, rate
         self._file: Any = None
-        self._palette: Any = None
-        self._last: Any = None  # newest frame, and the part of it that waits with its corner
-        self._part: tuple[Any, tuple[int, int]] | None = None
+        self._palette: Image | None = None
+        self._last: Image | None = None  # newest frame, and the part of it that waits with its corner
+        self._part: tuple[Image, tuple[int, int]] | None = None
         self._count, self._begun = 0, 0  # frames so far, and before the one that waits
 
     def take(self, frame: Colours) -> None:
@@ -150,9 +150,9 @@ class GifFile:
 
         picture = Image.fromarray(frame)
         if self._palette is None:
-            own = picture.quantize(_GIF_COLOURS).getpalette() or []
+            palette = picture.quantize(_GIF_COLOURS).getpalette() or []
             self._palette = Image.new("P", (1, 1))
-            self._palette.putpalette([*own[: 3 * _GIF_COLOURS], *itertools.chain(*MARK_COLOURS, *_CUBE)])
+            self._palette.putpalette([*palette[: 3 * _GIF_COLOURS], *itertools.chain(*MARK_COLOURS, *_CUBE)])
         picture = picture.quantize(palette=self._palette, dither=Image.Dither.NONE)
         changed = (0, 0, *picture.size)
         if self._last is not None:
@@ -191,4 +191,4 @@ class GifFile:
                 self._file = self._path.open("wb")
             self._file.writelines(blocks)
         except OSError as error:
-            raise InputError(f"SK-CLI-053 cannot write {self._path}: {error.strerror}", "SK-CLI-053") from None
+            raise InputError("SK-CLI-053", f"cannot write {self._path}: {error.strerror}") from None

@@ -16,12 +16,13 @@ from typing import TYPE_CHECKING
 from simkit.argument_checks import check_function
 from simkit.errors import ActionError, InputError, PluginError, SimkitError, SubscriberError, callback_name, cause_text
 from simkit.in_process import InProcess
+from simkit.msgs import Message
 from simkit.msgs.goal_status import GoalStatus
 from simkit.msgs.message_arguments import checked_message
 from simkit.msgs.topic_names import absolute_name
 from simkit.runtime.communication.endpoint_table import EndpointTable
 from simkit.runtime.communication.script_callback import ScriptCallback
-from simkit.runtime.communication.subscription import Callback, Message
+from simkit.runtime.communication.subscription import Callback
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.topic_bus import TopicBus
@@ -38,6 +39,7 @@ class GoalHandle(InProcess):
     """Goal, as seen by the client that sent it and by the plugin that executes it.
 
     Attributes:
+        action: action that executes the goal.
         id: 1, 2, … in the order in which goals were sent.
         request: goal message.
         status: present status; see `GoalStatus`.
@@ -47,14 +49,22 @@ class GoalHandle(InProcess):
         sent_ns: simulated time at which the goal was sent [ns].
     """
 
-    def __init__(self, action: Action, number: int, request: Message, sent_ns: int) -> None:
-        self._action, self.id, self.request, self.sent_ns = action, number, request, sent_ns
+    def __init__(
+        self,
+        action: Action,
+        number: int,
+        request: Message,
+        sent_ns: int,
+        on_feedback: Callback | None = None,
+        on_done: EndCallback | None = None,
+        on_accept: EndCallback | None = None,
+    ) -> None:
+        self.action, self.id, self.request, self.sent_ns = action, number, request, sent_ns
+        self._on_feedback, self._on_done, self._on_accept = on_feedback, on_done, on_accept
         self.status = GoalStatus.UNKNOWN
         self.result: Message = None
         self.feedback: Message = None
         self.reason = ""
-        self._on_feedback: Callback | None = None
-        self._on_done: EndCallback | None = None
 
     # ------------------------------------------------------------------ for the client
 
@@ -73,28 +83,33 @@ class GoalHandle(InProcess):
 
         The plugin receives the request before the next step and may continue.
         """
-        bus = self._action.bus
+        bus = self.action.bus
         with bus.passing("cancel", goal=self.id):
-            bus.enqueue(lambda: self._action.ask_to_cancel(self))
+            bus.enqueue(lambda: self.action.ask_to_cancel(self))
 
     # ------------------------------------------------------------------ for the plugin or script with the action
 
     def accept(self) -> None:
         """Accept a goal of an action that decides later; a goal of any other action is accepted by its callback."""
         if self.status is GoalStatus.UNKNOWN:
-            with self._action.bus.passing("accept_goal", goal=self.id):
-                self.status = GoalStatus.EXECUTING
+            with self.action.bus.passing("accept_goal", goal=self.id):
+                self.begin()
+
+    def begin(self) -> None:
+        """Begin the execution of an accepted goal."""
+        self.status = GoalStatus.EXECUTING
+        self._notify(self._on_accept, self, "send_goal")
 
     def continue_goal(self) -> None:
         """Continue a goal whose cancellation was requested."""
         if self.status is GoalStatus.CANCELING:
-            with self._action.bus.passing("continue_goal", goal=self.id):
+            with self.action.bus.passing("continue_goal", goal=self.id):
                 self.status = GoalStatus.EXECUTING
 
     def reject(self, reason: str = "") -> None:
         """Reject the goal. Only the goal callback of the plugin can do this."""
         if self.status in (GoalStatus.EXECUTING, GoalStatus.CANCELING):
-            raise ActionError(f"goal {self.id} of {self._action.name!r} was accepted already; abort it")
+            raise ActionError(f"goal {self.id} of {self.action.name!r} was accepted already; abort it")
         self.end(GoalStatus.REJECTED, None, reason)
 
     def publish_feedback(self, feedback: Message) -> None:
@@ -103,10 +118,10 @@ class GoalHandle(InProcess):
         Args:
             feedback: feedback message, or a dict of its fields.
         """
-        if self.is_done or not self._action.knows(self):
+        if self.is_done or not self.action.knows(self):
             return
         message = self._as_message(feedback, "Feedback")
-        with self._action.bus.passing("send_feedback", goal=self.id, feedback=message):
+        with self.action.bus.passing("send_feedback", goal=self.id, feedback=message):
             self.feedback = message
             self._notify(self._on_feedback, message, "feedback")
 
@@ -128,12 +143,12 @@ class GoalHandle(InProcess):
         Raises:
             ActionError: the goal has ended, or a reset or restore has undone it.
         """
-        if not self.is_done and not self._action.knows(self):
-            raise ActionError(f"goal {self.id} of {self._action.name!r} was undone by a reset or a restore")
+        if not self.is_done and not self.action.knows(self):
+            raise ActionError(f"goal {self.id} of {self.action.name!r} was undone by a reset or a restore")
         if self.is_done:
-            raise ActionError(f"goal {self.id} of {self._action.name!r} has ended already ({self.status.name})")
+            raise ActionError(f"goal {self.id} of {self.action.name!r} has ended already ({self.status.name})")
         message = None if status is GoalStatus.REJECTED else self._as_message(result, "Result")
-        with self._action.bus.passing("end_goal", goal=self.id, status=status, result=message, reason=reason):
+        with self.action.bus.passing("end_goal", goal=self.id, status=status, result=message, reason=reason):
             self.result, self.status, self.reason = message, status, reason
             self._notify(self._on_done, self, "get_result")
 
@@ -146,16 +161,16 @@ class GoalHandle(InProcess):
         except Exception as error:
             if isinstance(error, SimkitError) and not isinstance(error, InputError):
                 raise
-            topic, now = f"{self._action.name}/_action/{part}", self._action.engine.time
+            topic, now = f"{self.action.name}/_action/{part}", self.action.engine.time
             raise SubscriberError(topic, callback_name(callback), now, cause_text(error)) from error
 
     def _as_message(self, value: Message, part: str) -> Message:
         return checked_message(
-            value, (f"{self._action.type_name}_{part}",), repr(self._action.name), none_is_default=True
+            value, (f"{self.action.type_name}_{part}",), repr(self.action.name), none_is_default=True
         )
 
     def __repr__(self) -> str:
-        return f"<{type(self).__name__} {self.id} of {self._action.name!r}: {self.status.name}>"
+        return f"<{type(self).__name__} {self.id} of {self.action.name!r}: {self.status.name}>"
 
 
 class Action(InProcess):
@@ -186,7 +201,11 @@ class Action(InProcess):
         self.on_goal, self.on_cancel, self.node = on_goal, on_cancel, node
         if self.owner is None and not node:
             self.on_goal = ScriptCallback(self.bus, _succeeding(on_goal), "action", name)
-            self.on_cancel = on_cancel and ScriptCallback(self.bus, on_cancel, "action", name, lambda found: found)
+            self.on_cancel = on_cancel and ScriptCallback(self.bus, on_cancel, "action", name, lambda accepts: accepts)
+
+    def deliver_at_once(self) -> None:
+        """Pass goals to the callback at once while no step is made, so also in a paused world."""
+        self.is_immediate = True
 
     def close(self) -> None:
         """Close the action permanently. Its goals are aborted."""
@@ -212,7 +231,7 @@ class Action(InProcess):
         goal.status = GoalStatus.ACCEPTED
         self._guarded(self.on_goal, goal)
         if goal.status is GoalStatus.ACCEPTED:
-            goal.status = GoalStatus.EXECUTING
+            goal.begin()
 
     def ask_to_cancel(self, goal: GoalHandle) -> None:
         """Pass a cancel request to the plugin.
@@ -296,7 +315,7 @@ class ActionTable(EndpointTable[Action]):
             MessageError: the type is unknown.
         """
         self._engine.check_open()
-        name = absolute_name(name)
+        name = self._bus.name_of(name)
         check_function(on_goal, "on_goal")
         if on_cancel is not None:
             check_function(on_cancel, "on_cancel")
@@ -308,7 +327,13 @@ class ActionTable(EndpointTable[Action]):
         return action
 
     def send(
-        self, name: str, goal: Message = None, on_feedback: Callback | None = None, on_done: EndCallback | None = None
+        self,
+        name: str,
+        goal: Message = None,
+        on_feedback: Callback | None = None,
+        on_done: EndCallback | None = None,
+        *,
+        on_accept: EndCallback | None = None,
     ) -> GoalHandle:
         """Send a goal; the plugin receives it before the next step.
 
@@ -317,6 +342,8 @@ class ActionTable(EndpointTable[Action]):
             goal: message, dict of its fields, or None for a message with default fields.
             on_feedback: function that receives each feedback message.
             on_done: function that receives the handle after the end of the goal.
+            on_accept: function that receives the handle when the execution begins; its inputs to the simulation are not
+                recorded in a journal.
 
         Raises:
             ActionError: no such action; the message suggests the closest name.
@@ -330,8 +357,7 @@ class ActionTable(EndpointTable[Action]):
             on_feedback, on_done = journal.outside(on_feedback), journal.outside(on_done)
         with self._bus.passing("send_goal", action=action.name, goal=request, on_feedback=on_feedback, on_done=on_done):
             self._sent += 1
-            handle = GoalHandle(action, self._sent, request, self._engine.time_ns)
-            handle._on_feedback, handle._on_done = on_feedback, on_done
+            handle = GoalHandle(action, self._sent, request, self._engine.time_ns, on_feedback, on_done, on_accept)
             self._goals = [g for g in self._goals if not g.is_done]
             self._goals.append(handle)
             if action.is_immediate and not self._engine.is_stepping:
@@ -342,24 +368,33 @@ class ActionTable(EndpointTable[Action]):
 
     def abandon(self, owner: object, reason: str) -> None:
         """Abort every goal of a disabled plugin."""
-        for goal in [g for g in self._goals if g._action.owner is owner and not g.is_done]:
+        for goal in [g for g in self._goals if g.action.owner is owner and not g.is_done]:
             goal.abort(reason=reason)
+
+    def hand_over(self, old: object, new: object, reason: str) -> None:
+        """Continue the goals of a plugin with the actions of the same names of another plugin, or abort them."""
+        actions = self.endpoints_of(new)
+        for goal in [g for g in self._goals if g.action.owner is old and not g.is_done]:
+            if goal.action.name in actions:
+                goal.action = actions[goal.action.name]
+            else:
+                goal.abort(reason=reason)
 
     def abandon_gone(self) -> None:
         """Abort every goal of a plugin that was removed from the world."""
-        for goal in [g for g in self._goals if not g._action.active and g.is_active]:
+        for goal in [g for g in self._goals if not g.action.active and g.is_active]:
             goal.abort(reason="the action was removed")
 
     def knows(self, goal: GoalHandle) -> bool:
         """Check whether a goal was sent in the present state of the simulation."""
-        return any(one is goal for one in self._goals)
+        return any(open_goal is goal for open_goal in self._goals)
 
     def goal(self, number: int) -> GoalHandle:
         """Return a goal that has not ended, by its number."""
         return next(goal for goal in self._goals if goal.id == number)
 
     def _end_requests(self, endpoint: Action) -> None:
-        for goal in [g for g in self._goals if g._action is endpoint and not g.is_done]:
+        for goal in [g for g in self._goals if g.action is endpoint and not g.is_done]:
             goal.abort(reason=f"the action{f' of {endpoint.node!r}' if endpoint.node else ''} was closed")
 
     def get_state(self) -> GoalStates:

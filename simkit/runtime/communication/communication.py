@@ -8,24 +8,26 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from simkit import msgs
 from simkit.argument_checks import check_list, check_text, wrong_value
+from simkit.diagnostics import NOWHERE, Diagnostics, name_hint
 from simkit.errors import MessageError
 from simkit.lifecycle import LifecycleStates
 from simkit.msgs.message_arguments import checked_message
 from simkit.msgs.topic_names import TYPES_OF_DICTS, absolute_name
 from simkit.runtime.communication.action_server import ActionTable
-from simkit.runtime.communication.large_commands import large_commands
-from simkit.runtime.communication.latest_messages import LatestMessages
 from simkit.runtime.communication.log_topic import LogTopic
+from simkit.runtime.communication.name_remapping import type_conflict
 from simkit.runtime.communication.parameter import Parameter
 from simkit.runtime.communication.parameter_server import ParameterTable
 from simkit.runtime.communication.script_callback import ScriptCallback
 from simkit.runtime.communication.service_server import ServiceTable
+from simkit.runtime.communication.topic_bus import LatestMessages
+from simkit.runtime.communication.topic_relay import InputRelay, TopicRelay
 from simkit.runtime.communication.transform_buffer import TransformBuffer
-from simkit.topic_logger import TopicLogger
 
 if TYPE_CHECKING:
+    from simkit.msgs import Message
     from simkit.runtime.communication.publisher import Listener, Publisher
-    from simkit.runtime.communication.subscription import Callback, Message
+    from simkit.runtime.communication.subscription import Callback
     from simkit.runtime.communication.topic_bus import TopicBus
     from simkit.runtime.engine.engine import Engine
     from simkit.runtime.engine.scheduler import Phase, Scheduler, Task
@@ -114,8 +116,9 @@ class OnDemandTasks:
         """
         bus = self._bus
         if is_aside:
-            bus.aside.update(topics)
-            bus.unlisted.update(() if is_listed else topics)
+            names = [bus.name_of(topic) for topic in topics]
+            bus.aside.update(names)
+            bus.unlisted.update(() if is_listed else names)
         publishers = {topic: bus.advertise(topic, kind) for topic, kind in topics.items()}
 
         def publish(_: int) -> None:
@@ -127,8 +130,8 @@ class OnDemandTasks:
                     else:
                         publisher.publish(message)
 
-        for topic in topics:
-            bus.on_readers_change(topic, self.look)
+        for publisher in publishers.values():
+            bus.on_readers_change(publisher.topic, self.look)
         self.add(lambda: any(publisher.wanted for publisher in publishers.values()), rate, publish)
         return publishers
 
@@ -167,17 +170,35 @@ class Communication:
 
     def __init__(self, bus: TopicBus, engine: Engine) -> None:
         self.bus, self._engine = bus, engine
-        self.services = ServiceTable(bus, engine)
-        self.actions = ActionTable(bus, engine)
+        self.services: ServiceTable = ServiceTable(bus, engine)
+        self.actions: ActionTable = ActionTable(bus, engine)
         self.live_parameters = ParameterTable(bus, engine)
         self.on_demand = OnDemandTasks(bus, engine.reschedule)
         self.transforms = TransformBuffer(bus, lambda: engine.time_ns)
         self.log_topic = LogTopic(bus, engine, self.live_parameters.node_with)
         self.lifecycle_states = LifecycleStates()
         self.latest_messages = LatestMessages(bus)
-        engine.log = TopicLogger("simkit", self, "simkit")
         self.log_topic.hear(engine.reports)
-        engine.stray_bodies.commands = lambda: large_commands(bus)
+
+    def report_remapping(self, diagnostics: Diagnostics) -> None:
+        """Report new names of `--remap` that join different types, and old names that the world does not have."""
+        remapping = self.bus.remapping
+        known = (*self.bus.topics(), *self.services.names(), *self.actions.names())
+        olds_by_new: dict[str, list[str]] = {}
+        for old, new in remapping.names.items():
+            if old in remapping.used:
+                olds_by_new.setdefault(new, []).append(old)
+            else:
+                text = f"--remap {old}:={new}: the loaded world has no topic, service or action {old}"
+                diagnostics.warning("SK-TOPIC-008", text, NOWHERE, name_hint(old, known))
+        for new, olds in olds_by_new.items():
+            conflict = type_conflict(types for _, end, types, _ in self.bus.endpoints(new) if end.active)
+            for table in (self.services, self.actions):
+                if table.count(new) > 1:
+                    conflict = f"the world has several {table.kind}s of this name"
+            if conflict:
+                text = f"--remap: {' and '.join(olds)} cannot have the name {new}: {conflict}"
+                diagnostics.error("SK-TOPIC-007", text, NOWHERE, "choose another new name")
 
     def stateful(self) -> list[Stateful]:
         """Return every part with a state, in the order of restoring."""
@@ -195,7 +216,8 @@ class Communication:
             table.forget(owners)
 
     def abandon(self, owner: object, reason: str) -> None:
-        """Abort every goal of a disabled plugin."""
+        """End every call and every goal that a disabled plugin has not answered."""
+        self.services.abandon(owner, reason)
         self.actions.abandon(owner, reason)
 
     def set_parameter(self, node: str, name: str, value: object) -> None:
@@ -209,11 +231,11 @@ class Communication:
 
     def node_of_plugin(self, plugin: NamedPlugin) -> str:
         """Return the ROS node of a plugin: the first name that no other plugin's parameters or lifecycle node use."""
-        own = f"{plugin.ros.namespace}/{plugin.name}"
+        plugin_node = f"{plugin.ros.namespace}/{plugin.name}"
         otherwise = "/" + "/".join(filter(None, (*plugin.scoped.split("::"), plugin.name)))
         # several plugins of a model may have the same class and name; their attribute `node` distinguishes them
         otherwise = getattr(plugin, "node", otherwise)
-        return self.node_of(plugin, otherwise if "::" in plugin.name else own, otherwise)
+        return self.node_of(plugin, otherwise if "::" in plugin.name else plugin_node, otherwise)
 
     def node_of(self, owner: object, wanted: str, otherwise: str) -> str:
         """Return a name for a plugin's node: the first free name of `wanted`, `otherwise`, `otherwise_2` and so on."""
@@ -254,6 +276,49 @@ class Communication:
         """
         self._engine.check_open()
         return self.bus.advertise(topic, *self._checked_types(topic, type_name), latched=latched)
+
+    def relay(self, source: str, target: str, type_name: str) -> TopicRelay:
+        """Publish the messages of a topic on another one too, which may have another type with the same content.
+
+        Args:
+            source: topic of the messages; its publisher may be opened later.
+            target: topic on which they are published.
+            type_name: ROS 2 type of the target.
+
+        Raises:
+            MessageError: the type is unknown, or the target has another type.
+        """
+        self._engine.check_open()
+        (name,) = self._checked_types(target, type_name)
+        names = {"source": absolute_name(source), "target": absolute_name(target), "type_name": name}
+        with self.bus.passing("relay", **names) as report:
+            relay = TopicRelay(self.bus, lambda: self._engine.time_ns, **names)
+            if report is not None:
+                report(relay)
+        return relay
+
+    def relay_inputs(self, source: str, target: str, type_name: str) -> InputRelay:
+        """Open a command input whose commands go to those of another topic, or give those of a topic a further type.
+
+        Args:
+            source: topic of the commands.
+            target: topic with the command inputs; they may be opened later. It may be the source.
+            type_name: ROS 2 type of the source.
+
+        Raises:
+            MessageError: the type is unknown, or the source has another type.
+        """
+        self._engine.check_open()
+        source, target = absolute_name(source), absolute_name(target)
+        name = msgs.full_name(type_name)
+        msgs.type_of(name)
+        if source != target:
+            self._checked_types(source, name)
+        with self.bus.passing("relay_inputs", source=source, target=target, type_name=name) as report:
+            relay = InputRelay(self.bus, lambda: self._engine.time_ns, source, target, name)
+            if report is not None:
+                report(relay)
+        return relay
 
     def listen(self, topic: str, types: str | Sequence[str], callback: Callback, *, records: bool = True) -> Listener:
         """Open a topic for commands to a script or to another process.

@@ -9,10 +9,10 @@ from simkit import msgs
 from simkit.argument_checks import check_text
 from simkit.diagnostics import NOWHERE, name_hint
 from simkit.errors import ActionError, ServiceError
+from simkit.msgs import Message
 from simkit.msgs.message_arguments import checked_message
 from simkit.msgs.message_types import interface_parts
 from simkit.packs import is_shipped
-from simkit.runtime.communication.subscription import Message
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.topic_bus import TopicBus
@@ -61,9 +61,13 @@ class EndpointTable(Generic[E]):
         self._endpoints: dict[str, list[E]] = {}
 
     def names(self) -> dict[str, str]:
-        """Return the types by name, sorted."""
-        found = ((name, self._find(name)) for name in sorted(self._endpoints))
-        return {name: endpoint.type_name for name, endpoint in found if endpoint is not None}
+        """Return the types by name, sorted, without unlisted services."""
+        endpoints = ((name, self.find(name)) for name in sorted(self._endpoints))
+        return {
+            name: endpoint.type_name
+            for name, endpoint in endpoints
+            if endpoint is not None and getattr(endpoint, "is_listed", True)
+        }
 
     def endpoints_of(self, owner: object) -> dict[str, E]:
         """Return the endpoints of an owner by name."""
@@ -91,7 +95,9 @@ class EndpointTable(Generic[E]):
     def forget(self, owners: Sequence[object]) -> None:
         """Remove all endpoints of these owners permanently."""
         removed = {id(owner) for owner in owners}
-        self._endpoints = {n: [e for e in found if id(e.owner) not in removed] for n, found in self._endpoints.items()}
+        self._endpoints = {
+            n: [e for e in endpoints if id(e.owner) not in removed] for n, endpoints in self._endpoints.items()
+        }
 
     def _check_type(self, type_name: str) -> None:
         """Raise MessageError for an unknown type.
@@ -112,7 +118,7 @@ class EndpointTable(Generic[E]):
         Raises:
             ServiceError, ActionError: a script, or a user's plugin during a run, opens an endpoint whose name is used.
         """
-        existing, owner = self._find(name), cast("Any", self._bus.owner)
+        existing, owner = self.find(name), cast("Any", self._bus.owner)
         if existing is None or getattr(existing, "yields", False):
             return False
         other = existing.owner
@@ -129,22 +135,31 @@ class EndpointTable(Generic[E]):
             params.diagnostics.warning("SK-SERVICE-004", f"plugin {title!r} cannot be reached: {problem}", where, hint)
             return True
         if params is None:
-            raise self.error(f"{self.error.code} {problem}")
+            raise self.error(self.error.code, problem)
         text = f"plugin {title!r}: {problem}"
         if self._bus.refuses_clashes or owner.sim.engine.faults.policy(owner) == "disable":
-            raise self.error(f"{self.error.code} {text} ({where})\n    help: {hint}")
+            raise self.error(self.error.code, f"{text} ({where})", help=hint)
         params.diagnostics.error(self.error.code, text, where, hint)
         return True
 
-    def _find(self, name: str) -> E | None:
+    def find(self, name: str) -> E | None:
+        """Return the active endpoint of that name; None without one."""
         return next((endpoint for endpoint in self._endpoints.get(name, ()) if endpoint.active), None)
+
+    def count(self, name: str) -> int:
+        """Return the number of active endpoints of a name, without those that another one replaces."""
+        return sum(each.active and not getattr(each, "yields", False) for each in self._endpoints.get(name, ()))
+
+    def types_of(self, name: str) -> list[str]:
+        """Return the types of the active endpoints of a name; Gazebo Classic's names can have two."""
+        return [endpoint.type_name for endpoint in self._endpoints.get(name, ()) if endpoint.active]
 
     def get(self, name: str) -> E:
         """Return the active endpoint of that name. If none exists, raise an error that suggests the closest name."""
-        found = self._find(name)
-        if found is None:
+        endpoint = self.find(name) or self.find(self._bus.remapping.new_name(name))  # plugins use their own names
+        if endpoint is None:
             raise self.error(f"no {self.kind} {name!r}; {name_hint(name, self.names())}")
-        return found
+        return endpoint
 
     def checked(self, endpoint: E, value: Message) -> Message:
         """Convert a value to a request or goal: a message, a dict of its fields, or None for default fields.

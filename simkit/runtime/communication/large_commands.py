@@ -22,15 +22,15 @@ _TIMES: Final = ("header", "stamp", "time_from_start", "duration")
 
 def large_commands(bus: TopicBus) -> list[str]:
     """Return a sentence for each of the largest last commands of plugins, with the topic and the plugin's place."""
-    found: list[tuple[float, str]] = []
+    lines: list[tuple[float, str]] = []
     for topic, end, _, kind in bus.endpoints():
         message, owner = getattr(end, "last", None), end.owner
         if kind == "takes" and message is not None and owner is not None:
-            value, field = max(_numbers(message, ""), key=lambda one: abs(one[0]), default=(0.0, ""))
+            value, field = max(_numbers(message, ""), key=lambda number: abs(number[0]), default=(0.0, ""))
             if abs(value) >= _LARGE:
                 whose = f"plugin {getattr(owner, 'name', '')!r} ({getattr(owner, 'where', '')})"
-                found.append((-abs(value), f"the last command on {topic} for {whose} has {field} = {value:g}"))
-    return [text for _, text in sorted(found)[:_MOST_LISTED]]
+                lines.append((-abs(value), f"the last command on {topic} for {whose} has {field} = {value:g}"))
+    return [text for _, text in sorted(lines)[:_MOST_LISTED]]
 
 
 def forget_commands(bus: TopicBus) -> None:

@@ -14,9 +14,10 @@ from functools import partial
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from simkit import msgs
+from simkit.msgs import Message
 from simkit.runtime.communication.node_names import node_of
 from simkit.runtime.communication.publisher import KEPT_LOG_MESSAGES, ROSOUT
-from simkit.runtime.communication.subscription import LazyMessage, Message
+from simkit.runtime.communication.subscription import LazyMessage
 
 if TYPE_CHECKING:
     from simkit.diagnostics import Diagnostic, Diagnostics
@@ -31,9 +32,9 @@ _LEVELS: Final = {"error": logging.ERROR, "warning": logging.WARNING, "note": lo
 
 def open_own_topic(bus: TopicBus, topic: str, type_name: str, *, latched: bool = False) -> Publisher:
     """Open a topic of the simulation itself; recorders and counters ignore it unless the user names it."""
-    with bus.owned_by(bus):  # the messages are no external inputs
+    with bus.owned_by(bus, renames=False):  # the messages are no external inputs
         publisher = bus.advertise(topic, type_name, latched=latched)
-    publisher.owner = None  # no plugin whose removal would disable the topic
+    publisher.disown()
     bus.aside.add(topic)
     return publisher
 
@@ -62,16 +63,14 @@ class LogTopic:
     def __init__(self, bus: TopicBus, engine: Engine, parameter_node: Callable[[object], str]) -> None:
         self._engine, self._parameter_node = engine, parameter_node
         self._publisher = open_own_topic(bus, ROSOUT, LOG, latched=True)
-        self._publisher.history = self._history = deque[Message](maxlen=KEPT_LOG_MESSAGES)
+        self._history = self._publisher.keep_history(KEPT_LOG_MESSAGES)
         self._waiting: deque[_Entry] = deque(maxlen=KEPT_LOG_MESSAGES)
         self._thread = threading.get_ident()
         self._is_publishing = False
 
     def hear(self, reports: Diagnostics) -> None:
         """Publish all present and future diagnostics of a collection."""
-        for item in reports:
-            self._add_diagnostic(item)
-        reports.on_new = self._add_diagnostic
+        reports.tell(self._add_diagnostic)
 
     @property
     def is_wanted(self) -> bool:

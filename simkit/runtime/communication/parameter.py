@@ -83,10 +83,10 @@ class Parameter(InProcess, Generic[T]):
         Raises:
             ParameterError: the value has another type or is out of bounds; the message lists the allowed values.
         """
-        found = _convert(value, self.value)
-        if found is None or not self.is_within(found):
+        converted = _convert(value, self.value)
+        if converted is None or not self.is_within(converted):
             raise ParameterError(f"{self.node} {self.name}: found {shown(value)}; expected {self.allowed}")
-        return found  # type: ignore[no-any-return]
+        return converted  # type: ignore[no-any-return]
 
     def take(self, value: T) -> None:
         """Store a checked value and notify the plugin."""
@@ -127,7 +127,7 @@ def checked_parameter(node: str, name: str, value: object, **options: Any) -> An
     check_text(name, "name")
     check_list(options.get("choices", ()), object, "choices", "values")
     bounds = {end: options.get(end) for end in ("minimum", "maximum")}
-    bounds = {end: None if found is None else checked_number(found, end) for end, found in bounds.items()}
+    bounds = {end: None if bound is None else checked_number(bound, end) for end, bound in bounds.items()}
     if isinstance(value, (np.generic, np.ndarray)):
         value = value.tolist()
     value, *choices = (tuple(v) if isinstance(v, list) else v for v in (value, *options.get("choices", ())))
@@ -148,8 +148,8 @@ def _convert(value: Any, like: object) -> Any:
     if isinstance(like, tuple):
         if not isinstance(value, (list, tuple)) or len(value) != len(like):
             return None
-        found = tuple(_convert(v, 0.0) for v in value)
-        return None if None in found else found
+        items = tuple(_convert(v, 0.0) for v in value)
+        return None if None in items else items
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return None
     if isinstance(like, int):
@@ -198,7 +198,7 @@ def descriptor(parameter: AnyParameter | None) -> dict[str, object]:
     """Return the fields of a `ParameterDescriptor`; none for a missing parameter."""
     if parameter is None:
         return {}
-    found: dict[str, object] = {
+    fields: dict[str, object] = {
         "name": parameter.name,
         "type": _ROS_TYPES[type(parameter.value)],
         "description": parameter.description,
@@ -207,7 +207,7 @@ def descriptor(parameter: AnyParameter | None) -> dict[str, object]:
     if parameter.minimum is not None and parameter.maximum is not None and not isinstance(parameter.value, tuple):
         bounds = {"from_value": parameter.minimum, "to_value": parameter.maximum}
         if isinstance(parameter.value, int):
-            found["integer_range"] = [{k: int(v) for k, v in bounds.items()}]
+            fields["integer_range"] = [{k: int(v) for k, v in bounds.items()}]
         else:
-            found["floating_point_range"] = [bounds]
-    return found
+            fields["floating_point_range"] = [bounds]
+    return fields

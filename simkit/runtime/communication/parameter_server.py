@@ -8,13 +8,15 @@ A change takes effect between two steps.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Final, Literal
 
+from simkit import msgs
 from simkit.argument_checks import check_text
 from simkit.diagnostics import did_you_mean, name_hint
 from simkit.errors import ParameterError
 from simkit.runtime.communication.journal import journaled
+from simkit.runtime.communication.log_topic import open_own_topic
 from simkit.runtime.communication.parameter import (
     USE_SIM_TIME,
     VALUE_FIELDS,
@@ -23,18 +25,25 @@ from simkit.runtime.communication.parameter import (
     sim_time_parameter,
     value_message,
 )
-from simkit.runtime.communication.parameter_events import ParameterEvents
 
 if TYPE_CHECKING:
-    from simkit.runtime.communication.service_call import Service, ServiceHandler
-    from simkit.runtime.communication.service_server import ServiceTable
-    from simkit.runtime.communication.subscription import Message
+    from simkit.msgs import Message
+    from simkit.runtime.communication.service_server import Service, ServiceHandler, ServiceTable
     from simkit.runtime.communication.topic_bus import TopicBus
     from simkit.runtime.engine.engine import Engine
 
 
-ParameterState = tuple[tuple[AnyParameter, Any], ...]
+PARAMETER_EVENTS: Final = "/parameter_events"
+EVENT: Final = "rcl_interfaces/msg/ParameterEvent"
+Change = Literal["new", "changed", "deleted"]
+
+
+ParameterState = tuple[tuple[AnyParameter, object], ...]
 """Parameters with their values."""
+
+
+ParameterEntries = dict[str, dict[tuple[int, str], AnyParameter]]
+"""Parameters by node, then by the identity of the owner and the name."""
 
 
 class ParameterTable:
@@ -49,7 +58,7 @@ class ParameterTable:
         self._bus, self._engine = bus, engine
         self._services: dict[str, list[Service]] = {}
         # a new model may have the name, and so the node, of a removed model that a restore can bring back
-        self._parameters: dict[str, dict[tuple[int, str], AnyParameter]] = {}
+        self._parameters: ParameterEntries = {}
         self._events = ParameterEvents(bus, engine)
 
     def add(self, parameter: AnyParameter) -> None:
@@ -79,12 +88,12 @@ class ParameterTable:
 
     def remove(self, parameter: AnyParameter) -> None:
         """Remove a parameter; its node's services end with the last parameter."""
-        found = self._parameters.get(parameter.node, {})
-        if found.get((id(parameter.owner), parameter.name)) is parameter:
+        of_node = self._parameters.get(parameter.node, {})
+        if of_node.get((id(parameter.owner), parameter.name)) is parameter:
             with self._bus.passing("close", endpoint=parameter):
-                del found[id(parameter.owner), parameter.name]
+                del of_node[id(parameter.owner), parameter.name]
                 self._events.publish("deleted", [parameter])
-                if not any(p.active for p in found.values()):
+                if not any(p.active for p in of_node.values()):
                     for service in self._services.pop(parameter.node, ()):
                         service.close()
 
@@ -94,18 +103,18 @@ class ParameterTable:
 
     def node_with(self, owner: object) -> str:
         """Return the first node with a parameter of a plugin; empty if there is none."""
-        found = (p.node for table in self._parameters.values() for p in table.values() if p.owner is owner)
-        return next(found, "")
+        nodes = (p.node for table in self._parameters.values() for p in table.values() if p.owner is owner)
+        return next(nodes, "")
 
     def nodes(self) -> dict[str, dict[str, AnyParameter]]:
         """Return the parameters by node and name, sorted by node."""
         active = ((n, [p for p in self._parameters[n].values() if p.active]) for n in sorted(self._parameters))
-        return {node: {p.name: p for p in found} for node, found in active if found}
+        return {node: {p.name: p for p in of_node} for node, of_node in active if of_node}
 
     def served(self, node: str) -> dict[str, AnyParameter]:
         """Return the parameters of a node as its services show them: also `use_sim_time`; empty for no such node."""
-        found = self.nodes().get(node, {})
-        return found and {USE_SIM_TIME: sim_time_parameter(node), **found}
+        of_node = self.nodes().get(node, {})
+        return of_node and {USE_SIM_TIME: sim_time_parameter(node), **of_node}
 
     def find(self, node: str, name: str) -> AnyParameter:
         """Return a parameter.
@@ -148,7 +157,7 @@ class ParameterTable:
         """Enable the parameters of these plugins; disable all others."""
         living = {id(owner) for owner in owners}
         changed: dict[bool, list[AnyParameter]] = {True: [], False: []}
-        for parameter in (p for found in self._parameters.values() for p in found.values()):
+        for parameter in (p for of_node in self._parameters.values() for p in of_node.values()):
             is_active = parameter.owner is None or id(parameter.owner) in living
             if is_active != parameter.active:
                 parameter.active = is_active
@@ -159,24 +168,32 @@ class ParameterTable:
     def forget(self, owners: Sequence[object]) -> None:
         """Remove every parameter of these plugins permanently."""
         removed = {id(owner) for owner in owners}
-        for node, found in list(self._parameters.items()):
-            kept = {key: p for key, p in found.items() if id(p.owner) not in removed}
-            if kept:
-                self._parameters[node] = kept
+        for node, of_node in list(self._parameters.items()):
+            remaining = {key: p for key, p in of_node.items() if id(p.owner) not in removed}
+            if remaining:
+                self._parameters[node] = remaining
             else:
                 del self._parameters[node]
                 self._services.pop(node, None)  # closed with their plugin
 
+    def entries(self) -> ParameterEntries:
+        """Return all parameters, including those of removed models that a restore can bring back, by node."""
+        return {node: dict(of_node) for node, of_node in self._parameters.items()}
+
+    def replace_entries(self, entries: ParameterEntries) -> None:
+        """Undo additions and removals since `entries`."""
+        self._parameters = {node: dict(of_node) for node, of_node in entries.items()}
+
     def get_state(self) -> ParameterState:
         """Return every parameter with its value."""
-        return tuple((p, p.value) for found in self._parameters.values() for p in found.values())
+        return tuple((p, p.value) for of_node in self._parameters.values() for p in of_node.values())
 
     def set_state(self, state: ParameterState) -> None:
         """Restore values from `get_state`. The plugins are not notified, because their own state is restored too.
 
         A parameter that a script declared later returns to its declared value.
         """
-        for parameter in (p for found in self._parameters.values() for p in found.values() if p.owner is None):
+        for parameter in (p for of_node in self._parameters.values() for p in of_node.values() if p.owner is None):
             parameter.value = parameter.default
         for parameter, value in state:
             parameter.value = value
@@ -224,3 +241,33 @@ def _set_parameters(parameters: ParameterTable, node: str, values: list[Message]
     for name, value in checked:
         parameters.set(node, name, value)
     return {"successful": True}
+
+
+class ParameterEvents:
+    """Publisher of `/parameter_events`; without subscribers no message is made.
+
+    Args:
+        bus: topic bus.
+        engine: engine of the simulation.
+    """
+
+    def __init__(self, bus: TopicBus, engine: Engine) -> None:
+        self._engine = engine
+        self._publisher = open_own_topic(bus, PARAMETER_EVENTS, EVENT)
+
+    @property
+    def is_wanted(self) -> bool:
+        """True if the topic has subscribers."""
+        return self._publisher.wanted
+
+    def publish(self, change: Change, parameters: Iterable[AnyParameter]) -> None:
+        """Publish a change of parameters, in one message for each node."""
+        if not self.is_wanted:
+            return
+        by_node: dict[str, list[AnyParameter]] = {}
+        for parameter in parameters:
+            by_node.setdefault(parameter.node, []).append(parameter)
+        for node, changed in by_node.items():
+            rows = [{"name": parameter.name, "value": value_message(parameter)} for parameter in changed]
+            stamp = msgs.time(self._engine.time_ns)
+            self._publisher.publish(msgs.make(EVENT, stamp=stamp, node=node, **{f"{change}_parameters": rows}))

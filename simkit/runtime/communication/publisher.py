@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Final, NamedTuple, Protocol
 
 from simkit import msgs
 from simkit.in_process import InProcess
+from simkit.msgs import Message
 from simkit.msgs.message_arguments import checked_message
 from simkit.runtime.communication.journal import JournalKeeper
-from simkit.runtime.communication.subscription import Callback, LazyMessage, Message, PendingWork
+from simkit.runtime.communication.subscription import Callback, LazyMessage, PendingWork
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.command_queue import CommandQueue
@@ -53,6 +54,7 @@ class Publisher(InProcess):
         check: function that is called for every new reader; None if the owner can always make its messages.
         present: function that returns the message of the present state, for a reader that cannot wait for the next one;
             None if the owner has no such function. It changes nothing.
+        node: name of the node of a program that publishes here; empty for any other publisher.
     """
 
     __slots__ = (
@@ -64,6 +66,7 @@ class Publisher(InProcess):
         "history",
         "last",
         "latched",
+        "node",
         "owner",
         "pending",
         "present",
@@ -72,15 +75,22 @@ class Publisher(InProcess):
     )
 
     def __init__(
-        self, bus: PublishingBus, sides: TopicSides, topic: str, type_name: str, latched: bool, owner: object
+        self,
+        bus: PublishingBus,
+        sides: TopicSides,
+        topic: str,
+        type_name: str,
+        latched: bool,
+        owner: object,
+        check: Check | None = None,
+        pending: Callable[[], None] | None = None,
     ) -> None:
         self._bus, self.topic, self.type_name, self.latched, self.owner = bus, topic, type_name, latched, owner
         self._readers, self._publishers = sides
+        self.check, self.pending = check, pending
         self.last: Message = None
         self.history: deque[Message] | None = None
-        self.active = True
-        self.pending: Callable[[], None] | None = None
-        self.check: Check | None = None
+        self.active, self.node = True, ""
         self.present: Callable[[], Message] | None = None
 
     @property
@@ -93,6 +103,15 @@ class Publisher(InProcess):
         """Number of subscriptions and command inputs of the topic."""
         readers = self._readers
         return len(readers.readers) + (self._bus.count_inputs(self.topic) if readers.feeds else 0)
+
+    def disown(self) -> None:
+        """Belong to the simulation itself instead of a plugin, whose removal would disable the topic."""
+        self.owner = None
+
+    def keep_history(self, count: int) -> deque[Message]:
+        """Keep the newest messages for later subscribers, instead of the last one; return the container."""
+        self.history = deque(maxlen=count)
+        return self.history
 
     def close(self) -> None:
         """Close the publisher permanently."""
@@ -180,8 +199,8 @@ class Publisher(InProcess):
                 receive(self.last)
                 return
             self.last = self.last.get()
-        kept = (self.last,) if self.history is None else tuple(self.history)
-        for message in kept:
+        messages = (self.last,) if self.history is None else tuple(self.history)
+        for message in messages:
             if message is not None:
                 receive(message.get() if isinstance(message, LazyMessage) else message)
 
@@ -196,11 +215,19 @@ class ExternalPublisher(Publisher):
     __slots__ = ()
 
     def __init__(
-        self, bus: PublishingBus, sides: TopicSides, topic: str, type_name: str, latched: bool, owner: object
+        self,
+        bus: PublishingBus,
+        sides: TopicSides,
+        topic: str,
+        type_name: str,
+        latched: bool,
+        owner: object,
+        check: Check | None = None,
+        pending: Callable[[], None] | None = None,
     ) -> None:
-        super().__init__(bus, sides, topic, type_name, latched, owner)
+        super().__init__(bus, sides, topic, type_name, latched, owner, check, pending)
         if latched and topic == ROSOUT:
-            self.history = deque(maxlen=KEPT_LOG_MESSAGES)
+            self.keep_history(KEPT_LOG_MESSAGES)
 
     def publish(self, message: Message) -> None:
         """Publish a message, or a dict of its fields, and record it in the journal.

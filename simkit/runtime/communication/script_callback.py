@@ -35,15 +35,15 @@ class ScriptCallback(InProcess):
     def __init__(
         self,
         bus: TopicBus,
-        function: Callable[[Any], Any],
+        function: Callable[[Any], object],
         kind: str,
         name: str,
-        convert: Callable[[Any], Any] | None = None,
+        convert: Callable[[Any], object] | None = None,
     ) -> None:
         check_function(function, "callback")
         self._bus, self.function, self._kind, self._name, self._convert = bus, function, kind, name, convert
 
-    def __call__(self, value: Any) -> Any:
+    def __call__(self, value: object) -> Any:
         """Call the function.
 
         Raises:
@@ -58,7 +58,7 @@ class ScriptCallback(InProcess):
                 store_result(result)
             return result
 
-    def _result(self, value: Any) -> Any:
+    def _result(self, value: object) -> Any:
         try:
             result = self.function(value)
             return None if self._convert is None else self._convert(result)

@@ -10,11 +10,12 @@ from simkit.runtime.communication.parameter import Parameter, checked_parameter
 from simkit.runtime.communication.script_callback import ScriptCallback
 
 if TYPE_CHECKING:
+    from simkit.msgs import Message
     from simkit.runtime.communication.action_server import Action, CancelCallback, EndCallback, GoalHandle
     from simkit.runtime.communication.communication import Communication
     from simkit.runtime.communication.publisher import Listener, Publisher
-    from simkit.runtime.communication.service_call import CallEnd, Service, ServiceHandler
-    from simkit.runtime.communication.subscription import Callback, CallbackPolicy, Message, Subscription
+    from simkit.runtime.communication.service_server import CallEnd, Service, ServiceHandler
+    from simkit.runtime.communication.subscription import Callback, CallbackPolicy, Subscription
     from simkit.runtime.communication.transform_buffer import TransformBuffer
     from simkit.runtime.engine.engine import Engine
 
@@ -118,8 +119,8 @@ class ScriptGraph:
                 None if its `error` is not. With `on_done`, the method returns at once, with the `ServiceCall`.
 
         Raises:
-            ServiceError: no such service; the message suggests the closest name. Or: another process does not answer,
-                or a callback would wait for it (SK-SERVICE-011).
+            ServiceError: no such service; the message suggests the closest name. Or: another process does not answer, a
+                callback would wait for it (SK-SERVICE-011), or the service answers in a later step (SK-SERVICE-012).
             MessageError: the request does not fit the type.
             PluginError: the service of a plugin raised.
             SubscriberError: the function of a script that answers raised.
@@ -132,8 +133,8 @@ class ScriptGraph:
         Args:
             service: name of the service; a missing leading slash is added.
             type_name: service type, such as `std_srvs/srv/Trigger`.
-            handler: function that receives a request and returns the response: a message, a dict of its fields, or None
-                for a message whose fields are all zero.
+            handler: function that receives a request and returns the response: a message, a dict of its fields, None
+                for a message whose fields are all zero, or a `simkit.DeferredResponse` to answer in a later step.
 
         Raises:
             ServiceError: a service of that name exists.

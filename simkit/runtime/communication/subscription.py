@@ -5,16 +5,28 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable
-from typing import Any, Final, Literal, Protocol
+from typing import TYPE_CHECKING, Final, Literal, Protocol
 
 from simkit import msgs
+from simkit.errors import (
+    InputError,
+    PluginError,
+    SimkitError,
+    SimulationDiverged,
+    SubscriberError,
+    callback_name,
+    cause_text,
+)
 from simkit.in_process import InProcess
+from simkit.msgs import Message
 from simkit.msgs.cdr_template import PACKERS
 from simkit.msgs.data_frames import DataFrame, to_dataframe
 from simkit.runtime.communication.journal import JournalKeeper
+from simkit.runtime.engine.plugin_faults import is_guarded
 
-Message = Any
-"""Message: an instance of a class of `simkit.msgs`. The classes are created when their definitions are read."""
+if TYPE_CHECKING:
+    from simkit.diagnostics import Diagnostics
+
 
 Callback = Callable[[Message], object]
 CallbackPolicy = Literal["stop", "drop"]
@@ -73,7 +85,7 @@ class LazyMessage:
             self._make = self.work = None
         return self._message
 
-    def serialised(self) -> Any:
+    def serialised(self) -> object:
         """Return the message's type and CDR; NO_MESSAGE if it cannot be made."""
         make = self._make
         pack = PACKERS.get(getattr(make, "func", None))
@@ -83,21 +95,11 @@ class LazyMessage:
         return message if message is NO_MESSAGE else (msgs.type_name(message), msgs.serialize(message))
 
 
-class SubscriptionFailures(Protocol):
-    """Handling of a failed subscription."""
-
-    def subscriber_failed(self, subscription: Subscription, error: Exception) -> None:
-        """Handle an exception of the callback. Call this inside the `except` block."""
-
-    def report_full(self, topic: str) -> None:
-        """Report that a subscription without `keep` has dropped messages."""
-
-
 class SubscribingBus(JournalKeeper, Protocol):
     """Interface of the topic bus that a subscription needs."""
 
     @property
-    def failures(self) -> SubscriptionFailures:
+    def failures(self) -> TopicFailures:
         """Handling of a failed subscription."""
 
     def gather(self, topic: str) -> None:
@@ -149,7 +151,11 @@ class Subscription(InProcess):
         on_error: policy for a callback that raises: "stop" stops the run, "drop" closes the subscription.
         is_called: True if there is a callback.
         keeps: largest number of messages that the subscription keeps.
+        node: name of the node of a program that subscribes; empty for any other subscription.
+        type_name: ROS 2 type of the program's messages; empty for any other subscription.
     """
+
+    node = type_name = ""
 
     def __init__(
         self, bus: SubscribingBus, topic: str, callback: Callback | None, keep: int | None, on_error: CallbackPolicy
@@ -165,8 +171,8 @@ class Subscription(InProcess):
         self._bus.gather(self.topic)
         if len(self._messages) == MAX_KEPT_MESSAGES and self.keeps == math.inf:
             self._bus.failures.report_full(self.topic)
-        found = [m.get() if isinstance(m, LazyMessage) else m for m in self._messages]
-        return [m for m in found if m is not NO_MESSAGE]
+        messages = [m.get() if isinstance(m, LazyMessage) else m for m in self._messages]
+        return [m for m in messages if m is not NO_MESSAGE]
 
     @property
     def latest(self) -> Message:
@@ -234,3 +240,49 @@ class StreamSubscription(Subscription):
         self.is_called = not takes_later
         if settle is not None:
             self.settle = settle  # type: ignore[method-assign]
+
+
+class TopicFailures:
+    """Errors and warnings of the topics of a simulation.
+
+    Args:
+        reports: collection for the warnings.
+        now: function that returns the simulated time [s].
+
+    Attributes:
+        now: function that returns the simulated time [s].
+    """
+
+    def __init__(self, reports: Diagnostics, now: Callable[[], float]) -> None:
+        self._reports, self.now = reports, now
+
+    def subscriber_failed(self, subscription: Subscription, error: Exception) -> None:
+        """Stop the run or close the subscription, as its policy requires. Call this inside the `except` block."""
+        if isinstance(error, (PluginError, SimulationDiverged)) or is_guarded(subscription.callback):
+            raise error
+        topic, name = subscription.topic, callback_name(subscription.callback)
+        if subscription.on_error == "stop":
+            if isinstance(error, SimkitError) and not isinstance(error, InputError):
+                raise error  # unchanged, so that the publishing plugin is not blamed
+            raise SubscriberError(topic, name, self.now(), cause_text(error)) from error
+        subscription.close()
+        message = f"subscriber {name} of {topic!r} raised at t={self.now():.6g} s and is closed: {error!r}"
+        self._reports.warning("SK-TOPIC-003", message)
+
+    def input_error(self, topic: str, owner: object, callback: Callback, error: Exception) -> SimkitError:
+        """Return the error for a command input whose callback raised."""
+        if hasattr(owner, "where"):
+            name, hook = str(getattr(owner, "name", owner)), f"its callback for {topic!r}"
+            return PluginError(name, hook, self.now(), str(owner.where), cause_text(error))
+        return SubscriberError(topic, callback_name(callback), self.now(), cause_text(error))
+
+    def report_full(self, topic: str) -> None:
+        """Warn that a subscription without `keep` has received more messages than it can keep."""
+        message = f"a subscription to {topic!r} is full: only the newest {MAX_KEPT_MESSAGES} messages are kept"
+        self._reports.warning("SK-TOPIC-005", message, hint="subscribe with keep=, or close the subscription after use")
+
+    def report_dropped(self, topic: str, depth: int) -> None:
+        """Warn that a plugin's input received more messages for one step than its queue can keep."""
+        message = f"more than {depth} messages on {topic!r} came for one step: the oldest are dropped from now on"
+        hint = "send less often; sim.communication.bus.dropped counts them"
+        self._reports.warning("SK-TOPIC-004", message, hint=hint)

@@ -4,30 +4,34 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from simkit import msgs
 from simkit.argument_checks import check_function, checked_integer, wrong_value
 from simkit.diagnostics import Diagnostics, name_hint
 from simkit.errors import MessageError, SimkitError
+from simkit.msgs import Message
 from simkit.msgs.message_arguments import checked_message
 from simkit.msgs.topic_names import absolute_name
 from simkit.runtime.communication.command_queue import CommandQueue
 from simkit.runtime.communication.journal import Journal
+from simkit.runtime.communication.name_remapping import NameRemapping
 from simkit.runtime.communication.publisher import Check, ExternalPublisher, Listener, Publisher, TopicSides
 from simkit.runtime.communication.subscription import (
     MAX_KEPT_MESSAGES,
     Callback,
     CallbackPolicy,
-    Message,
     Settle,
     StreamSubscription,
     Subscription,
+    TopicFailures,
     TopicReaders,
 )
 from simkit.runtime.communication.topic_conflicts import find_conflict
-from simkit.runtime.communication.topic_failures import TopicFailures
 from simkit.runtime.engine.plugin_faults import is_guarded
+
+if TYPE_CHECKING:
+    from simkit.runtime.communication.topic_relay import InputRelay, TopicRelay
 
 Endpoints = list[Any]
 """Publishers of a topic, or its listeners."""
@@ -39,8 +43,10 @@ class TopicBus:
     Args:
         reports: collection for diagnostics about messages during the run.
         now: function that returns the simulated time [s].
+        remapping: other names for the topics, services and actions of plugins and sensors.
 
     Attributes:
+        remapping: other names for the topics, services and actions of plugins and sensors.
         inbox: commands that wait for the next step.
         refuses_clashes: raise an error when a publisher or listener of another type than the topic's is opened. While
             plugins are being loaded, one pass checks all of them together instead.
@@ -49,21 +55,30 @@ class TopicBus:
         unlisted: topics of `aside` that are only listed while they have subscribers.
         failures: handling of callbacks that raise, and of too many messages.
         journal: recorder of external inputs; None without one.
+        relays: open relays.
     """
 
-    def __init__(self, reports: Diagnostics | None = None, now: Callable[[], float] = lambda: 0.0) -> None:
+    def __init__(
+        self,
+        reports: Diagnostics | None = None,
+        now: Callable[[], float] = lambda: 0.0,
+        remapping: NameRemapping | None = None,
+    ) -> None:
         self.failures = TopicFailures(Diagnostics() if reports is None else reports, now)
         self._readers: dict[str, TopicReaders] = {}
         self._publishers: dict[str, list[Publisher]] = {}
         self._listeners: dict[str, list[Listener]] = {}
         self._watchers: list[Callable[[str, str], None]] = []
         self.owner: object = None
+        self.remapping = NameRemapping() if remapping is None else remapping
+        self._renames = False  # True while a plugin or a sensor opens interfaces
         self.inbox = CommandQueue(self.failures.report_dropped)
         self.refuses_clashes, self.revision = False, 0
         self.aside: set[str] = set()
         self.unlisted: set[str] = set()
         self.journal: Journal | None = None
-        self._on_change: dict[str, Callable[[], None]] = {}
+        self._on_change: dict[str, list[Callable[[], None]]] = {}
+        self.relays: list[TopicRelay | InputRelay] = []
 
     # ------------------------------------------------------------------ publishers, listeners, subscriptions
 
@@ -72,18 +87,49 @@ class TopicBus:
         return nullcontext() if self.journal is None else self.journal.passing(operation, arguments)
 
     @contextmanager
-    def owned_by(self, owner: object) -> Iterator[None]:
+    def owned_by(self, owner: object, *, renames: bool = True) -> Iterator[None]:
         """Make `owner` the owner of all interfaces that are opened within the context.
 
         The interfaces are disabled together with their owner.
+
+        Args:
+            owner: plugin, sensor, or another object.
+            renames: False for an owner that is no part of the world; `remapping` does not change its names.
         """
-        before, self.owner = self.owner, owner
+        before = self.owner, self._renames
+        self.owner, self._renames = owner, renames
         try:
             yield
         finally:
-            self.owner = before
+            self.owner, self._renames = before
 
-    def advertise(self, topic: str, type_name: str, *, latched: bool = False, check: Check | None = None) -> Publisher:
+    def name_of(self, name: str) -> str:
+        """Return the absolute name of a topic, service or action that is opened now; plugins and sensors get new names.
+
+        Args:
+            name: name; a missing leading slash is added.
+        """
+        name = absolute_name(name)
+        return self.remapping.use(name) if self._renames else name
+
+    @contextmanager
+    def clashes_allowed(self) -> Iterator[None]:
+        """Allow other types than the topic's within the context, because one pass checks all of them afterwards."""
+        self.refuses_clashes = False
+        try:
+            yield
+        finally:
+            self.refuses_clashes = True
+
+    def advertise(
+        self,
+        topic: str,
+        type_name: str,
+        *,
+        latched: bool = False,
+        check: Check | None = None,
+        pending: Callable[[], None] | None = None,
+    ) -> Publisher:
         """Open a topic for publishing.
 
         Args:
@@ -91,14 +137,14 @@ class TopicBus:
             type_name: ROS 2 type, such as `sensor_msgs/msg/Imu`.
             latched: send the last message to a later subscriber (transient local).
             check: function that raises a SimkitError if the messages cannot be made; called for every reader.
+            pending: function that publishes the deferred messages of the owner.
         """
-        topic = absolute_name(topic)
+        topic = self.name_of(topic)
         self.gather(topic)
         self.revision += 1
         kind = Publisher if self.owner is not None else ExternalPublisher
         sides = TopicSides(self._readers_of(topic), self._publishers.setdefault(topic, []))
-        publisher = kind(self, sides, topic, type_name, latched, self.owner)
-        publisher.check = check
+        publisher = kind(self, sides, topic, type_name, latched, self.owner, check, pending)
         self._check_type(topic, publisher)
         if check is not None and (sides.readers.readers or sides.readers.feeds):
             check()
@@ -119,7 +165,7 @@ class TopicBus:
             depth: largest number of messages of the topic that wait for one step; the oldest are dropped. The largest
                 depth of the topic's listeners counts.
         """
-        topic = absolute_name(topic)
+        topic = self.name_of(topic)
         if depth is not None:
             self.inbox.depths[topic] = max(1, depth, self.inbox.depths.get(topic, 0))
         self.check_available(topic)
@@ -151,7 +197,7 @@ class TopicBus:
             check_function(callback, "callback")
         if keep is not None:
             keep = checked_integer(keep, "keep", 0, MAX_KEPT_MESSAGES)
-        subscription = Subscription(self, absolute_name(topic), callback, keep, on_error)
+        subscription = Subscription(self, self.name_of(topic), callback, keep, on_error)
         if self.journal is not None and callback is not None and not is_guarded(callback):
             self.journal.hears(subscription.topic, subscription)
         return self._add_reader(subscription)
@@ -165,7 +211,7 @@ class TopicBus:
             takes_later: True if the callback accepts a `LazyMessage` instead of a message; it may store it.
             settle: function that makes the stored messages; called before their source data change.
         """
-        return self._add_reader(StreamSubscription(self, absolute_name(topic), callback, takes_later, settle))
+        return self._add_reader(StreamSubscription(self, self.name_of(topic), callback, takes_later, settle))
 
     def close(self, end: Publisher | Listener) -> None:
         """Remove a publisher or a listener permanently."""
@@ -195,7 +241,7 @@ class TopicBus:
 
     def _all_ends(self) -> Endpoints:
         ends: Endpoints = [*self._publishers.values(), *self._listeners.values()]
-        return [end for found in ends for end in found]
+        return [end for group in ends for end in group]
 
     def endpoints(self, topic: str | None = None) -> Iterator[tuple[str, Publisher | Listener, tuple[str, ...], str]]:
         """Yield tuples of topic, publisher or listener, ROS types, and "publishes" or "takes".
@@ -232,11 +278,11 @@ class TopicBus:
 
     def all_topics(self) -> dict[str, str]:
         """Return the ROS type names of all topics, including unlisted ones."""
-        found: dict[str, str] = {}
+        type_by_topic: dict[str, str] = {}
         for topic, end, types, _ in self.endpoints():
             if end.active:
-                found.setdefault(topic, types[0])
-        return dict(sorted(found.items()))
+                type_by_topic.setdefault(topic, types[0])
+        return dict(sorted(type_by_topic.items()))
 
     def latched(self) -> frozenset[str]:
         """Return the topics whose last message is kept for later subscribers."""
@@ -259,16 +305,29 @@ class TopicBus:
         for topic, type_name in self.all_topics().items():
             callback(topic, type_name)
 
-    def on_readers_change(self, topic: str, callback: Callable[[], None]) -> None:
-        """Call a function whenever the subscriptions of a topic have changed."""
-        self._on_change[topic] = callback
+    def on_readers_change(self, topic: str, callback: Callable[[], None]) -> Callable[[], None]:
+        """Call a function whenever the subscriptions of a topic have changed; return a function that ends this."""
+        callbacks = self._on_change.setdefault(topic, [])
+        if callback not in callbacks:  # a plugin of a model that is spawned again registers the same function
+            callbacks.append(callback)
+
+        def stop() -> None:
+            if callback in callbacks:
+                callbacks.remove(callback)
+
+        return stop
+
+    def readers(self, topic: str) -> list[Subscription]:
+        """Return the open subscriptions of a topic."""
+        return list(self._readers_of(absolute_name(topic)).readers)
 
     def subscriptions(self) -> list[Subscription]:
         """Return all open subscriptions."""
         return [reader for readers in self._readers.values() for reader in readers.readers]
 
     def _report_change(self, topic: str) -> None:
-        self._on_change.get(topic, lambda: None)()
+        for callback in tuple(self._on_change.get(topic, ())):
+            callback()
 
     # ------------------------------------------------------------------ messages
 
@@ -339,6 +398,10 @@ class TopicBus:
                 inbox.put_back(entries[done:])
             raise
 
+    def deliver_now(self, topic: str, message: Message) -> None:
+        """Pass a command to its inputs at once, for a callback that gets commands between two steps itself."""
+        self._deliver_input(topic, message)
+
     def _deliver_input(self, topic: str, message: Message) -> None:
         for listener in tuple(self._listeners.get(topic, ())):
             if listener.active and msgs.type_name(message) in listener.types:
@@ -348,7 +411,7 @@ class TopicBus:
                 except SimkitError:
                     raise
                 except Exception as error:
-                    raise self.failures.input_error(listener, error) from error
+                    raise self.failures.input_error(topic, listener.owner, listener.callback, error) from error
 
     @property
     def dropped(self) -> dict[str, int]:
@@ -356,10 +419,10 @@ class TopicBus:
         return dict(self.inbox.dropped)
 
     def _readers_of(self, topic: str) -> TopicReaders:
-        found = self._readers.get(topic)
-        if found is None:
-            found = self._readers[topic] = TopicReaders()
-        return found
+        readers = self._readers.get(topic)
+        if readers is None:
+            readers = self._readers[topic] = TopicReaders()
+        return readers
 
     def _add_reader(self, subscription: Subscription) -> Subscription:
         topic = subscription.topic
@@ -397,3 +460,48 @@ class TopicBus:
     def _announce(self, topic: str, type_name: str) -> None:
         for watcher in self._watchers:
             watcher(topic, type_name)
+
+
+class MessagesBySubscription(dict[Subscription, Message]):
+    """Newest message of each subscription. A pickled snapshot contains none, because it has no subscriptions."""
+
+    def __reduce__(self) -> tuple[type[MessagesBySubscription], tuple[()]]:
+        return MessagesBySubscription, ()
+
+
+class LatestMessages:
+    """Newest messages of all subscriptions of a bus, so that `Subscription.latest` belongs to the restored state.
+
+    Args:
+        bus: topic bus.
+    """
+
+    def __init__(self, bus: TopicBus) -> None:
+        self._bus = bus
+
+    def _subscriptions(self) -> list[Subscription]:
+        return [subscription for subscription in self._bus.subscriptions() if subscription.keeps]
+
+    def get_state(self) -> MessagesBySubscription:
+        """Return the newest messages for a snapshot."""
+        return MessagesBySubscription((subscription, subscription.latest) for subscription in self._subscriptions())
+
+    def set_state(self, state: MessagesBySubscription) -> None:
+        """Restore the newest messages.
+
+        A subscription that is newer than the snapshot gets what a new subscription would get: the message that a
+        latched topic keeps, or none.
+        """
+        for subscription in self._subscriptions():
+            self._bus.gather(subscription.topic)  # deferred messages belong to the state of before
+            subscription.restore_latest(
+                state[subscription] if subscription in state else self._kept(subscription.topic)
+            )
+
+    def _kept(self, topic: str) -> Message:
+        """Return the message that a latched topic keeps for a new subscription, or None."""
+        messages: list[Message] = [None]
+        for _, end, _, _ in self._bus.endpoints(topic):
+            if isinstance(end, Publisher) and end.active and end.latched:
+                end.send_kept(messages.append)
+        return messages[-1]

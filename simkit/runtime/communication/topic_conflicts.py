@@ -94,11 +94,11 @@ def _describe_use(end: TopicEndpoint) -> str:
 
 
 def _endpoints_by_topic(sides: Iterable[Side]) -> dict[str, list[TopicEndpoint]]:
-    found: dict[str, list[TopicEndpoint]] = {}
+    by_topic: dict[str, list[TopicEndpoint]] = {}
     for topic, end, types, does in sides:
         if end.active and end.owner is not None:
-            found.setdefault(topic, []).append(_endpoint(end, types, does))
-    return found
+            by_topic.setdefault(topic, []).append(_endpoint(end, types, does))
+    return by_topic
 
 
 def _endpoint(end: Publisher | Listener, types: tuple[str, ...], does: str) -> TopicEndpoint:

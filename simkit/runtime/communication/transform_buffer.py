@@ -49,7 +49,8 @@ class TransformBuffer(TransformTree):
         if not self._is_open:
             self._is_open = True
             for topic, is_static in _TOPICS.items():
-                self._taps.append(self._bus.tap(topic, partial(self.take, is_static=is_static)))
+                name = self._bus.remapping.new_name(topic)
+                self._taps.append(self._bus.tap(name, partial(self.take, is_static=is_static)))
         if not self._has_present:
             self._has_present, self.since_ns = True, self._now_ns()
             self._take_present()
@@ -65,7 +66,7 @@ class TransformBuffer(TransformTree):
     def _take_present(self) -> None:
         """Store the present transforms, because the next message of a publisher may be far away."""
         for topic, is_static in _TOPICS.items():
-            for message in present_messages(self._bus, topic):
+            for message in present_messages(self._bus, self._bus.remapping.new_name(topic)):
                 self.take(message, is_static=is_static)
 
     def lookup(self, target: str, source: str, time: FieldValue = None) -> Pose:

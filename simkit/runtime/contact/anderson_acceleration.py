@@ -73,7 +73,7 @@ class AndersonAcceleration:
         further = self._extrapolation()
         if _product(further, further) > _MAX_EXTRAPOLATION * size:
             return result
-        return [g + one for g, one in zip(result, further, strict=True)]
+        return [g + correction for g, correction in zip(result, further, strict=True)]
 
     def _between(self, iterate: list[float], residual: list[float], size: float) -> list[float] | None:
         """Return the next iterate after a step past the solution; None if there was no such step.
@@ -96,7 +96,7 @@ class AndersonAcceleration:
             if self._end is not None or size > (_SLOW if self._turns > 1 else 1.0) * self._size:
                 self._end = last
         elif self._end is not None:
-            self._end = self._end[0], [0.5 * one for one in self._end[1]]
+            self._end = self._end[0], [0.5 * step for step in self._end[1]]
         if self._end is None or _product(self._end[1], residual) >= 0.0:
             self._end = None
             return None
@@ -152,9 +152,9 @@ class IslandIterations:
         for island in self._unsettled:
             members = self._members[island]
             last = [iterates[place] for place in members]
-            found = [x + weights[place] * (results[place] - x) for x, place in zip(last, members, strict=True)]
-            for place, one in zip(members, self._sequences[island].next(last, found), strict=True):
-                after[place] = one
+            damped = [x + weights[place] * (results[place] - x) for x, place in zip(last, members, strict=True)]
+            for place, correction in zip(members, self._sequences[island].next(last, damped), strict=True):
+                after[place] = correction
         return after
 
     def settle(self, iterates: list[float], tolerances: Sequence[float], least: float) -> tuple[list[float], list[int]]:
@@ -169,8 +169,8 @@ class IslandIterations:
         for island in self._unsettled:
             members, sequence = self._members[island], self._sequences[island]
             if sequence.has_come_near(max(least, *(tolerances[place] for place in members))):
-                for place, one in zip(members, sequence.best, strict=True):
-                    after[place] = one
+                for place, value in zip(members, sequence.best, strict=True):
+                    after[place] = value
             else:
                 failed.append(island)
         return after, failed

@@ -15,7 +15,7 @@ from __future__ import annotations
 import weakref
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple
 
 import mujoco
 import numpy as np
@@ -68,25 +68,22 @@ class ContactRequest(NamedTuple):
     slips: list[list[Pair]]
 
 
-class ShapedPhysics(Protocol):
-    """Physics whose contacts are changed before they are solved."""
-
-    shaper: ContactShaper | None
-
-    def changed_contacts(self) -> None:
-        """Record that contacts must be detected again."""
-
-
 class AnisotropicFriction:
     """Contacts of a simulation with directional friction or slip. A world without such contacts loses no time.
 
     Args:
-        physics: physics whose contacts are changed.
+        use_shaper: function that lets a function object change the contacts before they are solved; None for none.
+        changed_contacts: function that records that contacts must be detected again.
         reports: collection for a warning if the integrator cannot support such contacts.
     """
 
-    def __init__(self, physics: ShapedPhysics, reports: Diagnostics) -> None:
-        self._physics, self._reports = physics, reports
+    def __init__(
+        self,
+        use_shaper: Callable[[ContactShaper | None], None],
+        changed_contacts: Callable[[], None],
+        reports: Diagnostics,
+    ) -> None:
+        self._use_shaper, self._changed_contacts, self._reports = use_shaper, changed_contacts, reports
         self._compiled: Compiled
         self._plugins: frozenset[int] = frozenset()
         self._is_reported = False
@@ -125,7 +122,7 @@ class AnisotropicFriction:
         table = self._table()
         table.add_belts(owner, belts())
         self._install(table)
-        self._physics.changed_contacts()
+        self._changed_contacts()
 
     def add_wheels(self, owner: object, wheels: Sequence[SlippingWheel], slips: WheelSlips) -> None:
         """Add slipping wheels, which exist as long as their plugin.
@@ -139,12 +136,12 @@ class AnisotropicFriction:
         table = self._table()
         table.add_wheels(owner, wheels, slips)
         self._install(table)
-        self._physics.changed_contacts()
+        self._changed_contacts()
 
     def _install(self, table: _ModelFriction) -> None:
         """Make the physics use a table, if the table is not empty and the integrator allows it."""
-        physics, has_place = self._physics, table.model.opt.integrator != _DISCRETE
-        physics.shaper = table if table and has_place else None
+        has_place = table.model.opt.integrator != _DISCRETE
+        self._use_shaper(table if table and has_place else None)
         if table and not has_place and not self._is_reported:
             self._is_reported = True
             message = (
@@ -270,20 +267,20 @@ class _ModelFriction:
         """Set tangents, coefficients and softness of the affected contacts."""
         model, surfaces = self.model, self.surfaces
         runs, wheels = self.request() if request is None else request
-        found = find_friction_contacts(data, self._concerns) if data.ncon else None
-        flow = surfaces.look(data, found, runs)
-        if found is None:
+        contacts = find_friction_contacts(data, self._concerns) if data.ncon else None
+        flow = surfaces.look(data, contacts, runs)
+        if contacts is None:
             return
-        places = self._contacts.find(found)
+        places = self._contacts.find(contacts)
         if not len(places):
             if flow is not None:
-                surfaces.carry(data, found.frames)
+                surfaces.carry(data, contacts.frames)
                 mujoco.mj_referenceConstraint(model, data)
             return
-        self._contacts.turn(data, found, places, flow)
-        surfaces.carry(data, found.frames)
+        self._contacts.turn(data, contacts, places, flow)
+        surfaces.carry(data, contacts.frames)
         mujoco.mj_makeConstraint(model, data)
-        soft = self._slipping_contacts(data, found, places, wheels) if self._may_slip else []
+        soft = self._slipping_contacts(data, contacts, places, wheels) if self._may_slip else []
         is_elliptic = model.opt.cone == _ELLIPTIC
         if is_elliptic and soft:
             self._softness.soften(data, soft)
@@ -296,19 +293,19 @@ class _ModelFriction:
                 self._softness.soften_pyramid(data, number, slip)
 
     def _slipping_contacts(
-        self, data: mujoco.MjData, found: AnyFrictionContacts, places: RowContacts, wheels: list[list[Pair]]
+        self, data: mujoco.MjData, contacts: AnyFrictionContacts, places: RowContacts, wheels: list[list[Pair]]
     ) -> list[tuple[int, int, Pair]]:
         """Return the slipping contacts with their kinematic trees and compliances [m/s/N]."""
         slips = self._slip
         if self._wheels:
             slips = slips.copy()
             qvel = data.qvel
-            for those, own in zip(self._wheels, wheels, strict=True):
-                for (row, dof), (one, two) in zip(those, own, strict=True):
+            for those, directions in zip(self._wheels, wheels, strict=True):
+                for (row, dof), (along, across) in zip(those, directions, strict=True):
                     (a, b), rate = slips[row], abs(qvel.item(dof))
-                    slips[row] = a + rate * one, b + rate * two
+                    slips[row] = a + rate * along, b + rate * across
         listed = places if isinstance(places, list) else places.tolist()
-        numbers = found.numbers
+        numbers = contacts.numbers
         return [(int(numbers[place]), self._list[row].tree, slips[row]) for place, row, _ in listed if any(slips[row])]
 
 

@@ -139,14 +139,18 @@ class ArrayContactCorrection:
 
     def _leave(self, unsettled: dict[int, None], results: Floats) -> Floats:
         """Leave only some contacts as `ContactCorrection._leave` does."""
-        kept = [place for place, island in enumerate(self._islands) if island in unsettled]
-        if len(kept) < len(self._islands):
-            self._islands = [self._islands[place] for place in kept]
-            self._places, self._edges, self._mu = self._places[kept], self._edges[kept], self._mu[kept]
-            self._normals, self._goals, self._kinds = self._normals[kept], self._goals[kept], self._kinds[kept]
-            self._tangents, self._before = self._tangents[kept], self._before[kept]
-            self._tolerances, self._requested = self._tolerances[kept], self._requested[kept]
-            self._has_goal, results = self._has_goal[kept], results[kept]
+        remaining = [place for place, island in enumerate(self._islands) if island in unsettled]
+        if len(remaining) < len(self._islands):
+            self._islands = [self._islands[place] for place in remaining]
+            self._places, self._edges, self._mu = self._places[remaining], self._edges[remaining], self._mu[remaining]
+            self._normals, self._goals, self._kinds = (
+                self._normals[remaining],
+                self._goals[remaining],
+                self._kinds[remaining],
+            )
+            self._tangents, self._before = self._tangents[remaining], self._before[remaining]
+            self._tolerances, self._requested = self._tolerances[remaining], self._requested[remaining]
+            self._has_goal, results = self._has_goal[remaining], results[remaining]
         return results
 
     def settle(self) -> None:
@@ -161,10 +165,10 @@ class ArrayContactCorrection:
 
     def _hold(self, islands: list[int]) -> None:
         """Set normal references as `ContactCorrection._hold` does."""
-        held = self._has_goal & (self._kinds == AT_MOST) & np.isin(self._islands, islands)
-        edges, before = self._edges[held], self._along(self._aref)[held]
-        lift = _lift(self._aref[self._places[held]], self._mu[held], self._is_pyramid)
-        limit = np.maximum(0.0, self._goals[held] - EXIT_SPEED / self._around.step)
+        bounded = self._has_goal & (self._kinds == AT_MOST) & np.isin(self._islands, islands)
+        edges, before = self._edges[bounded], self._along(self._aref)[bounded]
+        lift = _lift(self._aref[self._places[bounded]], self._mu[bounded], self._is_pyramid)
+        limit = np.maximum(0.0, self._goals[bounded] - EXIT_SPEED / self._around.step)
         now = np.minimum(before, limit) - lift
         self._aref[edges] = self._aref[edges] + (now - before)[:, None] if self._is_pyramid else now[:, None]
 
@@ -175,8 +179,8 @@ class ArrayContactCorrection:
     def _along(self, values: Floats) -> Floats:
         """Return the values of the normal rows, or the mean of the edges, shape (k,)."""
         chosen = values[self._edges]
-        found: Floats = chosen.mean(axis=1) if self._is_pyramid else chosen[:, 0]
-        return found
+        normal: Floats = chosen.mean(axis=1) if self._is_pyramid else chosen[:, 0]
+        return normal
 
     def _limited(self, yields: Floats) -> Floats:
         """Return the normal references with requested accelerations, as `contact_correction._limited` does."""
@@ -195,11 +199,11 @@ def _squared_lift(residual: Floats, mu: Floats, is_pyramid: bool) -> Floats:
     """Return the squared lift of contacts for residuals along their friction rows or pairs of edges, shape (k,)."""
     if is_pyramid:
         apart = np.abs(residual[..., 0] - residual[..., 1]) / 2.0
-        found: Floats = np.where(mu > 0.0, apart, 0.0).max(axis=1, initial=0.0)
-        return found * found
+        lift: Floats = np.where(mu > 0.0, apart, 0.0).max(axis=1, initial=0.0)
+        return lift * lift
     total: Floats = np.zeros(len(mu))
-    for one in (mu * residual).T:
-        total += one * one
+    for component in (mu * residual).T:
+        total += component * component
     return total
 
 
@@ -237,11 +241,11 @@ def find_array_correction(
 ) -> ArrayContactCorrection | None:
     """Return the contacts to correct as `find_correction` does, for either cone."""
     is_pyramid = bool(model.opt.cone == _PYRAMID)
-    found = _candidates(data, around, is_pyramid, residual)
-    if found is None:
+    candidates = _candidates(data, around, is_pyramid, residual)
+    if candidates is None:
         return None
-    _, there, places, mu, edges, normals, speed, depth, lift = found
-    goals, kinds = _goals(data, around, found)
+    _, there, places, mu, edges, normals, speed, depth, lift = candidates
+    goals, kinds = _goals(data, around, candidates)
     stops = (speed < CLOSING_SPEED) | (lift > around.tolerance * around.tolerance)
     stops &= there.any(axis=1) & (goals != NO_FORCE)
     references = data.efc_aref.copy()
@@ -313,9 +317,15 @@ def _candidates(
     return _Candidates(*(each[matters] for each in every))
 
 
-def _goals(data: mujoco.MjData, around: ContactConditions, found: _Candidates) -> tuple[Floats, Ints]:
+def _goals(data: mujoco.MjData, around: ContactConditions, candidates: _Candidates) -> tuple[Floats, Ints]:
     """Return the requested accelerations of contacts [m/s²] or NaN, and their kinds, each of shape (k,)."""
-    contact, step, numbers, normals, speed = data.contact, around.step, found.numbers, found.normals, found.speed
+    contact, step, numbers, normals, speed = (
+        data.contact,
+        around.step,
+        candidates.numbers,
+        candidates.normals,
+        candidates.speed,
+    )
     closes, after = speed < CLOSING_SPEED, speed
     if around.closing is not None:
         geoms = np.array(around.closing)[contact.geom[numbers]]
@@ -323,10 +333,10 @@ def _goals(data: mujoco.MjData, around: ContactConditions, found: _Candidates) -
         after = np.where(closes & (speed < -left), speed + left, speed)
     wanted = np.maximum(0.0, (EXIT_SPEED - after) / step)
     is_late = closes & (normals <= wanted)
-    is_fast = (normals > wanted) | (found.depth > around.deep)
+    is_fast = (normals > wanted) | (candidates.depth > around.deep)
     constants = contact.solref[numbers, 0]
     is_rigid = (constants > 0.0) & (constants <= around.softest)
-    goals = np.where(np.where(is_late, found.depth >= 0.0, is_fast) & is_rigid, wanted, np.nan)
+    goals = np.where(np.where(is_late, candidates.depth >= 0.0, is_fast) & is_rigid, wanted, np.nan)
     goals = np.where(is_late & (goals == wanted), -after / step, goals)
     kinds = np.where(is_late, AT_LEAST, AT_MOST)
     if around.inner:

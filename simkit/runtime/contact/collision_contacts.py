@@ -144,12 +144,12 @@ def list_contacts(compiled: Compiled, data: mujoco.MjData, model: str | None) ->
         selected = np.append(np.ones(compiled.model.ngeom, bool), False)
     else:
         selected = table.mask([name for name in table.names if name.startswith(f"{model}::")])
-    found = find_contacts(compiled.model, data, selected)
-    if found is None:
+    contacts = find_contacts(compiled.model, data, selected)
+    if contacts is None:
         return []
     return [
         Contact(table.names[first], table.names[second], position, axes[0], matmul(wrench[:3], axes))
         for (first, second), position, axes, wrench in zip(
-            table.of_geom[found.geoms].tolist(), found.positions, found.frames, found.wrenches, strict=True
+            table.of_geom[contacts.geoms].tolist(), contacts.positions, contacts.frames, contacts.wrenches, strict=True
         )
     ]

@@ -87,17 +87,17 @@ class ContactCorrection:
         aref, accelerations = self._before, moves.tolist()
         if forces is not None:
             yields = (self._data.efc_R * forces).tolist()
-            aref = [one - other for one, other in zip(aref, yields, strict=True)]
+            aref = [reference - change for reference, change in zip(aref, yields, strict=True)]
         for (row, mus, _, _, _), tolerance in zip(self._contacts, self._tolerances, strict=True):
             if len(mus) == 2:
-                one = mus[0] * (aref[row + 1] - accelerations[row + 1])
+                first = mus[0] * (aref[row + 1] - accelerations[row + 1])
                 other = mus[1] * (aref[row + 2] - accelerations[row + 2])
-                total = one * one + other * other
+                total = first * first + other * other
             else:
                 total = 0.0
                 for place, mu in enumerate(mus, row + 1):
-                    one = mu * (aref[place] - accelerations[place])
-                    total += one * one
+                    first = mu * (aref[place] - accelerations[place])
+                    total += first * first
             if total > tolerance * tolerance:
                 return False
         return True
@@ -121,27 +121,32 @@ class ContactCorrection:
         contacts, data = self._contacts, self._data
         for row, mus, normal, goal, kind in contacts:
             if len(mus) == 2:  # unrolled for the usual two tangents: saves a third of the loop's time
-                one = mus[0] * (before[row + 1] - accelerations[row + 1])
+                first = mus[0] * (before[row + 1] - accelerations[row + 1])
                 other = mus[1] * (before[row + 2] - accelerations[row + 2])
-                total = one * one + other * other
+                total = first * first + other * other
             else:
                 total = 0.0
                 for place, mu in enumerate(mus, row + 1):
-                    one = mu * (before[place] - accelerations[place])
-                    total += one * one
+                    first = mu * (before[place] - accelerations[place])
+                    total += first * first
             acceleration = accelerations[row]
             most = abs(acceleration)
-            if goal == goal:
+            if goal == goal:  # not NaN
+                # R f of a contact that reaches the goal: R is (1 - d) / d times the inverse inertia along the normal,
+                # with the impedance d, and the force gives the acceleration that is missing
                 impedance = data.efc_KBIP.item(row, 2)
                 yields = (1.0 - impedance) / impedance * max(0.0, goal - acceleration)
                 if kind != AT_MOST:  # it closes
                     most = max(most, goal)
                 normal = _limited(normal, goal + yields, kind)
+            # under the elliptic cone a sliding contact opens by its coefficients times its slip; the reference is
+            # smaller by this amount, so that it stays closed
             after[row] = now = normal - math.sqrt(total)
             requested.append(now)
             largest.append(most)
         self._aref[:], self._requested = after, requested
         tolerances = self._tolerances
+        # `raise_tolerances` would change nothing
         if data.nisland < 2 and HIT_ACCURACY * max(largest) <= min(tolerances):
             self._islands = [0] * len(largest)
         else:
@@ -157,7 +162,7 @@ class ContactCorrection:
         """
         accelerations, force, before = moves.tolist(), forces.tolist(), self._references
         softness = self._softness
-        if softness is None:
+        if softness is None:  # read once: the iterations of a step change the references only
             self._softness = softness = self._data.efc_R.tolist()
         results: list[float] = []
         wrong: list[int] = []
@@ -171,15 +176,15 @@ class ContactCorrection:
                 continue
             if len(mus) == 2:
                 place = row + 1
-                one = mus[0] * (before[place] - accelerations[place] - softness[place] * force[place])
+                component = mus[0] * (before[place] - accelerations[place] - softness[place] * force[place])
                 place = row + 2
                 other = mus[1] * (before[place] - accelerations[place] - softness[place] * force[place])
-                total = one * one + other * other
+                total = component * component + other * other
             else:
                 total = 0.0
                 for place, mu in enumerate(mus, row + 1):
-                    one = mu * (before[place] - accelerations[place] - softness[place] * force[place])
-                    total += one * one
+                    component = mu * (before[place] - accelerations[place] - softness[place] * force[place])
+                    total += component * component
             now = normal - math.sqrt(total)
             results.append(now)
             if abs(now - last) > most:
@@ -191,6 +196,7 @@ class ContactCorrection:
             results = self._leave(unsettled, results)
             goals = [contact[3] for contact in self._contacts]
             first = [contact[1][0] if contact[1] else 0.0 for contact in self._contacts]
+            # only a correction that does not settle at once pays for the iterations
             weights = relaxation(self._islands, goals, first)
             hits = hit_islands(self._islands, self._data.efc_vel[[contact[0] for contact in self._contacts]].tolist())
             self._iterations = IslandIterations(self._islands, weights, hits)
@@ -199,13 +205,13 @@ class ContactCorrection:
 
     def _leave(self, unsettled: dict[int, None], results: list[float]) -> list[float]:
         """Leave only the contacts of islands that have not converged, and return their results."""
-        kept = [place for place, island in enumerate(self._islands) if island in unsettled]
-        if len(kept) < len(self._islands):
-            self._contacts = [self._contacts[place] for place in kept]
-            self._requested = [self._requested[place] for place in kept]
-            self._tolerances = [self._tolerances[place] for place in kept]
-            self._islands = [self._islands[place] for place in kept]
-            results = [results[place] for place in kept]
+        remaining = [place for place, island in enumerate(self._islands) if island in unsettled]
+        if len(remaining) < len(self._islands):
+            self._contacts = [self._contacts[place] for place in remaining]
+            self._requested = [self._requested[place] for place in remaining]
+            self._tolerances = [self._tolerances[place] for place in remaining]
+            self._islands = [self._islands[place] for place in remaining]
+            results = [results[place] for place in remaining]
         return results
 
     def settle(self) -> None:
@@ -228,8 +234,8 @@ class ContactCorrection:
             if kind == AT_MOST and goal == goal and island in islands:
                 total = 0.0
                 for place, mu in enumerate(mus, row + 1):
-                    one = mu * aref[place]
-                    total += one * one
+                    component = mu * aref[place]
+                    total += component * component
                 self._aref[row] = min(aref[row], max(0.0, goal - exits)) - math.sqrt(total)
 
     def restore(self) -> None:
@@ -321,7 +327,7 @@ def find_correction(
     aref, velocity = data.efc_aref.tolist(), data.efc_vel.tolist()
     slip: list[float] = aref if residual is None else residual.tolist()
     distance: list[float] = contact.dist.tolist()
-    found: list[CorrectedContact] = []
+    corrected: list[CorrectedContact] = []
     tolerances: list[float] = []
     references = aref.copy()
     nothing, square, least = math.nan, around.tolerance * around.tolerance, around.least_damping
@@ -332,19 +338,19 @@ def find_correction(
         if row < 0:
             continue
         if number in inner:
-            found.append((row, [], aref[row], NO_FORCE, AT_MOST))
+            corrected.append((row, [], aref[row], NO_FORCE, AT_MOST))
             tolerances.append(around.tolerance)
             may_creep = False
             continue
         dim, mus = dims[number], friction[number]
         if dim == 3:
-            one, other = mus[0] * slip[row + 1], mus[1] * slip[row + 2]
-            total = one * one + other * other
+            component, other = mus[0] * slip[row + 1], mus[1] * slip[row + 2]
+            total = component * component + other * other
         else:
             total = 0.0
             for place in range(1, dim):
-                one = mus[place - 1] * slip[row + place]
-                total += one * one
+                component = mus[place - 1] * slip[row + place]
+                total += component * component
         speed = velocity[row]
         is_quiet = CLOSING_SPEED <= speed <= OPENING_SPEED and -distance[number] <= MIN_PENETRATION
         if is_quiet and total <= square:  # the most frequent case
@@ -358,6 +364,7 @@ def find_correction(
                 last, share = rate, 1.0 / (rate * step)
             if residual is None:
                 total *= share * share
+            # the engine's references let slip decay over its time constant; 1 / (rate · step) ends it within the step
             references[row + 1] *= share
             references[row + 2] *= share
             if dim > 3:
@@ -372,6 +379,6 @@ def find_correction(
         if slides or goal == goal:
             if not slides and speed < CLOSING_SPEED:
                 mus = []  # bodies that separate begin to slide, bodies that close do not
-            found.append((row, mus[: dim - 1], aref[row], goal, kind))
+            corrected.append((row, mus[: dim - 1], aref[row], goal, kind))
             tolerances.append(tolerance)
-    return ContactCorrection(data, found, tolerances, aref, references, may_creep, around) if found else None
+    return ContactCorrection(data, corrected, tolerances, aref, references, may_creep, around) if corrected else None

@@ -24,6 +24,7 @@ from typing import Any, Final, Protocol
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
 from simkit.compiler.engine_options import contact_time_constant, has_engine_contacts
 from simkit.linear_algebra import squared_length
@@ -65,6 +66,8 @@ _PYRAMID: Final = mujoco.mjtCone.mjCONE_PYRAMIDAL
 
 mj_forward_skip, mj_mul_jac_vec = mujoco.mj_forwardSkip, mujoco.mj_mulJacVec
 mj_fwd_constraint = mujoco.mj_fwdConstraint
+
+Floats = npt.NDArray[np.float64]
 
 
 class LawUse(enum.IntEnum):
@@ -194,7 +197,7 @@ class ContactLaw:
             mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
             return False
         has_lines = self.lines.correct(data)
-        found, carried, is_solved = None, self._carried.find(data), False
+        correction, carried, is_solved = None, self._carried.find(data), False
         has_to_look = not self._is_quiet(data)
         if has_to_look or self._always_merges:
             self._wheels.merge(data)
@@ -202,31 +205,31 @@ class ContactLaw:
         if self._points is not None and not has_lines:  # it computes the contacts of the next step without lines
             motion = self._points.correct(data, carried)
         if probes:
-            found, is_solved = self._find(data, closing, self._residual(data)), True
+            correction, is_solved = self._find(data, closing, self._residual(data)), True
         elif has_to_look:
-            found, is_solved = self._found(data, closing)
+            correction, is_solved = self._found(data, closing)
         before: list[tuple[int, float]] = []
         if carried or motion is not None:
             engine = data.efc_aref.copy()
-            if found is not None:
-                found.stop_slip()
+            if correction is not None:
+                correction.stop_slip()
             before = self._carried.correct(data, carried, engine) if carried else []
             if motion is not None:
                 before += motion.shift_tangents()
-            if found is not None:
-                found.read_references()
-        if found is not None:
-            self._repeat(data, found)
+            if correction is not None:
+                correction.read_references()
+        if correction is not None:
+            self._repeat(data, correction)
         elif before or not is_solved:
             mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
         if not keeps_references:
             for row, reference in before:
                 data.efc_aref[row] = reference
-            if found is not None:
-                found.restore()
+            if correction is not None:
+                correction.restore()
         if motion is not None:
             motion.restore(keeps_references=keeps_references)
-        return found is not None
+        return correction is not None
 
     def _needs_correction(self, data: mujoco.MjData) -> bool:
         """Check whether a contact needs a correction."""
@@ -239,16 +242,21 @@ class ContactLaw:
         velocities require. The acceleration of the previous step tells most cases apart, the engine's solution the
         rest.
         """
-        found = self._find(data, closing)
-        if found is None or not found.may_creep or not found.creeps(self._multiplied(data, data.qacc_warmstart)):
-            return found, False
+        correction = self._find(data, closing)
+        if (
+            correction is None
+            or not correction.may_creep
+            or not correction.creeps(self._multiplied(data, data.qacc_warmstart))
+        ):
+            return correction, False
         mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
-        return (None if found.creeps(self._multiplied(data, data.qacc), data.efc_force) else found), True
+        return (None if correction.creeps(self._multiplied(data, data.qacc), data.efc_force) else correction), True
 
-    def _residual(self, data: mujoco.MjData) -> Any:
+    def _residual(self, data: mujoco.MjData) -> Floats:
         """Return aref - J a - R f of the engine's solution, shape (nefc,)."""
         mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
-        return data.efc_aref - self._multiplied(data, data.qacc) - data.efc_R * data.efc_force
+        residual: Floats = data.efc_aref - self._multiplied(data, data.qacc) - data.efc_R * data.efc_force
+        return residual
 
     def _has_flying(self, data: mujoco.MjData) -> bool:
         """Check whether an awake tree with collisions touches nothing, so that it may land within the window."""
@@ -276,7 +284,7 @@ class ContactLaw:
         return bool(squared_length(data.efc_aref, self._least_reference) < self._least_reference)
 
     def _find(
-        self, data: mujoco.MjData, closing: list[float] | None, residual: Any = None
+        self, data: mujoco.MjData, closing: list[float] | None, residual: Floats | None = None
     ) -> AnyContactCorrection | None:
         """Return the contacts whose normal references need a correction."""
         gravity: list[float] = self._gravity.tolist()
@@ -291,25 +299,25 @@ class ContactLaw:
             return find_array_correction(self.model, data, around, residual)
         return find_correction(data, around, residual)
 
-    def _repeat(self, data: mujoco.MjData, found: AnyContactCorrection) -> None:
+    def _repeat(self, data: mujoco.MjData, correction: AnyContactCorrection) -> None:
         """Solve, correct the normal references by the solution, and repeat until they converge."""
         model, start, before = self.model, data.qacc_warmstart, None
-        found.guess(self._multiplied(data, start))
+        correction.guess(self._multiplied(data, start))
         mj_forward_skip(model, data, _AFTER_VELOCITIES, 1)
         for _ in range(MAX_SOLUTIONS - 1):
-            if found.correct(self._multiplied(data, data.qacc), data.efc_force):
+            if correction.correct(self._multiplied(data, data.qacc), data.efc_force):
                 break
             if before is None:
                 before = start.copy()
             start[:] = data.qacc  # only references have changed: most islands are solved already
             mj_fwd_constraint(model, data)
         else:
-            found.settle()
+            correction.settle()
             mj_fwd_constraint(model, data)
         if before is not None:
             start[:] = before  # part of the state: a forward pass must not change it
 
-    def _multiplied(self, data: mujoco.MjData, acceleration: Any) -> Any:
+    def _multiplied(self, data: mujoco.MjData, acceleration: Floats) -> Floats:
         """Return J a, shape (nefc,); the next call reuses the array."""
         if self._product.size != data.nefc:
             self._product = np.empty(data.nefc)

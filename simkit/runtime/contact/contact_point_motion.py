@@ -134,9 +134,9 @@ class ContactPointCorrection:
             self._before.append((row, self._shift(row, (rest - 1.0) * along_normal + lift)))
             slip = math.hypot(self._aref.item(row + 1), self._aref.item(row + 2))
             if slip <= MAX_SLIP * math.hypot(*along_tangents):
-                for place, (change, own) in enumerate(zip(along_tangents, turning, strict=True), row + 1):
+                for place, (change, turn) in enumerate(zip(along_tangents, turning, strict=True), row + 1):
                     self._before.append((place, self._shift(place, rest * change)))
-                    self._tangents.append((place, change - own))
+                    self._tangents.append((place, change - turn))
 
     def shift_tangents(self) -> list[tuple[int, float]]:
         """Subtract the terms from the tangents, whose references are -b w until then; return the rows to restore.
@@ -191,8 +191,8 @@ class ContactPointMotion:
         """Return the contact points of a model; None if no free body can have the term."""
         if model.opt.cone != _ELLIPTIC or model.nflex or not (model.jnt_type == _FREE).any():
             return None
-        found = cls(model)
-        return found if found._spinning.can_spin else None
+        correction = cls(model)
+        return correction if correction._spinning.can_spin else None
 
     def find(self, data: mujoco.MjData) -> list[int]:
         """Return the numbers of the contacts to correct.
@@ -208,14 +208,14 @@ class ContactPointMotion:
         if len(numbers) > MAX_CONTACTS:
             return []
         rows, aref = contact.efc_address, data.efc_aref
-        found = []
+        fast_contacts = []
         for number in numbers:
             row = rows.item(number)
             if row < 0 or contact.dim[number] < 3:
                 continue
             if math.hypot(aref.item(row + 1), aref.item(row + 2)) <= MAX_REFERENCE:
-                found.append(number)
-        return found
+                fast_contacts.append(number)
+        return fast_contacts
 
     def correct(self, data: mujoco.MjData, carried: Collection[tuple[int, int, int]]) -> ContactPointCorrection | None:
         """Shift the normals of the contacts that need it; None if there are none.
@@ -227,8 +227,8 @@ class ContactPointMotion:
         numbers = self.find(data)
         if not numbers:
             return None
-        own = {number for number, _, _ in carried}
-        numbers = [number for number in numbers if number not in own]
+        corrected = {number for number, _, _ in carried}
+        numbers = [number for number in numbers if number not in corrected]
         terms = self._terms(data, numbers) if numbers else []
         return ContactPointCorrection(data, terms, float(self._model.opt.timestep)) if terms else None
 
@@ -244,54 +244,54 @@ class ContactPointMotion:
         places, frames, distances = contact.pos.tolist(), contact.frame.tolist(), contact.dist.tolist()
         bodies = dict.fromkeys(body_of[geom] for number in numbers for geom in geoms[number])
         now = {body: self._velocities(data, body) for body in bodies}
-        own = self._free_motions(data, bodies)
-        end = self._at_end_of_step(data, own)
+        motions = self._free_motions(data, bodies)
+        end = self._at_end_of_step(data, motions)
         then = {body: self._velocities(end, body) for body in bodies}
         places_then, frames_then = end.contact.pos.tolist(), end.contact.frame.tolist()
         candidates: dict[tuple[int, int], list[int]] = {}
         for number, (first, second) in enumerate(end.contact.geom.tolist()):
             candidates.setdefault((first, second), []).append(number)
-        found = []
+        terms = []
         for number in numbers:
             (first, second), place = geoms[number], places[number]
-            one, other, same = body_of[first], body_of[second], candidates.get((first, second))
+            this, other, same = body_of[first], body_of[second], candidates.get((first, second))
             if distances[number] > MARGIN or not same or contact.solref.item(number, 0) <= 0.0:  # open, or bouncing
                 continue
             nearest = min(same, key=lambda k: math.dist(places_then[k], place))
             later = places_then[nearest]
-            radius = max(math.dist(place, now[body].origin) for body in (one, other) if self._is_free[body])
+            radius = max(math.dist(place, now[body].origin) for body in (this, other) if self._is_free[body])
             if math.dist(later, place) > MAX_TURN * radius:
                 continue
             same.remove(nearest)
-            before, after = _difference(now, one, other, place), _difference(then, one, other, later)
+            before, after = _difference(now, this, other, place), _difference(then, this, other, later)
             changes = _changes(frames[number], frames_then[nearest], before, after, step)
-            turning, frame = _difference(own.gyroscopic, one, other, place), frames[number]
+            turning, frame = _difference(motions.gyroscopic, this, other, place), frames[number]
             gyroscopic = _dot(frame[:3], turning), _dot(frame[3:6], turning), _dot(frame[6:], turning)
-            found.append(ContactPointTerm(rows[number], changes, gyroscopic))
-        return found
+            terms.append(ContactPointTerm(rows[number], changes, gyroscopic))
+        return terms
 
     def _free_motions(self, data: mujoco.MjData, bodies: Iterable[int]) -> _FreeMotions:
         """Return the motion without forces of those bodies whose rotation a step resolves."""
-        found, step = _FreeMotions({}, []), float(self._model.opt.timestep)
+        motions, step = _FreeMotions({}, []), float(self._model.opt.timestep)
         for body in bodies:
-            one = self._rotations.get(body)
-            if one is None:
+            rotation = self._rotations.get(body)
+            if rotation is None:
                 continue
-            position, velocity = data.qpos[one.coordinates].tolist(), data.qvel[one.dofs].tolist()
-            if one.is_resolved(velocity[3:], step):
-                x, y, z, *turning = one.gyroscopic_acceleration(position[3:], velocity[3:])
+            position, velocity = data.qpos[rotation.coordinates].tolist(), data.qvel[rotation.dofs].tolist()
+            if rotation.is_resolved(velocity[3:], step):
+                x, y, z, *turning = rotation.gyroscopic_acceleration(position[3:], velocity[3:])
                 p, q, r = data.xpos[body].tolist()
                 u, v, w = (_dot(row, turning) for row in data.xmat[body].reshape(3, 3).tolist())
-                found.gyroscopic[body] = _Motion((p, q, r), (x, y, z), (u, v, w))
-                found.ends.append((one, *one.moved(position, velocity, step)))
-        return found
+                motions.gyroscopic[body] = _Motion((p, q, r), (x, y, z), (u, v, w))
+                motions.ends.append((rotation, *rotation.moved(position, velocity, step)))
+        return motions
 
-    def _at_end_of_step(self, data: mujoco.MjData, own: _FreeMotions) -> mujoco.MjData:
+    def _at_end_of_step(self, data: mujoco.MjData, motions: _FreeMotions) -> mujoco.MjData:
         """Return data with the contacts and velocities to which the motion without forces leads at the end of the step.
 
         Args:
             data: MuJoCo's data with velocities up to date.
-            own: motions of bodies that turn; all other velocities stay.
+            motions: motions of bodies that turn; all other velocities stay.
         """
         model, option = self._model, self._model.opt
         if self._data is None:
@@ -301,8 +301,8 @@ class ContactPointMotion:
         if model.nmocap:
             end.mocap_pos[:], end.mocap_quat[:] = data.mocap_pos, data.mocap_quat
         mujoco.mj_integratePos(model, end.qpos, data.qvel, option.timestep)
-        for one, position, velocity in own.ends:
-            end.qpos[one.coordinates], end.qvel[one.dofs] = position, velocity
+        for rotation, position, velocity in motions.ends:
+            end.qpos[rotation.coordinates], end.qvel[rotation.dofs] = position, velocity
         enabled, margin = option.enableflags, option.o_margin
         # a body that sleeps may have been moved; a contact may open within the step
         option.enableflags, option.o_margin = (enabled & ~_SLEEP) | _OVERRIDE, MARGIN
@@ -324,14 +324,14 @@ class ContactPointMotion:
         return _Motion((a, b, c), (x, y, z), (u, v, w))
 
 
-def _difference(motions: Mapping[int, _Motion], one: int, other: int, place: Point) -> Point:
+def _difference(motions: Mapping[int, _Motion], this: int, other: int, place: Point) -> Point:
     """Return the velocity or acceleration of a body relative to another one at a place."""
-    (x, y, z), (u, v, w) = motions.get(one, _AT_REST).at(place), motions.get(other, _AT_REST).at(place)
+    (x, y, z), (u, v, w) = motions.get(this, _AT_REST).at(place), motions.get(other, _AT_REST).at(place)
     return u - x, v - y, w - z
 
 
-def _dot(one: Sequence[float], other: Sequence[float]) -> float:
-    return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
+def _dot(first: Sequence[float], other: Sequence[float]) -> float:
+    return first[0] * other[0] + first[1] * other[1] + first[2] * other[2]
 
 
 def _changes(frame: list[float], frame_then: list[float], now: Point, then: Point, step: float) -> Point:

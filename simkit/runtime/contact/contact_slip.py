@@ -38,12 +38,12 @@ class ContactSlip:
         contact, step = data.contact, float(self.model.opt.timestep)
         firsts, dims, frictions = contact.efc_address.tolist(), contact.dim.tolist(), contact.friction.tolist()
         inverse_masses = self._inverse_masses(
-            data, [one for one in soft if not _is_isotropic(one[2], frictions[one[0]])], firsts
+            data, [entry for entry in soft if not _is_isotropic(entry[2], frictions[entry[0]])], firsts
         )
         all_r, all_d, terms, mus = data.efc_R, data.efc_D, data.efc_KBIP, contact.mu
         for number, tree, slip in soft:
             first, friction = firsts[number], frictions[number][: dims[number] - 1]
-            by_friction = [(by := friction[0] / one) * by for one in friction]
+            by_friction = [(by := friction[0] / entry) * by for entry in friction]
             normal, base = all_r.item(first), all_r.item(first + 1)
             # more damping would overshoot with almost no compliance
             most = [1.0 / step, 1.0 / step]
@@ -54,11 +54,11 @@ class ContactSlip:
                 base = max(base, _shared_resistance(slip, by_friction, both, step))
                 most = [(y + base * by) / (y * step) for y, by in zip(both, by_friction[:2], strict=True)]
             resistance = [base * by for by in by_friction]
-            for row, one in enumerate(resistance, first + 1):
-                all_r[row], all_d[row] = one, 1.0 / one
+            for row, entry in enumerate(resistance, first + 1):
+                all_r[row], all_d[row] = entry, 1.0 / entry
             mus[number] = friction[0] * math.sqrt(base / normal)
-            for tangent, one in enumerate(slip):
-                damping = resistance[tangent] / one if one > 0.0 else math.inf
+            for tangent, entry in enumerate(slip):
+                damping = resistance[tangent] / entry if entry > 0.0 else math.inf
                 terms[first + 1 + tangent, 1] = min(damping, most[tangent])
 
     def _inverse_masses(
@@ -68,9 +68,9 @@ class ContactSlip:
 
         The bound is a sum of diagonal elements, which is at least as large as any eigenvalue.
         """
-        found: dict[int, Numbers] = {}
+        by_tree: dict[int, Numbers] = {}
         if not soft:
-            return found
+            return by_tree
         model = self.model
         places = [firsts[number] + 1 + tangent for number, _, _ in soft for tangent in (0, 1)]
         unit, along = np.zeros(data.nefc), np.zeros((len(places), model.nv))
@@ -80,12 +80,12 @@ class ContactSlip:
             unit[place] = 0.0
         solved = np.empty_like(along)
         mujoco.mj_solveM(model, data, solved, along)
-        responses = [float(matmul(one, other)) for one, other in zip(along, solved, strict=True)]
+        responses = [float(matmul(directions, other)) for directions, other in zip(along, solved, strict=True)]
         for index, (_, tree, _) in enumerate(soft):
-            both = found.setdefault(tree, [1e-12, 1e-12])
+            both = by_tree.setdefault(tree, [1e-12, 1e-12])
             both[0] += responses[2 * index]
             both[1] += responses[2 * index + 1]
-        return found
+        return by_tree
 
     def soften_pyramid(self, data: mujoco.MjData, number: int, slip: Pair) -> None:
         """Reduce the damping of a pyramid's edges where it is too large along a tangent.
@@ -94,11 +94,11 @@ class ContactSlip:
         """
         contact, velocity, aref = data.contact, data.efc_vel, data.efc_aref
         first, friction = int(contact.efc_address[number]), contact.friction[number].tolist()
-        for tangent, one in enumerate(slip):
+        for tangent, speed in enumerate(slip):
             edge = first + 2 * tangent
             damping, resistance = float(data.efc_KBIP[edge, 1]), float(data.efc_R[edge])
             resistance /= 2.0 * (friction[tangent] * friction[tangent])
-            excess = max(0.0, damping - resistance / one) if one > 0.0 else 0.0
+            excess = max(0.0, damping - resistance / speed) if speed > 0.0 else 0.0
             apart = (velocity.item(edge) - velocity.item(edge + 1)) / 2.0
             aref[edge] += excess * apart
             aref[edge + 1] -= excess * apart
@@ -122,7 +122,7 @@ def _shared_resistance(slip: Pair, by_friction: Numbers, inverse_masses: Numbers
         inverse_masses: inverse masses along the tangents [1/kg].
         step: length of a step [s].
     """
-    wanted = [one / step / by for one, by in zip(slip, by_friction[:2], strict=True)]
+    wanted = [speed / step / by for speed, by in zip(slip, by_friction[:2], strict=True)]
     softer = int(wanted[1] > wanted[0])
     stiffer = 1 - softer
     least = max(slip[stiffer], _MIN_COMPLIANCE_SHARE * slip[softer])

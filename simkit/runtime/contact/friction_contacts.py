@@ -63,7 +63,7 @@ def find_friction_contacts(data: mujoco.MjData, concerns: Sequence[bool]) -> Any
         numbers = many.tolist()
         return FrictionContacts(numbers, contact.geom[rubs].tolist(), contact.frame[rubs].tolist()) if numbers else None
     pairs = contact.geom.tolist()
-    numbers = [number for number, (one, other) in enumerate(pairs) if concerns[one] or concerns[other]]
+    numbers = [number for number, (first, other) in enumerate(pairs) if concerns[first] or concerns[other]]
     if not numbers:
         return None
     rows, dims = contact.efc_address.tolist(), contact.dim.tolist()

@@ -73,19 +73,19 @@ class FrictionTangents:
         self._axes: Floats = np.array([row.axis for row in rows]).reshape(-1, 3)
         self._mus: Floats = np.array([row.mu for row in rows]).reshape(-1, 2)
 
-    def find(self, found: AnyFrictionContacts) -> RowContacts:
+    def find(self, contacts: AnyFrictionContacts) -> RowContacts:
         """Return the contacts that have a friction row."""
-        if isinstance(found, FrictionContacts):
-            return self._find(found)
-        first, second = self._rows_of[found.geoms].T
+        if isinstance(contacts, FrictionContacts):
+            return self._find(contacts)
+        first, second = self._rows_of[contacts.geoms].T
         places = ((first >= 0) | (second >= 0)).nonzero()[0]
         first, second = first[places], second[places]
-        other = found.geoms[places, np.where(first >= 0, 1, 0)]
+        other = contacts.geoms[places, np.where(first >= 0, 1, 0)]
         return np.stack((places, np.where(first >= 0, first, second), other), axis=1)
 
-    def _find(self, found: FrictionContacts) -> list[RowContact]:
+    def _find(self, contacts: FrictionContacts) -> list[RowContact]:
         row_of, places = self._row_of, []
-        for place, (first, second) in enumerate(found.geoms):
+        for place, (first, second) in enumerate(contacts.geoms):
             row = row_of[first]
             if row >= 0:
                 places.append((place, row, second))
@@ -93,26 +93,28 @@ class FrictionTangents:
                 places.append((place, row, first))
         return places
 
-    def turn(self, data: mujoco.MjData, found: AnyFrictionContacts, places: RowContacts, flow: BeltFlow | None) -> None:
-        """Rotate the tangents of contacts and set their coefficients; the frames in `found` are rotated as well.
+    def turn(
+        self, data: mujoco.MjData, contacts: AnyFrictionContacts, places: RowContacts, flow: BeltFlow | None
+    ) -> None:
+        """Rotate the tangents of contacts and set their coefficients; the frames in `contacts` are rotated as well.
 
         Args:
             data: MuJoCo's data with positions.
-            found: contacts.
+            contacts: contacts.
             places: contacts that have a friction row, from `find`.
             flow: contacts with moving surfaces.
         """
-        if isinstance(found, FrictionContacts) and isinstance(places, list):
-            self._turn(data, found, places, flow)
-        elif isinstance(found, FrictionContactArrays) and not isinstance(places, list):
-            self._turn_many(data, found, places, flow)
+        if isinstance(contacts, FrictionContacts) and isinstance(places, list):
+            self._turn(data, contacts, places, flow)
+        elif isinstance(contacts, FrictionContactArrays) and not isinstance(places, list):
+            self._turn_many(data, contacts, places, flow)
 
     def _turn(
-        self, data: mujoco.MjData, found: FrictionContacts, places: list[RowContact], flow: BeltFlow | None
+        self, data: mujoco.MjData, contacts: FrictionContacts, places: list[RowContact], flow: BeltFlow | None
     ) -> None:
-        """Rotate the tangents of contacts and set their coefficients; the frames in `found` are rotated as well."""
+        """Rotate the tangents of contacts and set their coefficients; the frames in `contacts` are rotated as well."""
         contact, ground, least = data.contact, self._model.geom_friction, mujoco.mjMINMU
-        which: Any = [found.numbers[place] for place, _, _ in places]
+        which: Any = [contacts.numbers[place] for place, _, _ in places]
         if len(which) == data.ncon:
             which = slice(None)  # a view is faster
         flows = contact.surfacevel[which].tolist() if self._model.flg_surfacevel else None
@@ -121,7 +123,7 @@ class FrictionTangents:
         turns: dict[int, Numbers] = {}
         frames, frictions = [], []
         for index, (place, row, other) in enumerate(places):
-            friction_row, frame = self._rows[row], found.frames[place]
+            friction_row, frame = self._rows[row], contacts.frames[place]
             axis: Sequence[float] | None = along.get(place) if self._is_belt[row] else None
             if axis is None:
                 turn = turns.get(friction_row.body)
@@ -131,34 +133,34 @@ class FrictionTangents:
             turned = _rotate_frame(frame, axis)
             # the present friction may be smaller: a model under velocity control slides freely
             most = ground.item(other, 0) if other >= 0 else math.inf
-            one, two = friction_row.mu
+            first, second = friction_row.mu
             if turned is frame:  # the direction is perpendicular to the surface: friction without a direction
-                one = two = min(one, two)
+                first = second = min(first, second)
             elif flows is not None:
                 _rotate_surface_velocity(flows[index], frame, turned)
-            found.frames[place] = turned
+            contacts.frames[place] = turned
             frames.append(turned)
-            frictions.append((one, two, most))
+            frictions.append((first, second, most))
         contact.frame[which] = frames
         present = contact.friction[which].tolist()
-        for each, (one, two, most) in zip(present, frictions, strict=True):
+        for each, (first, second, most) in zip(present, frictions, strict=True):
             most = min(each[0], each[1], most)
-            each[0], each[1] = max(min(one, most), least), max(min(two, most), least)
+            each[0], each[1] = max(min(first, most), least), max(min(second, most), least)
         contact.friction[which] = present
         if flows is not None:
             contact.surfacevel[which] = flows
 
     def _turn_many(
-        self, data: mujoco.MjData, found: FrictionContactArrays, contacts: Ints, flow: BeltFlow | None
+        self, data: mujoco.MjData, touching: FrictionContactArrays, contacts: Ints, flow: BeltFlow | None
     ) -> None:
         """Rotate the tangents of many contacts on arrays, with the same bits as `_turn`."""
         contact, least = data.contact, mujoco.mjMINMU
         places, rows, others = contacts.T
-        which: slice | Ints = slice(None) if len(places) == data.ncon else found.numbers[places]
-        frames = found.frames[places]
+        which: slice | Ints = slice(None) if len(places) == data.ncon else touching.numbers[places]
+        frames = touching.frames[places]
         axes = _rotate_vectors(data.xmat[self._bodies], self._axes)[rows]
         if flow is not None:
-            along: Floats = np.full((len(found.numbers), 3), math.nan)
+            along: Floats = np.full((len(touching.numbers), 3), math.nan)
             along[flow.places] = flow.directions
             along = along[places]
             runs = self._belts[rows] & ~np.isnan(along[:, 0])
@@ -169,7 +171,7 @@ class FrictionTangents:
         if self._model.flg_surfacevel:
             flows = contact.surfacevel[which]
             contact.surfacevel[which] = np.where(lies[:, None], rotate_surface_velocities(flows, frames, after), flows)
-        found.frames[places] = contact.frame[which] = after
+        touching.frames[places] = contact.frame[which] = after
         present = contact.friction[which, :2]
         most = np.where(others >= 0, self._model.geom_friction[others, 0], math.inf)
         most = np.minimum(most, np.minimum(present[:, 0], present[:, 1]))
@@ -195,8 +197,8 @@ def _rotate_frame(frame: Numbers, direction: Sequence[float]) -> Numbers:
 
 def _rotate_surface_velocity(flow: Numbers, before: Numbers, after: Numbers) -> None:
     """Convert a surface velocity from the tangents of one frame to those of another, in place."""
-    one, two = flow[:2]
-    over = [one * a + two * b for a, b in zip(before[3:6], before[6:], strict=True)]
+    along, across = flow[:2]
+    over = [along * a + across * b for a, b in zip(before[3:6], before[6:], strict=True)]
     flow[0] = float_sum(a * b for a, b in zip(over, after[3:6], strict=True))
     flow[1] = float_sum(a * b for a, b in zip(over, after[6:], strict=True))
 

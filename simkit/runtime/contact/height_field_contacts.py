@@ -43,7 +43,7 @@ class HeightFieldContacts:
         Args:
             data: MuJoCo's data with contacts.
         """
-        contact, fields, found = data.contact, self._fields, []
+        contact, fields, numbers = data.contact, self._fields, []
         for number, (first, second) in enumerate(contact.geom.tolist()):
             if first in fields or second in fields:
                 field, sign = (first, 1.0) if first in fields else (second, -1.0)
@@ -51,8 +51,8 @@ class HeightFieldContacts:
                 point = matmul(contact.pos[number] - data.geom_xpos[field], turn)
                 normal = matmul(sign * contact.frame[number, :3], turn)
                 if self._is_inner(fields[field], point, normal):
-                    found.append(number)
-        return frozenset(found)
+                    numbers.append(number)
+        return frozenset(numbers)
 
     def _is_inner(self, field: int, point: npt.NDArray[np.float64], normal: npt.NDArray[np.float64]) -> bool:
         """Check whether a normal differs from those of the surrounding, nearly even ground.

@@ -43,12 +43,12 @@ class LinePair(NamedTuple):
     """Pair of geoms whose contacts may lie on a line.
 
     Attributes:
-        one, other: places of the two geoms in the list of all such geoms.
+        first, other: places of the two geoms in the list of all such geoms.
         box: geom id of the second geom if it is a box, else -1.
         numbers: numbers of their contacts.
     """
 
-    one: int
+    first: int
     other: int
     box: int
     numbers: list[int]
@@ -100,10 +100,10 @@ class LineContacts:
         pairs, ids = self._pairs(data)
         if not pairs:
             return False
-        found = self._exact_contacts(data, pairs, ids)
-        if not found:
+        exact = self._exact_contacts(data, pairs, ids)
+        if not exact:
             return False
-        if _replace(self._model, data, found):
+        if _replace(self._model, data, exact):
             mujoco.mj_makeConstraint(self._model, data)
             if self._has_islands:
                 mujoco.mj_island(self._model, data)
@@ -121,9 +121,9 @@ class LineContacts:
         if not self._has_edges:
             return False
         pairs, ids = self._pairs(data)
-        for one, _, box, _ in pairs:
+        for first, _, box, _ in pairs:
             if box >= 0:
-                cylinder = int(ids[one])
+                cylinder = int(ids[first])
                 speed = self._speed(data, cylinder) + self._speed(data, box)
                 if speed > _SLOW:
                     turn: Matrix = data.geom_xmat[cylinder].tolist()
@@ -160,24 +160,24 @@ class LineContacts:
             geoms: both geoms of each contact.
         """
         kind, tree, groups = self._kind, self._tree, dict[tuple[int, int], list[int]]()
-        for number, (one, other) in enumerate(geoms):
-            first, second = kind[one], kind[other]
-            if tree[one] == tree[other]:
+        for number, (this, other) in enumerate(geoms):
+            first, second = kind[this], kind[other]
+            if tree[this] == tree[other]:
                 continue
             is_rod = second in (_CYLINDER, _CAPSULE) and first in (_CYLINDER, _CAPSULE)
             if is_rod or (first == _CYLINDER and second == _BOX):
-                groups.setdefault((one, other), []).append(number)
+                groups.setdefault((this, other), []).append(number)
         ids = sorted({geom for pair in groups for geom in pair})
         place = {geom: number for number, geom in enumerate(ids)}
         return [
-            LinePair(place[one], place[other], other if kind[other] == _BOX else -1, numbers)
-            for (one, other), numbers in groups.items()
+            LinePair(place[this], place[other], other if kind[other] == _BOX else -1, numbers)
+            for (this, other), numbers in groups.items()
         ], np.array(ids, np.intp)
 
     def _exact_contacts(self, data: mujoco.MjData, pairs: list[LinePair], ids: Ints) -> list[ExactContacts]:
         """Return the exact contacts of each pair that touches along a line."""
         turns: list[Matrix] = data.geom_xmat.take(ids, 0).tolist()  # half the time of an index
-        if not any(box >= 0 or _are_parallel(turns[one], turns[other]) for one, other, box, _ in pairs):
+        if not any(box >= 0 or _are_parallel(turns[first], turns[other]) for first, other, box, _ in pairs):
             return []
         centres: list[Vector] = data.geom_xpos.take(ids, 0).tolist()
         rods = [
@@ -185,20 +185,20 @@ class LineContacts:
             for centre, turn, shape in zip(centres, turns, [self._shapes[geom] for geom in ids.tolist()], strict=True)
         ]
         margins: list[float] = data.contact.includemargin.tolist() if self._has_margins else []
-        found = []
-        for one, other, box, numbers in pairs:
+        contacts = []
+        for first, other, box, numbers in pairs:
             if box >= 0:
-                exact = self._edge(data, rods[one], self._size[box], centres[other], turns[other], numbers)
-            elif len(numbers) == 2 and rods[one].has_balls and rods[other].has_balls:
+                exact = self._edge(data, rods[first], self._size[box], centres[other], turns[other], numbers)
+            elif len(numbers) == 2 and rods[first].has_balls and rods[other].has_balls:
                 continue  # the engine reports both ends of capsules that are parallel up to rounding
             else:
-                exact = rod_contacts(rods[one], rods[other])
+                exact = rod_contacts(rods[first], rods[other])
             if exact:
                 margin = margins[numbers[0]] if margins else 0.0
                 touching = [point for point in exact if point[0] < margin]
                 if touching:  # otherwise the engine's contacts stop bodies before they touch
-                    found.append((numbers, touching))
-        return found
+                    contacts.append((numbers, touching))
+        return contacts
 
     def _edge(
         self, data: mujoco.MjData, rod: Rod, sizes: list[float], centre: Vector, turn: Matrix, numbers: list[int]
@@ -230,14 +230,14 @@ class LineContacts:
         return result
 
 
-def _are_parallel(one: Matrix, other: Matrix) -> bool:
+def _are_parallel(first: Matrix, other: Matrix) -> bool:
     """Check whether the axes of two rods are nearly parallel."""
-    return not -PARALLEL < one[2] * other[2] + one[5] * other[5] + one[8] * other[8] < PARALLEL
+    return not -PARALLEL < first[2] * other[2] + first[5] * other[5] + first[8] * other[8] < PARALLEL
 
 
 def _differ(some: set[int], others: set[int]) -> bool:
     """Check whether two different trees can be chosen, one from each set."""
-    return any(one != other for one in some for other in others)
+    return any(contact != other for contact in some for other in others)
 
 
 def _in_frame(rod: Rod, centre: Vector, turn: Matrix) -> Rod:
@@ -259,7 +259,7 @@ def _turned_back(turn: Matrix, vector: Vector) -> Vector:
     return a * x + d * y + g * z, b * x + e * y + h * z, c * x + f * y + i * z
 
 
-def _replace(model: mujoco.MjModel, data: mujoco.MjData, found: list[ExactContacts]) -> bool:
+def _replace(model: mujoco.MjModel, data: mujoco.MjData, exact_contacts: list[ExactContacts]) -> bool:
     """Write exact contacts over the engine's contacts; return False if they were already there."""
     contact: Any = data.contact
     distances: list[float] = contact.dist.tolist()
@@ -268,17 +268,17 @@ def _replace(model: mujoco.MjModel, data: mujoco.MjData, found: list[ExactContac
     values: list[LineContact] = []
     surplus: list[int] = []
     is_new = False
-    for numbers, exact in found:
-        for number, one in zip(numbers, exact, strict=False):
+    for numbers, exact in exact_contacts:
+        for number, geometry in zip(numbers, exact, strict=False):
             places.append(number)
-            values.append(one)
-            is_new = is_new or distances[number] != one[0]
-        for one in exact[len(numbers) :]:
+            values.append(geometry)
+            is_new = is_new or distances[number] != geometry[0]
+        for geometry in exact[len(numbers) :]:
             is_new = True  # the call deletes the constraints, also if the engine's memory is full
             if not mujoco.mj_addContact(model, data, contact[numbers[0]]):
                 places.append(len(distances))
-                values.append(one)
-                distances.append(one[0])
+                values.append(geometry)
+                distances.append(geometry[0])
         for number in numbers[len(exact) :]:
             surplus.append(number)
             is_new = is_new or not excluded[number]
@@ -287,9 +287,9 @@ def _replace(model: mujoco.MjModel, data: mujoco.MjData, found: list[ExactContac
     contact = data.contact
     if surplus:
         contact.exclude[surplus], contact.efc_address[surplus] = 1, -1
-    contact.dist[places] = [one[0] for one in values]
-    contact.pos[places] = [one[1] for one in values]
-    contact.frame[places] = [one[2] for one in values]
+    contact.dist[places] = [geometry[0] for geometry in values]
+    contact.pos[places] = [geometry[1] for geometry in values]
+    contact.frame[places] = [geometry[2] for geometry in values]
     if any(excluded):
         contact.exclude[places] = 0
     return True

@@ -68,14 +68,14 @@ LineContact = tuple[float, Vector, Frame]
 """
 
 
-def rod_contacts(one: Rod, other: Rod) -> list[LineContact] | None:
+def rod_contacts(rod: Rod, other: Rod) -> list[LineContact] | None:
     """Return the contacts of two rods with nearly parallel axes; None if the axes or the common length differ too much.
 
     Args:
-        one: first rod.
+        rod: first rod.
         other: second rod.
     """
-    (p, q, r), (a, b, c), radius, half, _ = one
+    (p, q, r), (a, b, c), radius, half, _ = rod
     (u, v, w), (d, e, f), other_radius, other_half, _ = other
     cosine = a * d + b * e + c * f
     if -PARALLEL < cosine < PARALLEL:
@@ -85,32 +85,32 @@ def rod_contacts(one: Rod, other: Rod) -> list[LineContact] | None:
     low, high = max(-half, middle - span), min(half, middle + span)
     if high - low < _MIN_LENGTH * (radius + other_radius):
         return None
-    found: list[LineContact] = []
+    contacts: list[LineContact] = []
     for sign in (-1.0, 1.0):
         if half <= span + sign * middle:  # the first rod ends here
             t = sign * half
-            found.append(_end_contact((p + t * a, q + t * b, r + t * c), one, other, 1.0))
+            contacts.append(_end_contact((p + t * a, q + t * b, r + t * c), rod, other, 1.0))
         else:
             t = sign * other_half if cosine > 0.0 else -sign * other_half
-            found.append(_end_contact((u + t * d, v + t * e, w + t * f), other, one, -1.0))
-    least, square = min(found[0][0], found[1][0]), 1.0 - cosine * cosine
+            contacts.append(_end_contact((u + t * d, v + t * e, w + t * f), other, rod, -1.0))
+    least, square = min(contacts[0][0], contacts[1][0]), 1.0 - cosine * cosine
     if square > _SQUARE_OF_CROSSING:
         along, across = middle, x * d + y * e + z * f
         t, s = (along - cosine * across) / square, (cosine * along - across) / square
         if low < t < high and -other_half < s < other_half:
-            crossing = _end_contact((p + t * a, q + t * b, r + t * c), one, other, 1.0)
+            crossing = _end_contact((p + t * a, q + t * b, r + t * c), rod, other, 1.0)
             if crossing[0] < least - _CROSSING:
-                found.append(crossing)
+                contacts.append(crossing)
                 least = crossing[0]
-    return found if -least < min(high - low, _MOST_OVERLAP * (radius + other_radius)) else None
+    return contacts if -least < min(high - low, _MOST_OVERLAP * (radius + other_radius)) else None
 
 
-def _end_contact(end: Vector, one: Rod, other: Rod, sign: float) -> LineContact:
+def _end_contact(end: Vector, rod: Rod, other: Rod, sign: float) -> LineContact:
     """Return the contact between the rim around a point of a rod's axis and the side of another rod.
 
     Args:
         end: point on the axis.
-        one: rod of the point.
+        rod: rod of the point.
         other: rod whose side is touched.
         sign: -1 to reverse the normal.
     """
@@ -121,7 +121,7 @@ def _end_contact(end: Vector, one: Rod, other: Rod, sign: float) -> LineContact:
     x, y, z = u - p, v - q, w - r
     size = max(math.sqrt(x * x + y * y + z * z), 1e-12)
     x, y, z = x / size, y / size, z / size
-    _, (a, b, c), radius, _, has_balls = one
+    _, (a, b, c), radius, _, has_balls = rod
     if not has_balls:
         tilt = a * x + b * y + c * z
         radius *= math.sqrt(max(0.0, 1.0 - tilt * tilt))
@@ -182,9 +182,9 @@ def oblique_edge_contact(
         candidates.append((k, (centre[0] + t * axis[0], centre[1] + t * axis[1], centre[2] + t * axis[2])))
     candidates.append((max((sizes[n] - abs(place[n]), n) for n in range(3))[1], place))
     for k, near in candidates:
-        found = _edge_contact(rod, sizes, k, near)
-        if found is not None:
-            return None if all(_product(normal, found[2]) > _WRONG_NORMAL for normal in normals) else (k, found)
+        contact = _edge_contact(rod, sizes, k, near)
+        if contact is not None:
+            return None if all(_product(normal, contact[2]) > _WRONG_NORMAL for normal in normals) else (k, contact)
     return None
 
 
@@ -199,18 +199,18 @@ def _edge_contact(rod: Rod, sizes: Sequence[float], k: int, place: Vector) -> Ed
     """
     centre, axis, radius, half, _ = rod
     i, j = (k + 1) % 3, (k + 2) % 3
-    one, other = math.copysign(1.0, place[i]), math.copysign(1.0, place[j])
-    t = max(-half, min(half, _nearest(rod, k, one * sizes[i], other * sizes[j])))
-    x, y = one * (centre[i] + t * axis[i]) - sizes[i], other * (centre[j] + t * axis[j]) - sizes[j]
-    a, b = one * axis[i], other * axis[j]
+    side, other = math.copysign(1.0, place[i]), math.copysign(1.0, place[j])
+    t = max(-half, min(half, _nearest(rod, k, side * sizes[i], other * sizes[j])))
+    x, y = side * (centre[i] + t * axis[i]) - sizes[i], other * (centre[j] + t * axis[j]) - sizes[j]
+    a, b = side * axis[i], other * axis[j]
     if x <= 0.0 or y <= 0.0:
         return None
     x, y, distance = _farthest_direction(x, y, a, b, radius)
     tilt = x * a + y * b
     along = centre[k] + t * axis[k] + radius * tilt / math.sqrt(1.0 - tilt * tilt) * axis[k]
     outwards, corner = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
-    outwards[i], outwards[j] = one * x, other * y
-    corner[i], corner[j], corner[k] = one * sizes[i], other * sizes[j], max(-sizes[k], min(sizes[k], along))
+    outwards[i], outwards[j] = side * x, other * y
+    corner[i], corner[j], corner[k] = side * sizes[i], other * sizes[j], max(-sizes[k], min(sizes[k], along))
     if corner[k] != along:  # beyond the end of the edge
         t = _product((corner[0] - centre[0], corner[1] - centre[1], corner[2] - centre[2]), axis)
         outwards = [centre[n] + t * axis[n] - corner[n] for n in range(3)]
@@ -218,7 +218,7 @@ def _edge_contact(rod: Rod, sizes: Sequence[float], k: int, place: Vector) -> Ed
         if not -half < t < half or size <= 0.0:
             return None
         outwards, distance = [value / size for value in outwards], size - radius
-    if outwards[i] * one <= 0.0 or outwards[j] * other <= 0.0 or -distance > _MOST_OVERLAP * radius:
+    if outwards[i] * side <= 0.0 or outwards[j] * other <= 0.0 or -distance > _MOST_OVERLAP * radius:
         return None
     normal = (-outwards[0], -outwards[1], -outwards[2])
     reach = distance / 2.0  # half way between the edge and the deepest point of the cylinder
@@ -256,9 +256,9 @@ def _farthest_direction(x: float, y: float, a: float, b: float, radius: float) -
     return u, v, u * x + v * y - radius * math.sqrt(1.0 - tilt * tilt)
 
 
-def _product(one: Vector, other: Vector) -> float:
+def _product(first: Vector, other: Vector) -> float:
     """Return the scalar product of two vectors."""
-    return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
+    return first[0] * other[0] + first[1] * other[1] + first[2] * other[2]
 
 
 def _nearest(rod: Rod, k: int, x: float, y: float) -> float:
@@ -286,8 +286,8 @@ def common_length(rod: Rod, size: float, k: int) -> tuple[float, float]:
         size: half the length of the box.
         k: number of the coordinate, along which the axis points.
     """
-    one, other = (-size - rod.centre[k]) / rod.axis[k], (size - rod.centre[k]) / rod.axis[k]
-    return max(-rod.half, min(one, other)), min(rod.half, max(one, other))
+    enter, other = (-size - rod.centre[k]) / rod.axis[k], (size - rod.centre[k]) / rod.axis[k]
+    return max(-rod.half, min(enter, other)), min(rod.half, max(enter, other))
 
 
 def parallel_edge_contacts(rod: Rod, sizes: Sequence[float], k: int) -> list[EdgeContact] | None:
@@ -312,20 +312,20 @@ def parallel_edge_contacts(rod: Rod, sizes: Sequence[float], k: int) -> list[Edg
     is_low, is_high = abs(x) > sizes[i] and abs(y) > sizes[j], abs(u) > sizes[i] and abs(v) > sizes[j]
     if not (is_low or is_high) or x * u < 0.0 or y * v < 0.0:
         return None
-    found: list[EdgeContact] = []
+    contacts: list[EdgeContact] = []
     for t, is_rim in ((low, low == -half), (high, high == half)):
-        one = _point_contact(rod, sizes, k, t, is_rim)
-        if one is None:
+        contact = _point_contact(rod, sizes, k, t, is_rim)
+        if contact is None:
             return None
-        found.append(one)
-    least = min(found[0][0], found[1][0])
+        contacts.append(contact)
+    least = min(contacts[0][0], contacts[1][0])
     t = _nearest(rod, k, math.copysign(sizes[i], x), math.copysign(sizes[j], y))
     if low < t < high:
-        one = _point_contact(rod, sizes, k, t, True)
-        if one is not None and one[0] < least - _CROSSING:
-            found.append(one)
-            least = one[0]
-    return found if -least < min(high - low, _MOST_OVERLAP * radius) else None
+        contact = _point_contact(rod, sizes, k, t, True)
+        if contact is not None and contact[0] < least - _CROSSING:
+            contacts.append(contact)
+            least = contact[0]
+    return contacts if -least < min(high - low, _MOST_OVERLAP * radius) else None
 
 
 def _point_contact(rod: Rod, sizes: Sequence[float], k: int, t: float, is_rim: bool) -> EdgeContact | None:

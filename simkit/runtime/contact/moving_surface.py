@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -132,55 +132,57 @@ class MovingSurfaces:
 
     # ------------------------------------------------------------------ contacts
 
-    def look(self, data: mujoco.MjData, found: AnyFrictionContacts | None, runs: BeltMotions) -> BeltFlow | None:
+    def look(self, data: mujoco.MjData, contacts: AnyFrictionContacts | None, runs: BeltMotions) -> BeltFlow | None:
         """Find the contacts with moving belts and store them for `carry`.
 
         Args:
             data: MuJoCo's data with positions.
-            found: contacts that may be with belts.
+            contacts: contacts that may be with belts.
             runs: motions of the belts.
         """
-        if found is None or not any(runs):
+        if contacts is None or not any(runs):
             self._flow = None
-        elif isinstance(found, FrictionContacts):
-            self._flow = self._find(data, found, runs)
+        elif isinstance(contacts, FrictionContacts):
+            self._flow = self._find(data, contacts, runs)
         else:
-            self._flow = self._find_many(data, found, runs)
+            self._flow = self._find_many(data, contacts, runs)
         return self._flow
 
     def _find_many(
-        self, data: mujoco.MjData, found: FrictionContactArrays, runs: BeltMotions
+        self, data: mujoco.MjData, contacts: FrictionContactArrays, runs: BeltMotions
     ) -> BeltContactArrays | None:
         axles = [
             ZERO_VECTOR if run is None else _world_axle(data, belt) for belt, run in zip(self._belts, runs, strict=True)
         ]
-        points = data.contact.pos[found.numbers]
+        points = data.contact.pos[contacts.numbers]
         places, directions, velocities = find_belt_contacts(
-            self._owners[found.geoms], found.frames, points, runs, axles
+            self._owners[contacts.geoms], contacts.frames, points, runs, axles
         )
-        return BeltContactArrays(found.numbers[places], places, directions, velocities) if places.size else None
+        return BeltContactArrays(contacts.numbers[places], places, directions, velocities) if places.size else None
 
-    def _find(self, data: mujoco.MjData, found: FrictionContacts, runs: BeltMotions) -> BeltContacts | None:
+    def _find(self, data: mujoco.MjData, contacts: FrictionContacts, runs: BeltMotions) -> BeltContacts | None:
         owner, flow = self._owner, BeltContacts([], [], [], [])
         axles: dict[int, Point] = {}
-        known: dict[Any, tuple[Point, Point]] = {}  # all contacts of a flat object on a straight belt have one normal
-        for place, (first, second) in enumerate(found.geoms):
-            one, other = owner[first], owner[second]
+        known: dict[
+            tuple[int, int, float, float, float], tuple[Point, Point]
+        ] = {}  # all contacts of a flat object on a straight belt have one normal
+        for place, (first, second) in enumerate(contacts.geoms):
+            this, other = owner[first], owner[second]
             into = runs[other] if other >= 0 else None
-            out = runs[one] if one >= 0 else None
+            out = runs[this] if this >= 0 else None
             if into is None and out is None:
                 continue
-            nx, ny, nz = found.frames[place][:3]
-            key = one, other, nx, ny, nz
+            nx, ny, nz = contacts.frames[place][:3]
+            key = this, other, nx, ny, nz
             both = known.get(key)
             if both is None:
-                belts = [(b, r, sign) for b, r, sign in ((other, into, 1.0), (one, out, -1.0)) if r is not None]
+                belts = [(b, r, sign) for b, r, sign in ((other, into, 1.0), (this, out, -1.0)) if r is not None]
                 is_bent = any(run.centre is not None for _, run, _ in belts)
-                point = data.contact.pos[found.numbers[place]].tolist() if is_bent else ZERO_VECTOR
+                point = data.contact.pos[contacts.numbers[place]].tolist() if is_bent else ZERO_VECTOR
                 both = self._motion(data, belts, (nx, ny, nz), point, axles)
                 if not is_bent:
                     known[key] = both
-            flow.numbers.append(found.numbers[place])
+            flow.numbers.append(contacts.numbers[place])
             flow.places.append(place)
             flow.directions.append(both[0])
             flow.velocities.append(both[1])
@@ -336,8 +338,8 @@ def cross(a: Floats, b: Floats) -> Floats:
 def dot(a: Floats, b: Floats) -> Floats:
     """Return the scalar products (k,)."""
     (ax, ay, az), (bx, by, bz) = a.T, b.T
-    found: Floats = ax * bx + ay * by + az * bz
-    return found
+    products: Floats = ax * bx + ay * by + az * bz
+    return products
 
 
 def unit(vectors: Floats) -> Floats:
@@ -364,8 +366,8 @@ def rotate_frames(frames: Floats, wanted: Floats, upright: float) -> tuple[Float
     square = dot(flat, flat)
     lies: Bools = square > upright * dot(wanted, wanted)
     first = flat / np.where(lies, np.sqrt(square), 1.0)[:, None]
-    found: Floats = np.hstack((normal, first, cross(normal, first)))
-    return np.where(lies[:, None], found, frames), lies
+    turned: Floats = np.hstack((normal, first, cross(normal, first)))
+    return np.where(lies[:, None], turned, frames), lies
 
 
 def rotate_surface_velocities(flows: Floats, before: Floats, after: Floats) -> Floats:

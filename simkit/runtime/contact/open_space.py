@@ -115,7 +115,9 @@ class OpenSpace:
                 return False
             spheres.append((x, y, z, reach))
         return all(
-            math.dist(one[:3], other[:3]) > one[3] + other[3] for k, one in enumerate(spheres) for other in spheres[:k]
+            math.dist(sphere[:3], other[:3]) > sphere[3] + other[3]
+            for k, sphere in enumerate(spheres)
+            for other in spheres[:k]
         )
 
     def is_pushed(self, data: mujoco.MjData) -> bool:
@@ -125,8 +127,8 @@ class OpenSpace:
             data: MuJoCo's data with accelerations up to date.
         """
         most, accelerations = _GROWTH * _LEAST_SPEED / self._duration, data.qacc
-        found = (accelerations[ball.motion : ball.motion + 3] for ball in self._balls if ball is not None)
-        return any(math.hypot(*own.tolist()) > most for own in found)
+        motions = (accelerations[ball.motion : ball.motion + 3] for ball in self._balls if ball is not None)
+        return any(math.hypot(*acceleration.tolist()) > most for acceleration in motions)
 
     def _is_outside(self, x: float, y: float, z: float, reach: float) -> bool:
         """Check whether a sphere touches neither a plane nor the box around the static geoms; False for NaN."""

@@ -88,8 +88,8 @@ class RigidRotation:
         is_aligned, (a, b, c) = self._is_aligned, self._moments
         x, y, z = spin if is_aligned else self._in_principal_axes(spin)
         u, v, w = acceleration if is_aligned else self._in_principal_axes(acceleration)
-        found = (c - b) / a * (y * w + z * v), (a - c) / b * (z * u + x * w), (b - a) / c * (x * v + y * u)
-        return found if is_aligned else self._in_body_axes(found)
+        rate = (c - b) / a * (y * w + z * v), (a - c) / b * (z * u + x * w), (b - a) / c * (x * v + y * u)
+        return rate if is_aligned else self._in_body_axes(rate)
 
     def moved(self, position: Numbers, velocity: Numbers, step: float) -> tuple[list[float], list[float]]:
         """Return coordinates and velocities after a step [s] without forces, shapes (7,) and (6,)."""
@@ -112,7 +112,7 @@ class RigidRotation:
         momentum, share = [a * x, b * y, c * z], step / self._middle
         w, x, y, z = quaternion if is_aligned else _multiplied(quaternion, self._frame)
         # all three moments equal to the middle one: a rotation about the angular momentum
-        w, *vector = _multiplied((w, x, y, z), _rotation([share * one for one in momentum]))
+        w, *vector = _multiplied((w, x, y, z), _rotation([share * component for component in momentum]))
         for rate, axis in self._turns:  # what the other moments change: rotations about principal axes
             angle, (j, k) = rate * step * momentum[axis], _NEXT_AXES[axis]
             cosine, sine = math.cos(angle), math.sin(angle)
@@ -139,12 +139,12 @@ class RigidRotation:
         return [a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z]
 
 
-def _added(one: Numbers, other: Numbers, factor: float) -> list[float]:
-    return [one[0] + factor * other[0], one[1] + factor * other[1], one[2] + factor * other[2]]
+def _added(first: Numbers, other: Numbers, factor: float) -> list[float]:
+    return [first[0] + factor * other[0], first[1] + factor * other[1], first[2] + factor * other[2]]
 
 
-def _cross(one: Numbers, other: Numbers) -> list[float]:
-    (a, b, c), (x, y, z) = one, other
+def _cross(first: Numbers, other: Numbers) -> list[float]:
+    (a, b, c), (x, y, z) = first, other
     return [b * z - c * y, c * x - a * z, a * y - b * x]
 
 
@@ -155,9 +155,9 @@ def _rotated(quaternion: Numbers, vector: Numbers) -> list[float]:
     return _added(vector, _added(_cross(axis, (u, v, x)), (u, v, x), w), 2.0)
 
 
-def _multiplied(one: Numbers, other: Numbers) -> list[float]:
+def _multiplied(first: Numbers, other: Numbers) -> list[float]:
     """Return the product of two quaternions."""
-    (a, b, c, d), (w, x, y, z) = one, other
+    (a, b, c, d), (w, x, y, z) = first, other
     return [
         a * w - b * x - c * y - d * z,
         a * x + b * w + c * z - d * y,

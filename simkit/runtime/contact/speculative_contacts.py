@@ -73,23 +73,24 @@ class FastApproach(NamedTuple):
     is_height_field: bool
 
 
+ApproachCallback = Callable[[list[FastApproach]], None]
+
+
 class FastBodyDetector:
     """Detector of bodies that are too fast for the step, in one compiled model.
 
     Args:
         model: `MjModel`; masks, sizes and the step are read once.
+        on_approach: function that receives the approaches that speculative contacts cannot stop; it changes no state.
 
     Attributes:
         closing: remaining approach speed [m/s] of each geom after it is stopped; the last item is for no geom. A body
             that is stopped before a wall thus still reaches it.
         can_be_fast: False if no body can ever need speculative contacts.
-        on_approach: function that receives the approaches that speculative contacts cannot stop; it may change no
-            state.
     """
 
-    def __init__(self, model: mujoco.MjModel) -> None:
-        self.model = model
-        self.on_approach: Callable[[list[FastApproach]], None] | None = None
+    def __init__(self, model: mujoco.MjModel, on_approach: ApproachCallback | None = None) -> None:
+        self.model, self._on_approach = model, on_approach
         step = float(model.opt.timestep)
         self._window = window_length(step)
         # time for which a body still moves into a soft contact; twice as long for a bouncing one
@@ -167,23 +168,23 @@ class FastBodyDetector:
             return True
         all_speeds, all_linear = np.zeros(model.ngeom), np.zeros((model.ngeom, 3))
         all_speeds[moving], all_linear[moving] = speeds, linear
-        one, other = self._find_reachable_pairs(scratch.geom_xpos, fast, all_speeds)
-        if not len(one):
+        this, other = self._find_reachable_pairs(scratch.geom_xpos, fast, all_speeds)
+        if not len(this):
             return False
-        half, both = self._half, all_speeds[one] + all_speeds[other]
-        keep = (both * self._time > half[one] + half[other]) & (model.geom_bodyid[one] != model.geom_bodyid[other])
-        one, other, both = one[keep], other[keep], both[keep]
+        half, both = self._half, all_speeds[this] + all_speeds[other]
+        keep = (both * self._time > half[this] + half[other]) & (model.geom_bodyid[this] != model.geom_bodyid[other])
+        this, other, both = this[keep], other[keep], both[keep]
         bodies = model.geom_bodyid
         body_pairs = travel_bounds.BodyPairs(model)
         cleared = {
             pair: body_pairs.is_filtered(*pair)
-            for pair in set(zip(bodies[one].tolist(), bodies[other].tolist(), strict=True))
+            for pair in set(zip(bodies[this].tolist(), bodies[other].tolist(), strict=True))
         }
-        keep = np.array([not cleared[int(bodies[a]), int(bodies[b])] for a, b in zip(one, other, strict=True)], bool)
+        keep = np.array([not cleared[int(bodies[a]), int(bodies[b])] for a, b in zip(this, other, strict=True)], bool)
         if not keep.any():
             return False
-        if self.on_approach is not None:
-            self._report_unstoppable(scratch, one[keep], other[keep], both[keep], all_linear)
+        if self._on_approach is not None:
+            self._report_unstoppable(scratch, this[keep], other[keep], both[keep], all_linear)
         return True
 
     def _positions(self, data: mujoco.MjData) -> mujoco.MjData:
@@ -237,12 +238,12 @@ class FastBodyDetector:
         rows, columns = np.nonzero(
             (distance <= reach + radius[None, others]) & travel_bounds.can_touch(model, fast[:, None], others[None])
         )
-        one, other = fast[rows], others[columns]
-        local = self._to_box_frames(places[one], other)
+        this, other = fast[rows], others[columns]
+        local = self._to_box_frames(places[this], other)
         with np.errstate(over="ignore"):  # a geom that far away is not within reach
             gap = np.linalg.norm(np.maximum(np.abs(local) - model.geom_aabb[other, 3:], 0.0), axis=1)
-        keep = (gap <= reach[rows, columns]) & (one != other)
-        return one[keep], other[keep]
+        keep = (gap <= reach[rows, columns]) & (this != other)
+        return this[keep], other[keep]
 
     def _to_box_frames(self, points: Floats, geoms: Ints) -> Floats:
         """Transform world points to the frames of the bounding boxes of geoms."""
@@ -254,38 +255,40 @@ class FastBodyDetector:
 
     # ------------------------------------------------------------------ unstoppable approaches
 
-    def _report_unstoppable(self, scratch: mujoco.MjData, one: Ints, other: Ints, both: Floats, linear: Floats) -> None:
+    def _report_unstoppable(
+        self, scratch: mujoco.MjData, this: Ints, other: Ints, both: Floats, linear: Floats
+    ) -> None:
         """Report approaching pairs that speculative contacts do not reliably stop."""
         model, step, half = self.model, float(self.model.opt.timestep), self._half
-        together = half[one] + half[other]
+        together = half[this] + half[other]
         is_field = model.geom_type[other] == _HFIELD
         most = 1.0 if model.opt.integrator == _RK4 else _MAX_TILTED_TRAVEL
-        is_tilted = ~self._is_ball[one] & (both * step > most * together)
-        chosen = np.flatnonzero((is_field | is_tilted) & self._is_on_course(scratch, one, other, linear))
-        found = []
+        is_tilted = ~self._is_ball[this] & (both * step > most * together)
+        chosen = np.flatnonzero((is_field | is_tilted) & self._is_on_course(scratch, this, other, linear))
+        approaches = []
         for i in chosen.tolist():
             speed, field = float(both[i]), bool(is_field[i])
-            thick = 2.0 * float(min(half[one[i]], half[other[i]]))
+            thick = 2.0 * float(min(half[this[i]], half[other[i]]))
             enough = float(together[i]) / speed * (1.0 / _GROWTH if field else most)
-            found.append(FastApproach(int(one[i]), int(other[i]), speed, thick, enough, field))
-        if found and self.on_approach is not None:
-            self.on_approach(found)
+            approaches.append(FastApproach(int(this[i]), int(other[i]), speed, thick, enough, field))
+        if approaches and self._on_approach is not None:
+            self._on_approach(approaches)
 
-    def _is_on_course(self, scratch: mujoco.MjData, one: Ints, other: Ints, linear: Floats) -> npt.NDArray[np.bool_]:
-        """Check for each pair whether the bounding sphere of geom `one` meets the bounding box of geom `other`.
+    def _is_on_course(self, scratch: mujoco.MjData, this: Ints, other: Ints, linear: Floats) -> npt.NDArray[np.bool_]:
+        """Check for each pair whether the bounding sphere of geom `this` meets the bounding box of geom `other`.
 
         The check assumes straight motion within a time window of `window_length` steps.
         """
         model = self.model
-        start = self._to_box_frames(scratch.geom_xpos[one], other)
+        start = self._to_box_frames(scratch.geom_xpos[this], other)
         turned = scratch.geom_xmat[other].reshape(-1, 3, 3)
-        way = np.einsum("nji,nj->ni", turned, linear[one] - linear[other]) * (self._window * model.opt.timestep)
-        box = model.geom_aabb[other, 3:] + model.geom_rbound[one][:, None]
+        way = np.einsum("nji,nj->ni", turned, linear[this] - linear[other]) * (self._window * model.opt.timestep)
+        box = model.geom_aabb[other, 3:] + model.geom_rbound[this][:, None]
         way = np.where(np.abs(way) < 1e-12, 1e-12, way)
         ends = np.stack([(-box - start) / way, (box - start) / way])
         enters, leaves = ends.min(axis=0).max(axis=1), ends.max(axis=0).min(axis=1)
-        found: npt.NDArray[np.bool_] = (enters <= leaves) & (leaves >= 0.0) & (enters <= 1.0)
-        return found
+        hits: npt.NDArray[np.bool_] = (enters <= leaves) & (leaves >= 0.0) & (enters <= 1.0)
+        return hits
 
 
 class FastBodyWarnings:
@@ -294,35 +297,32 @@ class FastBodyWarnings:
     Args:
         reports: collection for the warnings.
         timestep: length of a step [s].
-
-    Attributes:
-        names: name map of the present compiled model.
+        names: function that returns the name map of the present compiled model.
     """
 
-    def __init__(self, reports: Diagnostics, timestep: float) -> None:
-        self._reports, self._timestep = reports, timestep
+    def __init__(self, reports: Diagnostics, timestep: float, names: Callable[[], NameMap]) -> None:
+        self._reports, self._timestep, self._names = reports, timestep, names
         self._reported: set[frozenset[str]] = set()
-        self.names: NameMap
 
     def __call__(self, approaches: list[FastApproach]) -> None:
         """Warn of new pairs."""
-        names, timestep = self.names, self._timestep
-        for found in approaches:
-            link, one, _ = names.geom_owner(found.geom)
-            _, other, _ = names.geom_owner(found.other)
-            one, other = one or "a geom", other or "a geom"
-            pair = frozenset((one, other))
+        names, timestep = self._names(), self._timestep
+        for approach in approaches:
+            link, mover, _ = names.geom_owner(approach.geom)
+            _, other, _ = names.geom_owner(approach.other)
+            mover, other = mover or "a geom", other or "a geom"
+            pair = frozenset((mover, other))
             if pair in self._reported:
                 continue
             self._reported.add(pair)
-            obstacle = f"the height map {other}" if found.is_height_field else other
-            travel = found.speed * timestep
+            obstacle = f"the height map {other}" if approach.is_height_field else other
+            travel = approach.speed * timestep
             message = (
-                f"{one} may pass through {obstacle}: it approaches at {found.speed:.3g} m/s, {travel:.3g} m in a step "
-                f"of {timestep:g} s, and the thinner of the two is {found.thickness:.3g} m thick"
+                f"{mover} may pass through {obstacle}: it approaches at {approach.speed:.3g} m/s, {travel:.3g} m in a "
+                f"step of {timestep:g} s, and the thinner of the two is {approach.thickness:.3g} m thick"
             )
             where = names.link(link).scene.where if link in names.links else NOWHERE
-            hint = f"<max_step_size>{_round_down(found.step):g}</max_step_size>"
+            hint = f"<max_step_size>{_round_down(approach.step):g}</max_step_size>"
             self._reports.warning("SK-PHYS-031", message, where, hint)
 
 

@@ -49,17 +49,17 @@ class SpinningBodies:
         self.joints: dict[int, int] = dict(zip(trees[alone].tolist(), joints[alone].tolist(), strict=True))
         collides = (model.geom_contype | model.geom_conaffinity) != 0
         trees_of_geoms = model.body_treeid[model.geom_bodyid]
-        found: list[tuple[int, int, float, list[float]]] = []
+        bodies: list[tuple[int, int, float, list[float]]] = []
         for tree, joint in self.joints.items():
             reach, axis = _reach_and_axis(model, np.flatnonzero((trees_of_geoms == tree) & collides).tolist())
             if reach > 0.0:
-                found.append((tree, int(model.jnt_dofadr[joint]) + 3, MIN_ACCELERATION / reach, axis))
-        self._plain, self.can_spin = found, bool(found)
-        self._trees = np.array([tree for tree, _, _, _ in found], np.intp)
-        self._spins = np.array([start + axis for _, start, _, _ in found for axis in range(3)], np.intp)
-        self._limits = np.array([limit for _, _, limit, _ in found])
-        self._axes = np.array([axis for _, _, _, axis in found]).T
-        self._least = min((limit for _, _, limit, _ in found), default=math.inf)
+                bodies.append((tree, int(model.jnt_dofadr[joint]) + 3, MIN_ACCELERATION / reach, axis))
+        self._plain, self.can_spin = bodies, bool(bodies)
+        self._trees = np.array([tree for tree, _, _, _ in bodies], np.intp)
+        self._spins = np.array([start + axis for _, start, _, _ in bodies for axis in range(3)], np.intp)
+        self._limits = np.array([limit for _, _, limit, _ in bodies])
+        self._axes = np.array([axis for _, _, _, axis in bodies]).T
+        self._least = min((limit for _, _, limit, _ in bodies), default=math.inf)
 
     def find(self, data: mujoco.MjData) -> npt.NDArray[np.bool_] | None:
         """Return a mask of the trees that spin fast, with False for static bodies at its end; None if there are none.
@@ -85,9 +85,9 @@ class SpinningBodies:
             fast = self._trees[square * (square - along * along) > self._limits * self._limits].tolist()
         if not fast:
             return None
-        found = np.zeros(self._tree_count + 1, bool)
-        found[fast] = True
-        return found
+        is_spinning = np.zeros(self._tree_count + 1, bool)
+        is_spinning[fast] = True
+        return is_spinning
 
 
 def _reach_and_axis(model: mujoco.MjModel, geoms: list[int]) -> tuple[float, list[float]]:
@@ -120,5 +120,5 @@ def _reach_and_axis(model: mujoco.MjModel, geoms: list[int]) -> tuple[float, lis
         axes.append(axis)
     first = axes[0] if axes else np.zeros(3)
     is_round = all(abs(dot(first, axis)) >= 1.0 - _CENTRED for axis in axes)
-    found: list[float] = (first if is_round else np.zeros(3)).tolist()
-    return reach, found
+    turning_axis: list[float] = (first if is_round else np.zeros(3)).tolist()
+    return reach, turning_axis

@@ -46,15 +46,15 @@ def rotational_symmetries(model: mujoco.MjModel) -> tuple[npt.NDArray[np.bool_],
 
 def can_collide(model: mujoco.MjModel) -> npt.NDArray[np.bool_]:
     """Return a mask of the geoms that may touch anything at all."""
-    found: npt.NDArray[np.bool_] = (model.geom_contype | model.geom_conaffinity) != 0
-    return found
+    has_mask: npt.NDArray[np.bool_] = (model.geom_contype | model.geom_conaffinity) != 0
+    return has_mask
 
 
-def can_touch(model: mujoco.MjModel, one: Ints, other: Ints) -> npt.NDArray[np.bool_]:
+def can_touch(model: mujoco.MjModel, these: Ints, others: Ints) -> npt.NDArray[np.bool_]:
     """Check whether geoms may touch by their masks alone; the arguments are indices that broadcast."""
     types, affinities = model.geom_contype, model.geom_conaffinity
-    found: npt.NDArray[np.bool_] = ((types[one] & affinities[other]) | (types[other] & affinities[one])) != 0
-    return found
+    is_allowed: npt.NDArray[np.bool_] = ((types[these] & affinities[others]) | (types[others] & affinities[these])) != 0
+    return is_allowed
 
 
 def allowed_travel(model: mujoco.MjModel, half: Floats, geoms: Ints) -> Floats:
@@ -70,25 +70,25 @@ def allowed_travel(model: mujoco.MjModel, half: Floats, geoms: Ints) -> Floats:
     kinds: dict[tuple[int, int], Ints] = {}  # masks -> geoms
     for first, second in dict.fromkeys(map(tuple, masks.tolist())):
         kinds[first, second] = solid[(masks[:, 0] == first) & (masks[:, 1] == second)]
-    static_least = {key: _minimum(half[own[tree[own] < 0]]) for key, own in kinds.items()}
-    trees = {key: set(tree[own].tolist()) - {-1} for key, own in kinds.items()}
+    static_least = {key: _minimum(half[solids[tree[solids] < 0]]) for key, solids in kinds.items()}
+    trees = {key: set(tree[solids].tolist()) - {-1} for key, solids in kinds.items()}
     touchy: dict[int, bool] = {}
     allowed = np.empty(len(geoms))
     by_kind: dict[tuple[int, int, int], float] = {}
     for place, geom in enumerate(geoms.tolist()):
         mine = int(model.geom_contype[geom]), int(model.geom_conaffinity[geom])
-        own = int(tree[geom])
-        if (*mine, own) not in by_kind:
+        geom_tree = int(tree[geom])
+        if (*mine, geom_tree) not in by_kind:
             met = [key for key in kinds if (mine[0] & key[1]) | (key[0] & mine[1])]
             least = min((static_least[key] for key in met), default=np.inf)
-            if any(len(trees[key]) > 1 or (trees[key] and own not in trees[key]) for key in met):
+            if any(len(trees[key]) > 1 or (trees[key] and geom_tree not in trees[key]) for key in met):
                 least = 0.0
-            elif any(own in trees[key] for key in met):
-                if own not in touchy:
-                    touchy[own] = _can_touch_itself(model, own)
-                least = 0.0 if touchy[own] else least
-            by_kind[(*mine, own)] = least
-        allowed[place] = half[geom] + by_kind[(*mine, own)]
+            elif any(geom_tree in trees[key] for key in met):
+                if geom_tree not in touchy:
+                    touchy[geom_tree] = _can_touch_itself(model, geom_tree)
+                least = 0.0 if touchy[geom_tree] else least
+            by_kind[(*mine, geom_tree)] = least
+        allowed[place] = half[geom] + by_kind[(*mine, geom_tree)]
     return allowed
 
 
@@ -116,14 +116,14 @@ class BodyPairs:
         self._has_parents = not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_FILTERPARENT)
         self._excluded = set(model.exclude_signature.tolist())
 
-    def is_filtered(self, one: int, other: int) -> bool:
+    def is_filtered(self, first: int, other: int) -> bool:
         """Check whether the engine ignores contacts between two bodies."""
-        a, b = self._weld[one], self._weld[other]
+        a, b = self._weld[first], self._weld[other]
         if a == b:
             return True
         if self._has_parents and a and b and (a == self._above[b] or b == self._above[a]):
             return True
-        return not self._excluded.isdisjoint(((one << 16) + other, (other << 16) + one))
+        return not self._excluded.isdisjoint(((first << 16) + other, (other << 16) + first))
 
 
 def velocity_levers(model: mujoco.MjModel, geoms: Ints) -> tuple[Ints, Ints, Floats]:
@@ -134,7 +134,7 @@ def velocity_levers(model: mujoco.MjModel, geoms: Ints) -> tuple[Ints, Ints, Flo
     """
     rows: list[Ints] = []
     dofs: list[Ints] = []
-    found: list[Floats] = []
+    levers: list[Floats] = []
     is_ball, is_round = rotational_symmetries(model)
     places, body = np.arange(len(geoms)), model.geom_bodyid[geoms].astype(np.intp)
     offset = model.geom_pos[geoms]
@@ -167,7 +167,7 @@ def velocity_levers(model: mujoco.MjModel, geoms: Ints) -> tuple[Ints, Ints, Flo
                 for i in range(count):
                     rows.append(where[chosen])
                     dofs.append(first[chosen] + shift + i)
-                    found.append(value[chosen])
+                    levers.append(value[chosen])
             slack = np.where((kind == _HINGE) | (kind == _BALL), 2.0 * anchor, 0.0)
             span = np.where(model.jnt_limited[joint] != 0, np.abs(model.jnt_range[joint]).max(axis=1), _UNLIMITED_SPAN)
             extra[some] += np.where(kind == _SLIDE, span, slack)
@@ -178,7 +178,7 @@ def velocity_levers(model: mujoco.MjModel, geoms: Ints) -> tuple[Ints, Ints, Flo
         places, body, reach = places[goes_on], body[goes_on], reach[goes_on]
     if not rows:
         return np.zeros(0, np.intp), np.zeros(0, np.intp), np.zeros(0)
-    return np.concatenate(rows).astype(np.intp), np.concatenate(dofs).astype(np.intp), np.concatenate(found)
+    return np.concatenate(rows).astype(np.intp), np.concatenate(dofs).astype(np.intp), np.concatenate(levers)
 
 
 def _z_axis(q: Floats) -> tuple[float, float, float]:

@@ -107,16 +107,16 @@ class WheelContacts:
         for low, high, weight in lines:
             first, second = low + 1, high + 1
             if starts is None:
-                one = jacobian[first * count : (first + 2) * count]
+                row = jacobian[first * count : (first + 2) * count]
                 other = jacobian[second * count : (second + 2) * count]
             else:
-                one = jacobian[starts[first] : starts[first + 1] + int(data.efc_J_rownnz[first])]
+                row = jacobian[starts[first] : starts[first + 1] + int(data.efc_J_rownnz[first])]
                 other = jacobian[starts[second] : starts[second + 1] + int(data.efc_J_rownnz[second])]
-            apart = other - one
+            apart = other - row
             if np.count_nonzero(apart):  # takes a fifth of the time of `any`
                 apart *= weight
-                one += apart
-                other[:] = one
+                row += apart
+                other[:] = row
                 is_changed = True
         if not is_changed:  # merged before: computing islands again would use more of the engine's memory
             return True
@@ -141,18 +141,18 @@ class WheelContacts:
             a, b, c = axes[wheel].tolist()[column::3]
             u, v, w = centres[wheel].tolist()
             low = high = 0.0
-            one = other = -1
+            lowest = other = -1
             for number in numbers:
                 x, y, z = points[number]
                 place = a * (x - u) + b * (y - v) + c * (z - w)
                 if rows[number] < 0:
                     continue
                 if place < low:
-                    low, one = place, number
+                    low, lowest = place, number
                 elif place > high:
                     high, other = place, number
-            if one >= 0 and other >= 0 and dims[one] > 1 and (is_level or _are_level(contact, one, other)):
-                lines.append((rows[one], rows[other], -low / (high - low)))
+            if lowest >= 0 and other >= 0 and dims[lowest] > 1 and (is_level or _are_level(contact, lowest, other)):
+                lines.append((rows[lowest], rows[other], -low / (high - low)))
         return lines
 
     def _wheel_pairs(self, geoms: list[list[int]]) -> list[WheelPair]:
@@ -175,7 +175,7 @@ class WheelContacts:
         return pairs
 
 
-def _are_level(contact: Any, one: int, other: int) -> bool:
+def _are_level(contact: Any, first: int, other: int) -> bool:
     """Check whether two contacts have the same normal."""
-    (a, b, c), (d, e, f) = contact.frame[[one, other], :3].tolist()
+    (a, b, c), (d, e, f) = contact.frame[[first, other], :3].tolist()
     return bool(a * d + b * e + c * f > _LEVEL)

@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
 from simkit.run_spec import PluginErrorPolicy
 from simkit.runtime.contact.anisotropic_friction import AnisotropicFriction
-from simkit.runtime.contact.speculative_contacts import FastBodyWarnings
-from simkit.runtime.engine.engine_state import EngineState
+from simkit.runtime.engine.engine_state import EngineCallbacks, EngineState
 from simkit.runtime.engine.external_forces import PersistentWrenches, Wind
 from simkit.runtime.engine.number_changes import NumberChanges
 from simkit.runtime.engine.physics_state import CONTROL, STALE
 from simkit.runtime.engine.plugin_faults import PluginFaults
 from simkit.runtime.engine.random_streams import RandomStreams
-from simkit.runtime.engine.step_loop import CommandSource, ScheduleFiller, StepLoop
+from simkit.runtime.engine.step_loop import CommandSource, StepLoop
 from simkit.runtime.engine.stray_bodies import StrayBodies
 from simkit.runtime.engine.velocity_limits import NO_LIMIT
 from simkit.runtime.engine.velocity_servos import VelocityServos
 
 if TYPE_CHECKING:
+    import logging
+
     from simkit.compiler import ActuatorRef
     from simkit.diagnostics import Diagnostics
-    from simkit.run_spec import PluginErrorPolicy
     from simkit.runtime.engine.entity_structure import WorldStructure
     from simkit.runtime.engine.scheduler import Scheduler
     from simkit.runtime.engine.simulated_time import Clock
@@ -49,9 +48,11 @@ class Engine(EngineState):
         clock: simulated time.
         seed: seed of all random streams.
         reports: collection of the diagnostics of the run.
+        log: logger of the simulation.
+        callbacks: functions of the other parts of the simulation.
         commands: source of the commands that are delivered between two steps.
-        fill: function that adds every task to the scheduler, in document order.
         on_error: policy for plugins that raise; None uses the policy of the file or of the plugin's class.
+        render_thread: True to draw camera images on another thread.
 
     Attributes:
         streams: random numbers by name.
@@ -61,18 +62,14 @@ class Engine(EngineState):
         wrenches: wrenches that persist until they are replaced.
         wind: velocity of the air.
         friction: contacts with directional friction or slip.
-        fast_body_warnings: warnings about bodies that are too fast for the time step.
         stray_bodies: warnings about bodies that leave the world.
         loop: step loop.
         render_thread: True to draw camera images on another thread during the physics, unless a subscriber waits for
             them. The value may change at any time, because it has no effect on the messages.
         renderer: description of the renderer that draws the images; empty before an image is drawn or requested.
-        velocity_limit: function that returns the limit of a joint's axis [rad/s or m/s] by scoped name and axis number.
     """
 
-    render_thread = False
     renderer = ""
-    velocity_limit: Callable[[str, int], float]
 
     def __init__(
         self,
@@ -81,20 +78,23 @@ class Engine(EngineState):
         clock: Clock,
         seed: int,
         reports: Diagnostics,
+        log: logging.Logger,
+        callbacks: EngineCallbacks,
         commands: CommandSource,
-        fill: ScheduleFiller,
         on_error: PluginErrorPolicy | None = None,
+        *,
+        render_thread: bool = False,
     ) -> None:
-        super().__init__(world, structure, clock, reports)
+        self.render_thread = render_thread
+        super().__init__(world, structure, clock, reports, log, callbacks)
         self.streams = RandomStreams(seed)
-        self.loop = StepLoop(self.physics, commands, fill)
+        self.loop = StepLoop(self.physics, commands, callbacks.fill)
         self.faults = PluginFaults(self, self.loop.reschedule, on_error)
-        self.velocity_servos = VelocityServos(self)
-        self.numbers = self.velocity_servos.numbers = NumberChanges(self, self.velocity_servos.renew)
+        self.numbers = NumberChanges(self, lambda: self.velocity_servos.renew())
+        self.velocity_servos = VelocityServos(self, self.numbers)
         self.wrenches = PersistentWrenches(self, self.faults)
         self.wind = Wind(world)
-        self.friction = AnisotropicFriction(self.physics, reports)
-        self.fast_body_warnings = FastBodyWarnings(reports, clock.timestep)
+        self.friction = AnisotropicFriction(self.physics.use_shaper, self.physics.changed_contacts, reports)
         self.stray_bodies = StrayBodies(self)
         self._drive_bound = min(_FASTEST_WHEEL, _LARGEST_TURN / clock.timestep)
         self._bounded: set[tuple[str, str]] = set()
@@ -118,6 +118,10 @@ class Engine(EngineState):
         """Apply changed rates, sensors and plugins; within a hook, after the other tasks of the tick."""
         self.loop.reschedule()
 
+    def use_renderer(self, description: str) -> None:
+        """Store the description of the renderer that draws the images."""
+        self.renderer = description
+
     def look_for_rest(self, _tick: int) -> None:
         """Let bodies at rest sleep, and set the rolling resistance in heaps."""
         physics = self.physics
@@ -130,7 +134,7 @@ class Engine(EngineState):
 
     def speed_limit(self, actuator: ActuatorRef) -> float:
         """Return the largest command of a velocity servo [rad/s]: the joint's limit, else the bound of drives."""
-        return self.bounded_limit(self.velocity_limit(actuator.joint, actuator.axis))
+        return self.bounded_limit(self.callbacks.velocity_limit(actuator.joint, actuator.axis))
 
     def bounded_limit(self, limit: float) -> float:
         """Return a velocity limit [rad/s or m/s], or the bound of drives if the limit means no limit."""
@@ -154,7 +158,7 @@ class Engine(EngineState):
     def report_bound(self, actuator: ActuatorRef, value: float) -> None:
         """Warn, once for each drive, that a command is larger than the bound of a joint without a velocity limit."""
         drive = actuator.joint.rpartition("::")[0], actuator.owner
-        if drive in self._bounded or self.velocity_limit(actuator.joint, actuator.axis) < NO_LIMIT:
+        if drive in self._bounded or self.callbacks.velocity_limit(actuator.joint, actuator.axis) < NO_LIMIT:
             return
         self._bounded.add(drive)
         joint = self.names.joints[actuator.joint].scene

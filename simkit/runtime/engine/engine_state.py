@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-import logging
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from simkit.errors import InputError
+from simkit.runtime.contact.speculative_contacts import FastBodyWarnings
+from simkit.runtime.engine.entity_structure import bodies_kept_awake
 from simkit.runtime.engine.physics_step import Physics
 
 if TYPE_CHECKING:
+    import logging
+
     import mujoco
     import numpy as np
     import numpy.typing as npt
@@ -17,8 +22,28 @@ if TYPE_CHECKING:
     from simkit.compiler.name_map import NameMap
     from simkit.diagnostics import Diagnostics
     from simkit.runtime.engine.entity_structure import WorldStructure
+    from simkit.runtime.engine.scheduler import Scheduler
     from simkit.runtime.engine.simulated_time import Clock
     from simkit.scene import SceneWorld
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EngineCallbacks:
+    """Functions of the parts of a simulation that are created after its engine.
+
+    Attributes:
+        fill: function that adds every task to the scheduler, in document order.
+        velocity_limit: function that returns the limit of a joint's axis [rad/s or m/s] by scoped name and axis number.
+        set_active: function that enables the interfaces of these plugins and sensors, and disables all others.
+        abandon: function that aborts the requests and goals that a plugin is processing, for a reason.
+        large_commands: function that describes the last large commands.
+    """
+
+    fill: Callable[[Scheduler], None]
+    velocity_limit: Callable[[str, int], float]
+    set_active: Callable[[Sequence[object]], None]
+    abandon: Callable[[object, str], None]
+    large_commands: Callable[[], list[str]]
 
 
 class EngineState:
@@ -29,6 +54,8 @@ class EngineState:
         structure: compiled structure of the world.
         clock: simulated time.
         reports: collection of the diagnostics of the run.
+        log: logger of the simulation.
+        callbacks: functions of the other parts.
 
     Attributes:
         world: scene, with the changes made during the run.
@@ -38,21 +65,38 @@ class EngineState:
         originals: compiled values of the model fields that were written to.
         reports: collection of the diagnostics of the run.
         log: logger of the simulation.
+        callbacks: functions of the other parts.
+        fast_body_warnings: warnings about bodies that are too fast for the time step.
         is_closed: True after the simulation has been closed.
     """
 
-    def __init__(self, world: SceneWorld, structure: WorldStructure, clock: Clock, reports: Diagnostics) -> None:
+    def __init__(
+        self,
+        world: SceneWorld,
+        structure: WorldStructure,
+        clock: Clock,
+        reports: Diagnostics,
+        log: logging.Logger,
+        callbacks: EngineCallbacks,
+    ) -> None:
         self.world, self.structure, self.clock, self.reports = world, structure, clock, reports
-        self.log = logging.getLogger("simkit")
+        self.log, self.callbacks = log, callbacks
+        self.fast_body_warnings = FastBodyWarnings(reports, clock.timestep, lambda: self.names)
         compiled = structure.compiled
-        self.physics = Physics(compiled.model, compiled.data, clock, world.physics.sleep)
+        self.physics = Physics(
+            compiled.model, compiled.data, clock, world.physics.sleep, on_approach=self.fast_body_warnings
+        )
         self.originals: dict[str, npt.NDArray[np.float64]] = {}
         self.is_closed = False
+
+    def close(self) -> None:
+        """Refuse further calls."""
+        self.is_closed = True
 
     def check_open(self) -> None:
         """Raise InputError after the simulation has been closed."""
         if self.is_closed:
-            raise InputError("the simulation is closed", "SK-CORE-002")
+            raise InputError("SK-CORE-002", "the simulation is closed", shows_code=False)
 
     # ------------------------------------------------------------------ time
 
@@ -92,6 +136,26 @@ class EngineState:
     def names(self) -> NameMap:
         """The compiler's name map of the present model."""
         return self.structure.compiled.names
+
+    # ------------------------------------------------------------------ changes of the world
+
+    def change_world(self, world: SceneWorld) -> None:
+        """Replace the scene."""
+        self.world = world
+
+    def adopt_structure(self, structure: WorldStructure) -> None:
+        """Switch to a structure with another compiled model."""
+        if self.structure is not structure:  # the first structure is bound already, which takes 8 ms for 64 bodies
+            self.structure = structure
+            self.physics.rebind(structure.compiled.model, structure.compiled.data)
+        self.physics.sleep.restrict(bodies_kept_awake(structure))
+        if any(nested.mjcf for model in structure.models.values() for nested in model.all_models()):
+            self.physics.check_controls()
+
+    def adopt_numbers(self, structure: WorldStructure) -> None:
+        """Switch to a structure with the same compiled model, whose numbers have changed."""
+        self.structure = structure
+        self.physics.changed_model()
 
     # ------------------------------------------------------------------ changes of the model
 

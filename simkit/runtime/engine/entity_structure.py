@@ -12,10 +12,12 @@ from typing import TYPE_CHECKING, Any, Protocol
 from simkit.scene import SceneModel
 
 if TYPE_CHECKING:
+    from contextlib import AbstractContextManager
     from pathlib import Path
 
     from simkit.compiler import ActuatorRef, Compiled, SpecBuilder
     from simkit.diagnostics import Where
+    from simkit.msgs import Message
     from simkit.params import Params
     from simkit.run_spec import PluginErrorPolicy
     from simkit.runtime.engine.scheduler import Timetable
@@ -23,14 +25,6 @@ if TYPE_CHECKING:
 
 AttachedState = Any
 """State of a sensor or plugin; only the sensor or plugin itself can interpret it."""
-
-
-class PublishedProduct(Protocol):
-    """Message that a sensor can publish."""
-
-    @property
-    def type_name(self) -> str:
-        """ROS type of the message."""
 
 
 class AttachedSensor(Protocol):
@@ -43,7 +37,13 @@ class AttachedSensor(Protocol):
     scene: SceneSensor
     scoped: str
     is_manual: bool
-    _topics: dict[str, str]
+
+    @property
+    def topics(self) -> Mapping[str, str]:
+        """Topic of each product that is published."""
+
+    def product_type(self, product: str) -> str:
+        """Return the ROS type of a product."""
 
     def check_available(self) -> None:
         """Raise a SimkitError if this machine cannot make the readings."""
@@ -53,11 +53,16 @@ class AttachedSensor(Protocol):
         """True if the sensor needs the contacts of its bodies."""
 
     @property
-    def _products(self) -> Mapping[str, PublishedProduct]: ...
+    def sees_scene(self) -> bool:
+        """True if scenery that moves can change a reading."""
 
     @property
     def topic(self) -> str:
         """Topic of the sensor's first message."""
+
+    @property
+    def truth(self) -> Message:
+        """Newest message without noise; None before the first."""
 
     def build(self, builder: SpecBuilder) -> None:
         """Add the elements that the sensor needs to the specification."""
@@ -107,11 +112,11 @@ class AttachedPlugin(Protocol):
     before_step_rate: float | None
     after_step_rate: float | None
     on_error: PluginErrorPolicy | None
-    source: ScenePlugin | None
     plugin_paths: tuple[Path, ...]
-    _order: tuple[Any, ...]
-    _actuators: tuple[ActuatorRef, ...]
-    _failed: tuple[str, Exception] | None
+
+    @property
+    def source(self) -> ScenePlugin | None:
+        """Description of the plugin in the file; None for a plugin created in Python."""
 
     @property
     def drives(self) -> bool:
@@ -137,12 +142,20 @@ class AttachedPlugin(Protocol):
     def set_state(self, state: AttachedState) -> None:
         """Restore a state from `get_state`."""
 
+    def code_objects(self) -> tuple[object, ...]:
+        """Return the objects with code of the plugin's author."""
+
+    def importing(self) -> AbstractContextManager[None]:
+        """Return a context in which the modules of the plugin's author can be imported."""
+
     def report_unread(self) -> None:
         """Report unused parameters."""
 
-    def _setup(self, sim: Any, source: ScenePlugin | None = None) -> None: ...
+    def join_simulation(self, sim: Any) -> None:
+        """Connect the plugin to its simulation; done before `load`."""
 
-    def _remember_loaded(self) -> AttachedState: ...
+    def get_loaded_state(self) -> AttachedState:
+        """Return the state after `load`."""
 
 
 StructureChange = tuple[str, tuple[Any, ...]]
@@ -152,16 +165,31 @@ ParentFinder = Callable[[Any], Any]
 """Function that returns a plugin's parent (a simulation, a handle, a sensor) once the handles of a simulation exist."""
 
 
-@dataclass
-class SensorsAndPlugins:
-    """Sensors and plugins of one model (or of the world), in document order.
+@dataclass(frozen=True, slots=True)
+class PluginEntry:
+    """Plugin of a model or of the world, with the facts that are known before the simulation exists.
 
     Attributes:
-        plugins: plugins, each with the function that returns its parent once the handles exist.
+        plugin: the plugin.
+        parent: function that returns the parent once the handles exist.
+        order: sort key for the order of all plugins.
+        actuators: servos and motors that `prepare` added.
+        failure: hook that raised before the simulation existed, with its exception; None for none.
     """
 
+    plugin: AttachedPlugin
+    parent: ParentFinder
+    order: tuple[Any, ...]
+    actuators: tuple[ActuatorRef, ...] = ()
+    failure: tuple[str, Exception] | None = None
+
+
+@dataclass
+class SensorsAndPlugins:
+    """Sensors and plugins of one model (or of the world), in document order."""
+
     sensors: list[AttachedSensor] = field(default_factory=list)
-    plugins: list[tuple[AttachedPlugin, ParentFinder]] = field(default_factory=list)
+    plugins: list[PluginEntry] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
@@ -193,23 +221,28 @@ class WorldStructure:
 
     def changes_without(self, model: str) -> tuple[StructureChange, ...]:
         """Return the changes with the removal of a model; the changes of a spawned model are left out."""
-        kept: list[StructureChange] = []
+        remaining: list[StructureChange] = []
         is_spawned = False
         for name, arguments in self.changes:
             if name == "spawn":
                 requests = [request for request in arguments[0] if request[0].name != model]
                 is_spawned |= len(requests) < len(arguments[0])
                 if requests:
-                    kept.append((name, (requests,)))
+                    remaining.append((name, (requests,)))
                 continue
             entities = arguments[1:] if name == "add_weld" else arguments[:1]
             if not (is_spawned and any(str(entity).split("::")[0] == model for entity in entities)):
-                kept.append((name, arguments))
-        return tuple(kept) if is_spawned else self.changed("remove", model)
+                remaining.append((name, arguments))
+        return tuple(remaining) if is_spawned else self.changed("remove", model)
 
     def all_plugins(self) -> list[AttachedPlugin]:
         """Return every plugin in the order in which plugins are loaded and called."""
-        return [plugin for plugin, _ in plugins_in_order(self.parts.values())]
+        return [entry.plugin for entry in entries_in_order(self.parts.values())]
+
+    def entry_of(self, plugin: AttachedPlugin) -> PluginEntry | None:
+        """Return the entry of a plugin; None for a plugin that is not in the world."""
+        entries = (entry for part in self.parts.values() for entry in part.plugins)
+        return next((entry for entry in entries if entry.plugin is plugin), None)
 
 
 FROM_FILE, FROM_PYTHON, FROM_SPAWN = range(3)
@@ -217,9 +250,9 @@ FROM_FILE, FROM_PYTHON, FROM_SPAWN = range(3)
 """
 
 
-def plugins_in_order(parts: Iterable[SensorsAndPlugins]) -> list[tuple[AttachedPlugin, ParentFinder]]:
-    """Return the plugins with their parent finders, in the order in which plugins are loaded and called."""
-    return sorted((pair for part in parts for pair in part.plugins), key=lambda pair: pair[0]._order)
+def entries_in_order(parts: Iterable[SensorsAndPlugins]) -> list[PluginEntry]:
+    """Return the entries of the plugins in the order in which plugins are loaded and called."""
+    return sorted((entry for part in parts for entry in part.plugins), key=lambda entry: entry.order)
 
 
 def bodies_kept_awake(structure: WorldStructure) -> set[int]:
@@ -233,12 +266,12 @@ def bodies_kept_awake(structure: WorldStructure) -> set[int]:
     for name, scene in structure.models.items():
         parts = structure.parts.get(name, SensorsAndPlugins())
         for model in scene.all_models():
-            kept_awake = any(not getattr(plugin, "lets_sleep", False) for plugin, _ in parts.plugins)
+            kept_awake = any(not getattr(entry.plugin, "lets_sleep", False) for entry in parts.plugins)
             if kept_awake or not getattr(model, "allow_auto_disable", True):
                 bodies |= {int(links[link.scoped].body) for link in model.links}
-        if any(getattr(plugin, "reads_contacts", False) for plugin, _ in parts.plugins):
-            own = [int(links[link.scoped].body) for link in scene.all_links()]
-            if (structure.compiled.model.body_treeid[own] < 0).any():
+        if any(getattr(entry.plugin, "reads_contacts", False) for entry in parts.plugins):
+            body_ids = [int(links[link.scoped].body) for link in scene.all_links()]
+            if (structure.compiled.model.body_treeid[body_ids] < 0).any():
                 return {int(link.body) for link in links.values()}
         for sensor in parts.sensors:
             joint = structure.compiled.names.joints.get(sensor.scene.parent)

@@ -48,13 +48,13 @@ class ForwardPass(PhysicsState):
         data = self.fresh()
         if not (data.tree_asleep >= 0).any():
             return data
-        held, awake = self.hold(), copy.copy(data)
+        holding, awake = self.hold(), copy.copy(data)
         awake.tree_asleep[:] = -1
         options = self.model.opt
         flags = options.enableflags
         options.enableflags = flags & ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
         try:
-            self._forward_held(held, awake)  # with the contact law of the step, as for the bodies that are awake
+            self._forward_held(holding, awake)  # with the contact law of the step, as for the bodies that are awake
         finally:
             options.enableflags = flags
         return awake
@@ -205,48 +205,50 @@ class ForwardPass(PhysicsState):
             self._held = HeldState(self.tick, self.model, values, request, uses_law, is_fast, self._probes)
         return self._held
 
-    def data_of(self, held: HeldState) -> mujoco.MjData:
+    def data_of(self, state: HeldState) -> mujoco.MjData:
         """Return an `MjData` with forward pass and accelerations of a stored state.
 
         The result is a second `MjData`, unless the stored state is the present one.
         """
         if self.checks_controls:  # a direct write makes the stored state differ from the present one
             self._check_controls()
-        if self._held is held and held.tick == self.tick and not (self.sleep.watches or self.shows_applied):
+        if self._held is state and state.tick == self.tick and not (self.sleep.watches or self.shows_applied):
             return self.fresh_accelerations()  # unchanged since: the next step continues from this forward pass
-        if self._reader_data is None or (self._reader_state is not None and self._reader_state.model is not held.model):
-            self._reader_data = mujoco.MjData(held.model)
+        if self._reader_data is None or (
+            self._reader_state is not None and self._reader_state.model is not state.model
+        ):
+            self._reader_data = mujoco.MjData(state.model)
             self._reader_state = None
-        if self._reader_state is not held:
+        if self._reader_state is not state:
             self._reader_state = None
-            mujoco.mj_setState(held.model, self._reader_data, held.values, INTEGRATION_STATE)
-            self._forward_held(held, self._reader_data)
-            mujoco.mj_rnePostConstraint(held.model, self._reader_data)
-            self._reader_state = held
+            mujoco.mj_setState(state.model, self._reader_data, state.values, INTEGRATION_STATE)
+            self._forward_held(state, self._reader_data)
+            mujoco.mj_rnePostConstraint(state.model, self._reader_data)
+            self._reader_state = state
         return self._reader_data
 
-    def _forward_held(self, held: HeldState, data: mujoco.MjData) -> None:
+    def _forward_held(self, state: HeldState, data: mujoco.MjData) -> None:
         """Make the forward pass of a stored state in the same way as the step did."""
         law, shaper, fast = self.law, self.shaper, self.fast_bodies
-        if law.model is not held.model:  # a spawn or a removal has replaced the model
-            law, shaper, fast = ContactLaw(held.model), None, FastBodyDetector(held.model)
-        is_fast = fast.wants(data) if held.is_fast is None else held.is_fast
-        set_speculative(held.model, is_fast)
+        if law.model is not state.model:  # a spawn or a removal has replaced the model
+            law, shaper, fast = ContactLaw(state.model), None, FastBodyDetector(state.model)
+        is_fast = fast.wants(data) if state.is_fast is None else state.is_fast
+        set_speculative(state.model, is_fast)
         try:
-            mujoco.mj_forward(held.model, data)
+            mujoco.mj_forward(state.model, data)
             if self._integrate is not None:
                 if shaper is not None:
                     law.lines.correct(data)
-                    shaper.shape(data, held.request)
-                closing, use = fast.closing if is_fast else None, held.uses_law
+                    shaper.shape(data, state.request)
+                closing, use = fast.closing if is_fast else None, state.uses_law
                 if is_fast and not use:
                     use = LawUse.WHOLE
-                if held.probes:
+                if state.probes:
                     law.solve(data, closing, probes=True)
                 elif use := law.needed_use(data) if use is None else use:
                     law.solve(data, closing, use)
                 elif shaper is not None:
-                    mj_forward_skip(held.model, data, _AFTER_VELOCITIES, 1)
+                    mj_forward_skip(state.model, data, _AFTER_VELOCITIES, 1)
         finally:
             set_speculative(self.model, self._is_fast)
 

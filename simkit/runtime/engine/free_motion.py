@@ -85,11 +85,11 @@ class FreeMotionIntegrator:
     @classmethod
     def of(cls, model: mujoco.MjModel) -> FreeMotionIntegrator | None:
         """Return the integrator of a model; None if no tree needs it."""
-        found = [tree for tree in find_passive_trees(model) if tree.substeps <= MAX_SUBSTEPS]
-        if len([tree for tree in found if tree.may_touch]) > MAX_FLYING_MODELS:
-            found = [tree for tree in found if not tree.may_touch or tree.rotation is not None]
-            return cls(model, found, is_crowded=True) if found else None
-        return cls(model, found) if found else None
+        trees = [tree for tree in find_passive_trees(model) if tree.substeps <= MAX_SUBSTEPS]
+        if len([tree for tree in trees if tree.may_touch]) > MAX_FLYING_MODELS:
+            trees = [tree for tree in trees if not tree.may_touch or tree.rotation is not None]
+            return cls(model, trees, is_crowded=True) if trees else None
+        return cls(model, trees) if trees else None
 
     def is_needed(self, data: mujoco.MjData) -> bool:
         """Check whether a tree is so fast that it needs this integrator."""
@@ -130,7 +130,9 @@ class FreeMotionIntegrator:
             integrate: integrator of the engine, for all other trees.
         """
         moving = self._find_moving(data)
-        spinning = [(one, *found) for one in self._touching if (found := self._kick_and_drift(data, one))]
+        spinning = [
+            (rotation, *motion) for rotation in self._touching if (motion := self._kick_and_drift(data, rotation))
+        ]
         if not moving:
             integrate(model, data)
         elif len(moving) == model.ntree and not self._bases:
@@ -140,17 +142,17 @@ class FreeMotionIntegrator:
         else:
             if self._data is None:
                 self._data = mujoco.MjData(model)
-            own = self._data
+            scratch = self._data
             mujoco.mj_getState(model, data, self._state, _STATE)
-            mujoco.mj_setState(model, own, self._state, _STATE)
-            self._runge_kutta(own, 1)
+            mujoco.mj_setState(model, scratch, self._state, _STATE)
+            self._runge_kutta(scratch, 1)
             integrate(model, data)
             for dofs, at in moving:
-                velocities, positions = own.qvel[dofs], own.qpos[at]
+                velocities, positions = scratch.qvel[dofs], scratch.qpos[at]
                 if all(map(math.isfinite, velocities.tolist() + positions.tolist())):
                     data.qvel[dofs], data.qpos[at] = velocities, positions
-        for one, position, velocity in spinning:
-            data.qpos[one.coordinates], data.qvel[one.dofs] = position, velocity
+        for rotation, position, velocity in spinning:
+            data.qpos[rotation.coordinates], data.qvel[rotation.dofs] = position, velocity
 
     def _kick_and_drift(self, data: mujoco.MjData, rotation: RigidRotation) -> tuple[list[float], list[float]] | None:
         """Return coordinates and velocities of a body in contact after the step; None if the engine integrates it."""

@@ -83,8 +83,8 @@ class HeapResistance:
     @property
     def torques(self) -> Floats:
         """Largest torques of the resistance of the free bodies about each axis [N·m], shape (k,)."""
-        found: Floats = self._model.dof_frictionloss[self._turns[:, 0]]
-        return found
+        torques: Floats = self._model.dof_frictionloss[self._turns[:, 0]]
+        return torques
 
     @torques.setter
     def torques(self, values: Floats) -> None:
@@ -114,13 +114,13 @@ class HeapResistance:
             return in_heap, torques
         radii, reaches, can_roll = self._shapes()
         is_next, is_near = self._next_to(data, rows, reaches)
-        found = (is_next.sum(axis=1) > _LEAST_NEIGHBOURS) & (is_near & is_paired).any(axis=1)
-        in_heap[trees[rows[found]]] = True
+        is_enclosed = (is_next.sum(axis=1) > _LEAST_NEIGHBOURS) & (is_near & is_paired).any(axis=1)
+        in_heap[trees[rows[is_enclosed]]] = True
         gravity = math.hypot(*model.opt.gravity.tolist())
         x, y, z = data.qvel[self._turns - 3].T
         is_fast = _ROLLING_ENERGY * (x * x + y * y + z * z) > SLOW * gravity * radii
-        found &= can_roll[rows] & ~(is_next & is_fast).any(axis=1) & self._is_apart(data, trees[rows], pushed)
-        rolling = rows[found]
+        is_enclosed &= can_roll[rows] & ~(is_next & is_fast).any(axis=1) & self._is_apart(data, trees[rows], pushed)
+        rolling = rows[is_enclosed]
         weights = gravity * model.body_mass[model.tree_bodyadr[trees[rolling]]]
         torques[rolling] = RESISTANCE * weights * radii[rolling]
         return in_heap, torques
@@ -186,13 +186,13 @@ def clear_resistance(model: mujoco.MjModel, friction: Floats) -> None:
 def _free_trees(model: mujoco.MjModel) -> Flags:
     """Return which trees are free bodies of one link, without friction from an MJCF file, shape (ntree,)."""
     first = model.tree_dofadr
-    found: Flags = (model.tree_dofnum == 6) & (model.tree_bodynum == 1)
-    found &= model.jnt_type[model.dof_jntid[first]] == mujoco.mjtJoint.mjJNT_FREE
-    found &= model.dof_frictionloss[first] == 0.0  # a file gives all axes the same friction
-    return found
+    is_free: Flags = (model.tree_dofnum == 6) & (model.tree_bodynum == 1)
+    is_free &= model.jnt_type[model.dof_jntid[first]] == mujoco.mjtJoint.mjJNT_FREE
+    is_free &= model.dof_frictionloss[first] == 0.0  # a file gives all axes the same friction
+    return is_free
 
 
 def _turns(model: mujoco.MjModel, trees: Ints) -> Ints:
     """Return the degrees of freedom of the rotation of free bodies, shape (k, 3)."""
-    found: Ints = model.tree_dofadr[trees].astype(int)[:, None] + np.arange(3, 6)
-    return found
+    dofs: Ints = model.tree_dofadr[trees].astype(int)[:, None] + np.arange(3, 6)
+    return dofs

@@ -28,7 +28,7 @@ Numbers = npt.NDArray[np.float64]
 ChangeKey = tuple[str, str, str]
 """Kind and scoped name of an entity, and the name of the changed attribute."""
 
-NumberState = tuple[dict[str, "Inertial"], dict[ChangeKey, Any], dict[str, Numbers]]
+NumberState = tuple[dict[str, "Inertial"], dict[ChangeKey, object], dict[str, Numbers]]
 """Changed masses and inertias by link, changed attributes, and given values by field of the model."""
 
 _GAINS: Final = ("actuator_gainprm", "actuator_biasprm")
@@ -49,7 +49,7 @@ class NumberChanges:
     def __init__(self, engine: EngineState, renew_servos: Callable[[], None]) -> None:
         self._engine, self._renew_servos = engine, renew_servos
         self.inertials: dict[str, Inertial] = {}
-        self.values: dict[ChangeKey, Any] = {}
+        self.values: dict[ChangeKey, object] = {}
         self._given: dict[str, Numbers] = {}
 
     def compiled_values(self) -> Mapping[str, Numbers]:
@@ -62,11 +62,11 @@ class NumberChanges:
     def write(self, field: str, rows: Any, values: Any) -> None:
         """Write rows of a model field."""
         self._engine.touch(field)[rows] = values
-        given = self._given.setdefault(field, self._engine.original(field).copy())
-        given[rows] = values
+        numbers = self._given.setdefault(field, self._engine.original(field).copy())
+        numbers[rows] = values
         self.renew()
 
-    def keep(self, kind: str, scoped: str, attribute: str, value: Any) -> None:
+    def keep(self, kind: str, scoped: str, attribute: str, value: object) -> None:
         """Record a changed attribute of a handle, so that a reset can keep it."""
         self.values = {**self.values, (kind, scoped, attribute): value}
 
@@ -81,13 +81,13 @@ class NumberChanges:
             InputError: SK-CORE-006 the link does not move, or the engine has its inertia in another form.
         """
         engine = self._engine
-        found = body_numbers(engine.compiled, engine.world, link, inertial)
-        if found is None:
+        body_and_numbers = body_numbers(engine.compiled, engine.world, link, inertial)
+        if body_and_numbers is None:
             message = f"the mass or inertia of link {link.scoped!r} cannot change in this way during a run"
             reason = "it does not move, it closes a loop, or its inertia gets other principal axes"
             help_ = f"scale the inertia, or set it before the load: overrides=['{link.scoped}.inertial.inertia=…']"
-            raise InputError(f"SK-CORE-006 {message}: {reason}\n    help: {help_}", "SK-CORE-006")
-        body, numbers = found
+            raise InputError("SK-CORE-006", f"{message}: {reason}", help=help_)
+        body, numbers = body_and_numbers
         for field, value in numbers.items():
             self.write(field, body, value)
         self.inertials = {**self.inertials, link.scoped: inertial}
@@ -106,8 +106,8 @@ class NumberChanges:
             apply_velocity_decay(model, records)
         reference = self.compiled_values()
         for index, gain, bias in tuned_gains(model, [ref for record in records for ref in record.actuators]):
-            given = [reference.get(field, getattr(model, field))[index] for field in _GAINS]
-            if all(np.array_equal(v, getattr(model, f)[index]) for f, v in zip(_GAINS, given, strict=True)):
+            gains = [reference.get(field, getattr(model, field))[index] for field in _GAINS]
+            if all(np.array_equal(v, getattr(model, f)[index]) for f, v in zip(_GAINS, gains, strict=True)):
                 self.write("actuator_gainprm", (index, 0), gain)
                 self.write("actuator_biasprm", (index, slice(0, 3)), bias)
         self.renew()
@@ -120,9 +120,9 @@ class NumberChanges:
     def carry(self, old: mujoco.MjModel, new: mujoco.MjModel) -> None:
         """Move the values that were given to a recompiled model, element by element by name."""
         carried = {}
-        for field, given in self._given.items():
+        for field, numbers in self._given.items():
             carried[field] = self._engine.originals.get(field, getattr(new, field)).copy()
-            copy_rows_by_name(field, given, carried[field], old, new)
+            copy_rows_by_name(field, numbers, carried[field], old, new)
         self._given = carried
 
     @staticmethod
@@ -132,7 +132,11 @@ class NumberChanges:
 
     def get_state(self) -> NumberState:
         """Return the changes for a snapshot."""
-        return dict(self.inertials), dict(self.values), {field: given.copy() for field, given in self._given.items()}
+        return (
+            dict(self.inertials),
+            dict(self.values),
+            {field: numbers.copy() for field, numbers in self._given.items()},
+        )
 
     def set_state(self, state: NumberState) -> None:
         """Restore changes from `get_state`; the snapshot has restored the model's fields."""
@@ -140,4 +144,4 @@ class NumberChanges:
             self.renew()
             set_mean_values(self._engine.compiled)
         self.inertials, self.values = dict(state[0]), dict(state[1])
-        self._given = {field: given.copy() for field, given in state[2].items()}
+        self._given = {field: numbers.copy() for field, numbers in state[2].items()}

@@ -101,15 +101,17 @@ def find_passive_trees(model: mujoco.MjModel) -> list[PassiveTree]:
     """Return the trees of a model that need another integrator."""
     driven, lengths = _driven_trees(model), _chain_lengths(model)
     turning, collides = _turning_dofs(model), (model.geom_contype | model.geom_conaffinity) != 0
-    found = []
+    trees = []
     for number in range(model.ntree):
         length = lengths.get(number, 0)
         is_chain = length >= MIN_CHAIN_LENGTH
         turns = turning[_index_range(model.tree_dofadr, model.tree_dofnum, number)].any()
         if number not in driven and turns and (is_chain or _may_spin(model, number)):
-            own = collides[model.body_treeid[model.geom_bodyid] == number]
-            found.append(PassiveTree(model, number, length, not is_chain and bool(own.any()) and collides.sum() > 1))
-    return found
+            geoms_collide = collides[model.body_treeid[model.geom_bodyid] == number]
+            trees.append(
+                PassiveTree(model, number, length, not is_chain and bool(geoms_collide.any()) and collides.sum() > 1)
+            )
+    return trees
 
 
 def _index_range(starts: npt.NDArray[np.int32], counts: npt.NDArray[np.int32], index: int) -> slice:
@@ -120,22 +122,22 @@ def _turning_dofs(model: mujoco.MjModel) -> npt.NDArray[np.bool_]:
     """Return a mask of the degrees of freedom whose velocity is in rad/s."""
     kinds = model.jnt_type[model.dof_jntid]
     offset = np.arange(model.nv) - model.jnt_dofadr[model.dof_jntid]
-    found: npt.NDArray[np.bool_] = (kinds == _BALL) | (kinds == _HINGE) | ((kinds == _FREE) & (offset >= 3))
-    return found
+    is_turning: npt.NDArray[np.bool_] = (kinds == _BALL) | (kinds == _HINGE) | ((kinds == _FREE) & (offset >= 3))
+    return is_turning
 
 
 def joint_friction(model: mujoco.MjModel) -> npt.NDArray[np.float64]:
     """Return the dry friction of the degrees of freedom, without that of free joints, which changes in heaps."""
     is_free = model.jnt_type[model.dof_jntid] == _FREE
-    found: npt.NDArray[np.float64] = np.where(is_free, 0.0, model.dof_frictionloss)
-    return found
+    friction: npt.NDArray[np.float64] = np.where(is_free, 0.0, model.dof_frictionloss)
+    return friction
 
 
 def _resisting_dofs(model: mujoco.MjModel) -> npt.NDArray[np.bool_]:
     """Return a mask of the degrees of freedom that have damping or friction."""
-    found: npt.NDArray[np.bool_] = (model.dof_damping != 0) | (joint_friction(model) != 0)
-    found |= (model.dof_dampingpoly != 0).any(axis=1)
-    return found
+    resists: npt.NDArray[np.bool_] = (model.dof_damping != 0) | (joint_friction(model) != 0)
+    resists |= (model.dof_dampingpoly != 0).any(axis=1)
+    return resists
 
 
 def _chain_lengths(model: mujoco.MjModel) -> dict[int, int]:

@@ -15,11 +15,11 @@ from simkit.errors import SimulationDiverged
 from simkit.linear_algebra import squared_length
 from simkit.runtime.contact.contact_law import ContactLaw, ContactShaper, LawUse, window_length
 from simkit.runtime.contact.open_space import OpenSpace
-from simkit.runtime.contact.speculative_contacts import SPECULATIVE_FLAG, FastBodyDetector
+from simkit.runtime.contact.speculative_contacts import SPECULATIVE_FLAG, ApproachCallback, FastBodyDetector
 from simkit.runtime.engine.free_motion import FreeMotionIntegrator
 from simkit.runtime.engine.passive_trees import joint_friction
 from simkit.runtime.engine.simulated_time import Clock
-from simkit.runtime.engine.sleep import Sleep
+from simkit.runtime.engine.sleep import RestState, Sleep
 
 BAD_POSITION: Final = int(mujoco.mjtWarning.mjWARN_BADQPOS)
 BAD_VELOCITY: Final = int(mujoco.mjtWarning.mjWARN_BADQVEL)
@@ -118,6 +118,27 @@ class StepWindow(NamedTuple):
     is_open: bool = False
 
 
+@dataclass(frozen=True, slots=True)
+class PhysicsMemory:
+    """State of the physics beside MuJoCo's data.
+
+    Attributes:
+        tick: tick of the state.
+        one_shot: True if forces in the data last for one step only.
+        last_applied: forces on joints that lasted for the last step only [N, N·m], shape (nv,).
+        last_pushed: forces and torques on bodies that lasted for the last step only [N, N·m], shape (nbody, 6).
+        window: step method up to the next check of the contacts.
+        sleep: bodies that sleep.
+    """
+
+    tick: int
+    one_shot: bool
+    last_applied: npt.NDArray[np.float64]
+    last_pushed: npt.NDArray[np.float64]
+    window: StepWindow
+    sleep: RestState
+
+
 @dataclass(slots=True, eq=False)
 class HeldState:
     """Stored physics state of one tick, so that a sensor can be read later.
@@ -152,6 +173,7 @@ class PhysicsState:
         data: MuJoCo's data.
         clock: source of the step length.
         may_sleep: True if bodies at rest may sleep.
+        on_approach: function that receives the approaches that speculative contacts cannot stop; it changes no state.
 
     Attributes:
         law: forces of contacts that slide, hit or overlap; for the present model.
@@ -159,10 +181,18 @@ class PhysicsState:
         edition: counter that changes with every write to the state, but not with steps.
     """
 
-    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, clock: Clock, may_sleep: bool = True) -> None:
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        data: mujoco.MjData,
+        clock: Clock,
+        may_sleep: bool = True,
+        *,
+        on_approach: ApproachCallback | None = None,
+    ) -> None:
         mujoco.set_mju_user_warning(ENGINE_WARNINGS.record)
         ENGINE_WARNINGS.clear()
-        self.clock, self._may_sleep = clock, may_sleep
+        self.clock, self._may_sleep, self._on_approach = clock, may_sleep, on_approach
         self.tick = self.edition = 0
         self.rebind(model, data)
 
@@ -203,7 +233,7 @@ class PhysicsState:
     def _analyse(self) -> None:
         """Derive the objects that decide the step method from the model."""
         model = self.model
-        self.law, self.fast_bodies = ContactLaw(model), FastBodyDetector(model)
+        self.law, self.fast_bodies = ContactLaw(model), FastBodyDetector(model, self._on_approach)
         self._space = self._open_space()
         # an MJCF file that sets no integrator has Euler's method, with which a spinning top diverges
         is_simple = int(model.opt.integrator) in _INTEGRATORS and model.opt.integrator != mujoco.mjtIntegrator.mjINT_RK4
@@ -229,12 +259,14 @@ class PhysicsState:
         """
         self._is_analysed = True
         if _step_fields(self.model) != self._analysed:
-            on_approach = self.fast_bodies.on_approach
             self._analyse()
-            self.fast_bodies.on_approach = on_approach
         elif not self._space.is_current():
             self._space = self._open_space()
         self._until = self._fast_until = _NEVER if self._is_plain else -1
+
+    def check_controls(self) -> None:
+        """Look for direct writes to `data.ctrl` of the present model at every step, because user code may make them."""
+        self.checks_controls = True
 
     # ------------------------------------------------------------------ writing
 
@@ -288,6 +320,10 @@ class PhysicsState:
             return self.last_applied + applied, self.last_pushed + pushed
         return applied, pushed
 
+    def push_once(self, is_pushed: bool = True) -> None:
+        """Record that forces in the data last for the next step only, or that there are no such forces."""
+        self.one_shot = is_pushed
+
     def changed_surface(self) -> None:
         """Record a changed motion of a surface; wake all bodies that may lie on it."""
         if self.sleep.is_drowsy or (self.data.tree_asleep >= 0).any():
@@ -313,6 +349,10 @@ class PhysicsState:
         mujoco.mj_camlight(self.model, self.data)
         options.enableflags = flags
 
+    def use_shaper(self, shaper: ContactShaper | None) -> None:
+        """Change contacts by a function object before the solve; None for no changes."""
+        self.shaper = shaper
+
     def changed_contacts(self) -> None:
         """Record that contacts must be detected again."""
         self.changed(STALE)
@@ -337,6 +377,31 @@ class PhysicsState:
         """Clear the engine's warnings, because a restored state has none."""
         self._warnings[:] = 0
         ENGINE_WARNINGS.take_first()
+
+    # ------------------------------------------------------------------ state
+
+    def get_state(self) -> PhysicsMemory:
+        """Return the state beside MuJoCo's data, for a snapshot."""
+        applied, pushed = self.last_applied.copy(), self.last_pushed.copy()
+        return PhysicsMemory(self.tick, self.one_shot, applied, pushed, self.window, self.sleep.get_state())
+
+    def set_state(self, state: PhysicsMemory, *, is_model_changed: bool) -> None:
+        """Restore a state from `get_state`, after the data.
+
+        Args:
+            state: state to restore.
+            is_model_changed: True if fields of the model were written to.
+        """
+        self.tick = state.tick
+        self.changed(STALE)
+        if is_model_changed:
+            self.changed_model()
+        self.clear_warnings()
+        self.one_shot = state.one_shot
+        self.last_applied, self.last_pushed = state.last_applied.copy(), state.last_pushed.copy()
+        self.shows_applied = True
+        self.window = state.window
+        self.sleep.set_state(state.sleep)
 
     # ------------------------------------------------------------------ how the next steps are made
 
@@ -391,10 +456,10 @@ def set_speculative(model: mujoco.MjModel, is_on: bool) -> None:
 
 def _accelerations_by_control(model: mujoco.MjModel) -> npt.NDArray[np.float64]:
     """Return the acceleration [m/s²] of the driven body that one unit of each control causes, shape (nu,)."""
-    found = np.zeros(model.nu)
+    accelerations = np.zeros(model.nu)
     for i in range(model.nu):
         if model.actuator_trntype[i] == mujoco.mjtTrn.mjTRN_JOINT:
             joint = int(model.actuator_trnid[i, 0])
             lever = 1.0 if model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_SLIDE else _LEVER
-            found[i] = lever * model.actuator_gainprm[i, 0] * model.dof_invweight0[model.jnt_dofadr[joint]]
-    return found
+            accelerations[i] = lever * model.actuator_gainprm[i, 0] * model.dof_invweight0[model.jnt_dofadr[joint]]
+    return accelerations

@@ -13,6 +13,7 @@ import mujoco
 import numpy as np
 
 from simkit.runtime.contact.contact_law import LawUse
+from simkit.runtime.contact.speculative_contacts import ApproachCallback
 from simkit.runtime.engine.control_callback import call_before_forces
 from simkit.runtime.engine.forward_pass import SKIPPED_STAGE, ForwardPass
 from simkit.runtime.engine.free_motion import Integrator
@@ -38,15 +39,25 @@ class Physics(ForwardPass):
         data: MuJoCo's data.
         clock: source of the step length.
         may_sleep: True if bodies at rest may sleep.
+        on_approach: function that receives the approaches that speculative contacts cannot stop; it changes no state.
     """
 
-    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, clock: Clock, may_sleep: bool = True) -> None:
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        data: mujoco.MjData,
+        clock: Clock,
+        may_sleep: bool = True,
+        *,
+        on_approach: ApproachCallback | None = None,
+    ) -> None:
         self._take_chunk(256)
-        super().__init__(model, data, clock, may_sleep)
+        super().__init__(model, data, clock, may_sleep, on_approach=on_approach)
 
     def advance(self, count: int) -> None:
         """Make `count` steps; forces that last for one step only are cleared after the first."""
         sleep = self.sleep
+        # the usual call of a loop with sensors: few steps, and nothing to do before and after them
         if not (self.shows_applied or self.one_shot or sleep.counts or sleep.wants_all_awake) and count <= self._short:
             if count > 0:
                 self._steps(count)
@@ -58,7 +69,7 @@ class Physics(ForwardPass):
             self.shows_applied = False
         if sleep.watches and sleep.notice_gravity():
             self.changed(STALE)
-        if sleep.rests and sleep.still_rests():
+        if sleep.rests and sleep.still_rests():  # all bodies are at rest: the state stays the same
             self._advance_time(count)
             return
         if self.one_shot:
@@ -84,7 +95,7 @@ class Physics(ForwardPass):
         """Make one step."""
         is_special = self._uses_law or self._probes or self.one_shot or self.shows_applied or self.sleep.watches
         is_special = is_special or self.shaper is not None or self._corrects_all
-        if not is_special and self.stage == STALE and self.tick < self._until:
+        if not is_special and self.stage == STALE and self.tick < self._until:  # saves the cost of `advance`
             mj_step(self.model, self.data)
             self.tick += 1
         else:
@@ -98,7 +109,7 @@ class Physics(ForwardPass):
             for _ in range(count):
                 now += step
             data.time = now
-        else:
+        else:  # `cumsum` adds one after the other, as the engine; `count * step` has other bits
             times = np.full(count + 1, step)
             times[0] = data.time
             data.time = times.cumsum()[-1]
@@ -108,7 +119,7 @@ class Physics(ForwardPass):
         sleep = self.sleep
         if sleep.wants_all_awake:
             self.fresh()
-        if sleep.is_drowsy:
+        if sleep.is_drowsy:  # the engine puts bodies to sleep in a step only
             sleep.let_fall_asleep()
             self._steps(1)
             sleep.keep_awake()
@@ -216,6 +227,7 @@ class Physics(ForwardPass):
         self.one_shot = False
 
     def _tune(self, chunk: int, wall: float) -> None:
+        """Set the steps of a call so that it takes 0.01 to 0.04 s of wall time."""
         if wall > _WALL_LIMIT and chunk > 1:
             self._take_chunk(max(1, chunk // 2))
         elif wall < _WALL_LIMIT / 4 and chunk == self._chunk:

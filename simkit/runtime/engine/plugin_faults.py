@@ -10,8 +10,9 @@ import sys
 import traceback
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from types import CodeType, FrameType, TracebackType
-from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 from simkit.errors import InputError, InterfaceError, PluginError, SimkitError, SimulationDiverged, cause_text
 from simkit.memory_error import find_memory_error
@@ -43,14 +44,8 @@ class PluginCall:
     line: str
 
 
-class PluginInterfaces(Protocol):
-    """Topics, services, actions and parameters of plugins."""
-
-    def set_active(self, owners: Sequence[object]) -> None:
-        """Enable the interfaces that these plugins and sensors opened; disable the others."""
-
-    def abandon(self, owner: object, reason: str) -> None:
-        """Abort the requests and goals that a plugin is processing."""
+CallObserver = Callable[[object, str, Callable[[], object]], object]
+"""Function that receives a plugin, the name of its hook or callback, and the call, and returns the call's result."""
 
 
 class PluginFaults:
@@ -60,18 +55,14 @@ class PluginFaults:
         engine: engine of the plugins.
         reschedule: function that is called when a plugin is disabled.
         on_error: policy of the user, with priority over files and classes; None uses theirs.
-
-    Attributes:
-        interfaces: topics, services, actions and parameters that plugins have opened.
     """
-
-    interfaces: PluginInterfaces
 
     def __init__(
         self, engine: EngineState, reschedule: Callable[[], None], on_error: PluginErrorPolicy | None = None
     ) -> None:
         self._engine, self._reschedule, self.on_error = engine, reschedule, on_error
         self._disabled: dict[int, AttachedPlugin] = {}
+        self._observers: list[CallObserver] = []
         self._tasks: dict[tuple[int, str], tuple[Callable[[], object], Callable[[int], None]]] = {}
         self._new_tasks: dict[tuple[int, str], tuple[Callable[[], object], Callable[[int], None]]] | None = None
 
@@ -92,17 +83,35 @@ class PluginFaults:
 
     # ------------------------------------------------------------------ calling
 
+    def observe(self, observer: CallObserver) -> None:
+        """Make all further calls of plugins through an observer, each plugin by a call of its own.
+
+        Raises:
+            ValueError: the calls have an observer already.
+        """
+        if self._observers:
+            raise ValueError("the calls of plugins have an observer already")
+        self._observers.append(observer)
+        self._reschedule()
+
+    @property
+    def is_observed(self) -> bool:
+        """True if an observer makes the calls, so that plugins are not called in groups."""
+        return bool(self._observers)
+
     def guard(self, plugin: object, hook: str, method: Callable[..., R]) -> Callable[..., R | None]:
         """Wrap a hook or callback: its exceptions stop the run or disable the plugin.
 
         The wrapper of a disabled plugin does nothing and returns None.
         """
-        disabled, key = self._disabled, id(plugin)
+        disabled, observers, key = self._disabled, self._observers, id(plugin)
 
         def call(*values: object) -> R | None:
             if key in disabled:
                 return None
             try:
+                if observers:
+                    return cast(R, observers[0](plugin, hook, partial(method, *values)))
                 return method(*values)
             except Exception as error:  # noqa: BLE001 - a plugin may raise anything
                 self.meet(plugin, hook, error)
@@ -123,7 +132,7 @@ class PluginFaults:
 
         The next schedule gets the same task for the same hook, so that it is recognised as equal.
         """
-        disabled, key, method = self._disabled, id(plugin), getattr(plugin, hook)
+        disabled, observers, key, method = self._disabled, self._observers, id(plugin), getattr(plugin, hook)
         known = self._tasks.get((key, hook))
         if known is not None and known[0] == method:
             if self._new_tasks is not None:
@@ -134,7 +143,10 @@ class PluginFaults:
             if key in disabled:
                 return
             try:
-                method()
+                if observers:
+                    observers[0](plugin, hook, method)
+                else:
+                    method()
             except Exception as error:  # noqa: BLE001 - a plugin may raise anything
                 self.meet(plugin, hook, error)
 
@@ -199,12 +211,12 @@ class PluginFaults:
         engine.reports.warning("SK-PLUGIN-020", text, plugin.where, f"raised at {line}" if line else "")
         engine.log.warning("%s: %s (%s)", plugin.where, text, line)
         self._apply()
-        self.interfaces.abandon(plugin, f"plugin {plugin.name!r} is disabled: {last}")
+        engine.callbacks.abandon(plugin, f"plugin {plugin.name!r} is disabled: {last}")
         release_servos(engine, plugin)
         self._reschedule()
 
     def _apply(self) -> None:
-        self.interfaces.set_active(self.living(self._engine.structure))
+        self._engine.callbacks.set_active(self.living(self._engine.structure))
 
     # ------------------------------------------------------------------ state
 
@@ -224,7 +236,8 @@ class PluginFaults:
 def release_servos(engine: EngineState, plugin: AttachedPlugin) -> None:
     """Release the joints that a plugin's servos and motors hold; a restore or reset restores the servos and motors."""
     present = {ref.name for record in engine.structure.builder.records.values() for ref in record.actuators}
-    refs = [ref for ref in plugin._actuators if ref.name in present]
+    entry = engine.structure.entry_of(plugin)
+    refs = [ref for ref in (() if entry is None else entry.actuators) if ref.name in present]
     if refs:
         gains, biases = engine.touch("actuator_gainprm"), engine.touch("actuator_biasprm")
         for ref in refs:
@@ -261,16 +274,16 @@ def active_plugin_calls(frame: FrameType | None) -> list[PluginCall]:
     Args:
         frame: innermost frame of the stack, such as an item of `sys._current_frames()`.
     """
-    codes, found, now = _guard_codes(), [], frame
+    codes, calls, now = _guard_codes(), [], frame
     while frame is not None and now is not None:
         if frame.f_code in codes:
             line = f"{now.f_code.co_filename}:{now.f_lineno} in {now.f_code.co_name}"
             names = frame.f_locals
             if hasattr(names.get("plugin"), "where"):  # a service of user code has no plugin
-                found.append(PluginCall(names["plugin"], names["hook"], frame, line))
+                calls.append(PluginCall(names["plugin"], names["hook"], frame, line))
             now = frame.f_back
         frame = frame.f_back
-    return found
+    return calls
 
 
 _MAX_EXPLANATIONS = 3
@@ -282,11 +295,11 @@ def add_driver_hints(plugins: Sequence[object], error: SimulationDiverged, comma
     A plugin explains with its method `explain_divergence(name) -> str`. The name is that of the diverged joint. If no
     plugin drives the joint, the name is that of the model.
     """
-    found = explanations(plugins, error.joint) or explanations(plugins, error.joint.split("::")[0])
-    found = [*commands, *found]
-    if found:
-        more = "; ".join(found[:_MAX_EXPLANATIONS]) + (
-            f"; and {len(found) - _MAX_EXPLANATIONS} more" if len(found) > _MAX_EXPLANATIONS else ""
+    hints = explanations(plugins, error.joint) or explanations(plugins, error.joint.split("::")[0])
+    hints = [*commands, *hints]
+    if hints:
+        more = "; ".join(hints[:_MAX_EXPLANATIONS]) + (
+            f"; and {len(hints) - _MAX_EXPLANATIONS} more" if len(hints) > _MAX_EXPLANATIONS else ""
         )
         error.hint = f"{error.hint}; {more}"
         error.args = (f"{error.args[0]}; {more}",)

@@ -47,6 +47,11 @@ class RandomStream(InProcess):
             self._seed, self._key = seed, None
             self._normal_block = self._uniform_block = -1
 
+    def independent_copy(self) -> RandomStream:
+        """Return a stream with the same numbers, which keeps its seed when the simulation gets another."""
+        assert self._seed is not None
+        return RandomStream(self._seed, self.scoped, self.channel, self.width)
+
     def generator(self, index: int, purpose: int = 0) -> np.random.Generator:
         """Return a new generator for one index."""
         if self._key is None:  # many streams of a world are never drawn from

@@ -103,18 +103,11 @@ def _common_cycle(timetables: Sequence[Timetable]) -> int:
 
 
 class Scheduler:
-    """Tasks before a step, and tasks of sensors and hooks after it.
-
-    Attributes:
-        checked_topics: sensors and their topics that were searched for shared topics.
-        limiters: velocity limiters by rate, with what they were made from.
-    """
+    """Tasks before a step, and tasks of sensors and hooks after it."""
 
     def __init__(self, clock: Clock) -> None:
         self.clock = clock
         self.before, self.sense, self.after = Agenda(), Agenda(), Agenda()
-        self.checked_topics: object = None
-        self.limiters: dict[float | None, tuple[object, list[tuple[int, float]], Task]] = {}
 
     def clear(self) -> None:
         """Remove every task."""

@@ -75,6 +75,15 @@ class Clock:
             return tick * self._whole_ns
         return math.floor(tick * self._step_ns + Fraction(1, 2))
 
+    def tick_at(self, time_ns: int) -> int:
+        """Return the first tick at or after a time [ns]."""
+        if self._whole_ns:
+            return -(-time_ns // self._whole_ns)
+        tick = max(0, math.floor(time_ns / self._step_ns) - 1)
+        while self.time_ns(tick) < time_ns:
+            tick += 1
+        return tick
+
     def time(self, tick: int) -> float:
         """Return the time of a tick [s]: the float nearest to the exact value."""
         return tick * self._step.numerator / self._step.denominator
@@ -192,6 +201,6 @@ class ShiftedTickGrid:
     def next(self, tick: int) -> int:
         """Return the first due tick after a tick."""
         index = max(0, ((tick - self._most) * self._den - self._phase) // self._num)
-        while (found := self.tick(index)) <= tick:
+        while (following := self.tick(index)) <= tick:
             index += 1
-        return found
+        return following

@@ -17,12 +17,11 @@ from simkit.compiler.state_transfer import restore_compiled_fields
 from simkit.errors import ArgumentValueError
 from simkit.in_process import InProcess
 from simkit.memory_error import memory_errors
-from simkit.runtime.engine.physics_state import STALE, StepWindow
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.engine import Engine
     from simkit.runtime.engine.entity_structure import AttachedPlugin, AttachedSensor, AttachedState, WorldStructure
-    from simkit.runtime.engine.sleep import RestState
+    from simkit.runtime.engine.physics_state import PhysicsMemory
 
 
 @dataclass(frozen=True, repr=False)
@@ -34,14 +33,19 @@ class Snapshot(InProcess):
     has only the attribute `owner`.
 
     Attributes:
-        tick: tick of the state.
         structure: structure of the world.
+        data: MuJoCo's data.
+        fields: fields of the model that were written to, and its gravity.
+        sensors, plugins: their states.
+        handles: states of all other parts, in the order of restoring.
+        inbox: commands that wait for the next step.
+        physics: state of the physics beside MuJoCo's data.
+        seed: seed of all random streams.
         owner: simulation of the snapshot.
         variant: number of changes of the world by other overrides before the snapshot.
         pack: function that returns the snapshot for another process.
     """
 
-    tick: int
     structure: WorldStructure
     data: mujoco.MjData
     fields: dict[str, npt.NDArray[np.float64]]
@@ -49,15 +53,16 @@ class Snapshot(InProcess):
     plugins: list[tuple[AttachedPlugin, AttachedState]]
     handles: list[tuple[Stateful, AttachedState]]
     inbox: tuple[tuple[str, object], ...]
-    one_shot: bool
-    last_applied: npt.NDArray[np.float64]
-    last_pushed: npt.NDArray[np.float64]
-    window: StepWindow
-    sleep: RestState = (False,)
+    physics: PhysicsMemory
     seed: int = 0
     owner: object = None
     variant: int = 0
     pack: Callable[[Snapshot], PackedSnapshot] | None = None
+
+    @property
+    def tick(self) -> int:
+        """Tick of the state."""
+        return self.physics.tick
 
     @property
     def time(self) -> float:
@@ -134,10 +139,10 @@ class Snapshots:
         parts: function that returns every part with a state, except sensors and plugins, in the order of restoring.
         commands: commands that wait for the next step.
         adopt: function that switches to another structure.
+        pack: function that returns a snapshot for another process.
 
     Attributes:
         variant: number of changes of the world by other overrides.
-        pack: function that returns a snapshot for another process; set from outside.
     """
 
     def __init__(
@@ -147,11 +152,16 @@ class Snapshots:
         parts: Callable[[], Sequence[Stateful]],
         commands: WaitingCommands,
         adopt: Callable[[WorldStructure], None],
+        pack: Callable[[Snapshot], PackedSnapshot],
     ) -> None:
         self._owner, self._engine, self._parts, self._commands = owner, engine, parts, commands
-        self._adopt = adopt
-        self.pack: Callable[[Snapshot], PackedSnapshot] | None = None
+        self._adopt, self._pack = adopt, pack
         self.variant = 0
+
+    def begin_variant(self) -> int:
+        """Count a change of the world by other overrides, which makes earlier snapshots invalid; return the number."""
+        self.variant += 1
+        return self.variant
 
     def defer(self) -> tuple[Snapshot, Callable[[], None]]:
         """Return a snapshot that is not yet taken, and the function that takes it."""
@@ -183,7 +193,6 @@ class Snapshots:
         fields = {f: getattr(model, f).copy() for f in engine.originals}
         fields["gravity"] = model.opt.gravity.copy()
         return Snapshot(
-            tick=physics.tick,
             structure=structure,
             data=data,
             fields=fields,
@@ -191,15 +200,11 @@ class Snapshots:
             plugins=plugins,
             handles=[(part, part.get_state()) for part in self._parts()],
             inbox=tuple(self._commands.values()),
-            one_shot=physics.one_shot,
-            last_applied=physics.last_applied.copy(),
-            sleep=physics.sleep.get_state(),
-            last_pushed=physics.last_pushed.copy(),
-            window=physics.window,
+            physics=physics.get_state(),
             seed=engine.streams.seed,
             owner=self._owner,
             variant=self.variant,
-            pack=self.pack,
+            pack=self._pack,
         )
 
     def restore(self, snapshot: Snapshot, *, with_inbox: bool = True) -> None:
@@ -227,17 +232,7 @@ class Snapshots:
         model.opt.gravity[:] = snapshot.fields["gravity"]
         mujoco.mj_copyData(physics.data, model, snapshot.data)
         engine.loop.jump(snapshot.tick - physics.tick)
-        physics.tick = snapshot.tick
-        physics.changed(STALE)
-        if engine.originals:
-            physics.changed_model()
-        physics.clear_warnings()
-        physics.one_shot = snapshot.one_shot
-        physics.last_applied = snapshot.last_applied.copy()
-        physics.last_pushed = snapshot.last_pushed.copy()
-        physics.shows_applied = True
-        physics.window = snapshot.window
-        physics.sleep.set_state(snapshot.sleep)
+        physics.set_state(snapshot.physics, is_model_changed=bool(engine.originals))
         if with_inbox:
             self._commands.refill(snapshot.inbox)
         for part, state in snapshot.handles:

@@ -64,7 +64,11 @@ class StepLoop:
 
     def halt(self) -> None:
         """End the run with the present step, if the run was started with `is_served`."""
-        self._halts = self._is_served
+        self._halts = self._halts or self._is_served
+
+    def interrupt(self) -> None:
+        """End the present call of `advance` with the present step, because other code must run at its tick."""
+        self._halts = self.is_running
 
     def advance(self, target: int, *, is_served: bool = False) -> None:
         """Run up to the tick `target`.
@@ -81,7 +85,7 @@ class StepLoop:
         """
         if self.is_running:
             message = "the simulation is already stepping; a hook, a callback or a second thread cannot step it"
-            raise InputError(message, "SK-CORE-003")
+            raise InputError("SK-CORE-003", message, shows_code=False)
         try:  # an interrupt can arrive after any of the next lines
             self.is_running, self._is_served, self._halts = True, is_served, False
             self._target = target
@@ -92,10 +96,39 @@ class StepLoop:
             self._deferred.clear()
             self._idle.set()
 
+    def advance_physics(self, target: int) -> bool:
+        """Run up to the tick `target` if nothing but the physics runs on the way; else return False without a step.
+
+        Any thread may call it between two calls of `advance`, while the thread of those waits.
+        """
+        before, sense, after = self.scheduler.before, self.scheduler.sense, self.scheduler.after
+        if (
+            self.is_running
+            or self._is_outdated
+            or self._commands.inbox
+            or before.next < target
+            or sense.next <= target
+            or after.next <= target
+            or before.every
+            or sense.every
+            or after.every
+            or _OPEN_LOOPS.ending is not None
+        ):
+            return False
+        physics = self._physics
+        physics.advance(target - physics.tick)
+        physics.check()
+        return True
+
     def jump(self, ticks: int) -> None:
         """Shift the target by the number of ticks that a restore or reset moved the run."""
         self.jumped += ticks
         self._target += ticks
+
+    def deliver_inputs(self) -> None:
+        """Pass commands that wait for the next step to their inputs now."""
+        if self._commands.inbox:
+            self._commands.deliver_inputs()
 
     def _refill(self) -> None:
         deferred, self._deferred = self._deferred, []

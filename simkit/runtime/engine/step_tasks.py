@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from simkit.runtime.engine import sleep, stray_bodies, velocity_servos
 from simkit.runtime.engine.scheduler import Scheduler, Task
-from simkit.runtime.engine.velocity_limits import NO_LIMIT, LimitedJoint, limited_dofs, velocity_limiter
+from simkit.runtime.engine.velocity_limits import LimitedDof, velocity_limiter
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.engine import Engine
@@ -86,7 +86,7 @@ def _hook_rate(plugin: AttachedPlugin, hook: str) -> float | None:
 def _group_tasks(faults: PluginFaults, run: list[AttachedPlugin], hook: str) -> HookTasks:
     together = _group_hook(type(run[0]), hook) if len(run) >= MIN_GROUP_SIZE else None
     # a plugin that may be disabled when it raises is called separately
-    if together is None or any(faults.policy(plugin) != "stop" for plugin in run):
+    if together is None or faults.is_observed or any(faults.policy(plugin) != "stop" for plugin in run):
         for plugin in run:
             yield _hook_rate(plugin, hook), faults.task(plugin, hook)
     else:
@@ -97,8 +97,8 @@ def _group_hook(kind: type, hook: str) -> GroupHook | None:
     """Return the group hook of a class; None if a derived class overrides the single hook."""
     for cls in kind.__mro__:
         if f"{hook}_together" in vars(cls):
-            found: GroupHook = getattr(kind, f"{hook}_together")
-            return found
+            group_hook: GroupHook = getattr(kind, f"{hook}_together")
+            return group_hook
         if hook in vars(cls):
             return None
     return None
@@ -114,36 +114,65 @@ def _guard_group(faults: PluginFaults, group: PluginGroup, hook: str, run: Calla
     return task
 
 
-_LIMIT_RATE = 100.0  # [Hz] at which the velocity limit of an undriven joint is enforced
+LIMIT_RATE = 100.0
+"""Rate [Hz] at which the velocity limit of an undriven joint is enforced."""
+
+_Limiter = tuple[object, list[LimitedDof], Task]
+"""Velocity limiter, after the model and the limits from which it was made."""
+
 _CAMERA_INFO = "sensor_msgs/msg/CameraInfo"
 _RANGE = "sensor_msgs/msg/Range"
-_BLIND_KINDS = frozenset(  # kinds of sensors that do not see the scene
-    ("imu", "force_torque", "contact", "altimeter", "magnetometer", "air_pressure", "air_speed", "navsat", "gps")
-)
 
 
-def fill_schedule(
-    engine: Engine, scheduler: Scheduler, joints: Iterable[LimitedJoint], exact_limits: Collection[LimitedJoint]
-) -> None:
-    """Fill an empty scheduler.
+class StepTasks:
+    """Tasks of all parts of a simulation.
 
     Args:
         engine: engine of the sensors and plugins.
-        scheduler: scheduler that receives the tasks.
-        joints: all joints with a velocity limit.
-        exact_limits: joints whose velocity limit is enforced at every step.
     """
-    engine.faults.begin_schedule()
-    if engine.physics.sleep.watches:
-        scheduler.every(sleep.RATE, engine.look_for_rest, "after")
-    scheduler.every(stray_bodies.RATE, engine.stray_bodies.look, "after")
-    _schedule_velocity_limits(engine, scheduler, joints, exact_limits)
-    if engine.velocity_servos.are_there:  # before the commands of the step, which have had no time to take effect
-        scheduler.every(velocity_servos.RATE, engine.velocity_servos.correct, "before")
-    topics = [(sensor, *sensor._topics.items()) for sensor in engine.structure.all_sensors()]
-    if topics != scheduler.checked_topics:
-        _report_shared_topics(engine)
-        scheduler.checked_topics = topics
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+        self._checked_topics: object = None  # sensors and their topics that were searched for shared topics
+        self._limiters: dict[float | None, _Limiter] = {}  # by rate
+
+    def fill(self, scheduler: Scheduler, exact: list[LimitedDof], coasting: list[LimitedDof]) -> None:
+        """Fill an empty scheduler.
+
+        Args:
+            scheduler: scheduler that receives the tasks.
+            exact: degrees of freedom whose velocity limit is enforced at every step.
+            coasting: other degrees of freedom with a velocity limit.
+        """
+        engine = self._engine
+        engine.faults.begin_schedule()
+        if engine.physics.sleep.watches:
+            scheduler.every(sleep.RATE, engine.look_for_rest, "after")
+        scheduler.every(stray_bodies.RATE, engine.stray_bodies.look, "after")
+        self._schedule_velocity_limits(scheduler, exact, coasting)
+        if engine.velocity_servos.are_there:  # before the commands of the step, which have had no time to take effect
+            scheduler.every(velocity_servos.RATE, engine.velocity_servos.correct, "before")
+        topics = [(sensor, *sensor.topics.items()) for sensor in engine.structure.all_sensors()]
+        if topics != self._checked_topics:
+            _report_shared_topics(engine)
+            self._checked_topics = topics
+        _schedule_sensors_and_plugins(engine, scheduler)
+
+    def _schedule_velocity_limits(
+        self, scheduler: Scheduler, exact: list[LimitedDof], coasting: list[LimitedDof]
+    ) -> None:
+        physics = self._engine.physics
+        last, self._limiters = self._limiters, {}
+        for rate, dofs in ((None, exact), (LIMIT_RATE, coasting)):
+            if dofs:
+                model, known = physics.model, last.get(rate)
+                if known is None or known[0] is not model or known[1] != dofs:
+                    known = model, dofs, velocity_limiter(physics, dofs)
+                self._limiters[rate] = known
+                scheduler.every(rate, known[2], "sense")
+
+
+def _schedule_sensors_and_plugins(engine: Engine, scheduler: Scheduler) -> None:
     _group_sensors(engine)
     plugins = [plugin for plugin in engine.structure.all_plugins() if not engine.faults.is_disabled(plugin)]
     _schedule_scenery(engine, scheduler, plugins)
@@ -160,23 +189,6 @@ def fill_schedule(
     engine.faults.end_schedule()
 
 
-def _schedule_velocity_limits(
-    engine: Engine, scheduler: Scheduler, joints: Iterable[LimitedJoint], exact_limits: Collection[LimitedJoint]
-) -> None:
-    moving = [joint for joint in joints if joint.mj_dofs]
-    exact = [joint for joint in moving if joint in exact_limits]
-    coasting = [joint for joint in moving if joint not in exact_limits and joint.least_velocity_limit < NO_LIMIT]
-    last, scheduler.limiters = scheduler.limiters, {}
-    for rate, limited in ((None, exact), (_LIMIT_RATE, coasting)):
-        if limited:
-            model, dofs = engine.physics.model, limited_dofs(limited)
-            known = last.get(rate)
-            if known is None or known[0] is not model or known[1] != dofs:
-                known = model, dofs, velocity_limiter(engine.physics, dofs)
-            scheduler.limiters[rate] = known
-            scheduler.every(rate, known[2], "sense")
-
-
 def _schedule_scenery(engine: Engine, scheduler: Scheduler, plugins: Sequence[Any]) -> None:
     """Schedule plugins that move scenery, before sensors are sampled and at the ticks at which sensors see it."""
     for plugin in plugins:
@@ -184,7 +196,7 @@ def _schedule_scenery(engine: Engine, scheduler: Scheduler, plugins: Sequence[An
             task = engine.faults.task(plugin, "move_scenery")
             scheduler.every(plugin.scenery_rate, task, "sense")
             for sensor in engine.structure.all_sensors():
-                if sensor.scene.kind not in _BLIND_KINDS:
+                if sensor.sees_scene:
                     scheduler.on(sensor.timetable(), task, "sense")
 
 
@@ -201,7 +213,7 @@ def _report_shared_topics(engine: Engine) -> None:
     """Report topics on which sensors publish two messages: a subscriber receives both in turn."""
     first: dict[str, tuple[str, str]] = {}
     for sensor in engine.structure.all_sensors():
-        types = [(topic, sensor._products[product].type_name) for product, topic in sensor._topics.items()]
+        types = [(topic, sensor.product_type(product)) for product, topic in sensor.topics.items()]
         reported: set[str] = set()
         # camera infos come last: if the images share a topic too, one report is enough
         for topic, kind in sorted(types, key=lambda pair: (pair[1] == _CAMERA_INFO, pair)):

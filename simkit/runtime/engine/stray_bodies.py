@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
 import mujoco
@@ -45,13 +44,11 @@ class StrayBodies:
 
     Attributes:
         reported: scoped names of the top-level models whose bodies were reported.
-        commands: function that describes the last large commands.
     """
 
     def __init__(self, engine: EngineState) -> None:
         self._engine = engine
         self.reported: set[str] = set()
-        self.commands: Callable[[], list[str]] = list
         self._known: set[str] = set()
         self._model: mujoco.MjModel | None = None
         self._links: list[LinkBinding] = []
@@ -112,15 +109,15 @@ class StrayBodies:
         pull = norm(gravity)
         if pull > 0.0 and speed <= pull * engine.time and float(matmul(velocity, gravity)) > 0.99 * speed * pull:
             since = engine.time - speed / pull
-            own = [one for one in engine.names.links.values() if one.model == link.model]
-            hint = _GROUND_HINT if any(one.geoms for one in own) else _COLLISION_HINT
+            links = [other for other in engine.names.links.values() if other.model == link.model]
+            hint = _GROUND_HINT if any(other.geoms for other in links) else _COLLISION_HINT
             return f"it falls freely since about t = {since:.2f} s", hint
         if moments := _too_small_moments(model, link.body):
             text = f"the likely cause are its moments of inertia, {moments}, which are too small for its size"
             return text, "give the link the moments of a body of its size"
         if any(d.code == "SK-PHYS-024" and f"{link.scoped}::" in d.message for d in engine.reports):
             return "the likely cause is that it began inside another body", "move it out of the other body"
-        told = [*self.commands(), *explanations(list(engine.structure.all_plugins()), link.model)]
+        told = [*engine.callbacks.large_commands(), *explanations(list(engine.structure.all_plugins()), link.model)]
         if told:
             return f"the likely cause is a command: {told[0]}", "limit the command, or the velocity of the joints"
         text = "the likely cause is a hit, a force or a joint limit that is too stiff for the step"

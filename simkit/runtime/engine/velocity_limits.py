@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import TYPE_CHECKING, Final
 
 import mujoco
 import numpy as np
@@ -23,27 +23,11 @@ NO_LIMIT: Final = 1e6
 _LIMIT_SHARE = 0.999  # threshold for the sum of squares of velocities over their limits
 
 
-class LimitedJoint(Protocol):
-    """Joint with a velocity limit."""
-
-    @property
-    def mj_dofs(self) -> Sequence[int]:
-        """Indices among MuJoCo's degrees of freedom."""
-
-    @property
-    def least_velocity_limit(self) -> float:
-        """Least velocity limit of the joint's axes [rad/s or m/s]."""
-
-    def axis_velocity_limit(self, axis: int) -> float:
-        """Return the velocity limit of an axis [rad/s or m/s]."""
+LimitedDof = tuple[int, float]
+"""Index among MuJoCo's degrees of freedom, and the velocity limit [rad/s or m/s]."""
 
 
-def limited_dofs(joints: Sequence[LimitedJoint]) -> list[tuple[int, float]]:
-    """Return the degrees of freedom of joints and their velocity limits [rad/s or m/s]."""
-    return [(dof, _axis_limit(joint, axis)) for joint in joints for axis, dof in enumerate(joint.mj_dofs)]
-
-
-def velocity_limiter(physics: ForwardPass, limited: Sequence[tuple[int, float]]) -> Callable[[int], None]:
+def velocity_limiter(physics: ForwardPass, limited: Sequence[LimitedDof]) -> Callable[[int], None]:
     """Return one task that enforces velocity limits of degrees of freedom.
 
     A scalar product shows quickly that no joint is near its limit. Setting a limit makes a new schedule.
@@ -53,19 +37,11 @@ def velocity_limiter(physics: ForwardPass, limited: Sequence[tuple[int, float]])
     shares[dofs] = 1.0 / np.maximum(limits, 1e-9)
 
     def hold(_tick: int = 0) -> None:
-        found = physics.data.qvel * shares
-        if squared_length(found, _LIMIT_SHARE) >= _LIMIT_SHARE:  # otherwise no velocity exceeds its limit
+        shares_of_limits = physics.data.qvel * shares
+        if squared_length(shares_of_limits, _LIMIT_SHARE) >= _LIMIT_SHARE:  # otherwise no velocity exceeds its limit
             limit_velocities(physics, dofs, limits)
 
     return hold
-
-
-def _axis_limit(joint: LimitedJoint, axis: int) -> float:
-    """Return the limit of one degree of freedom; a ball joint has one limit for three of them."""
-    try:
-        return joint.axis_velocity_limit(axis)
-    except IndexError:
-        return joint.least_velocity_limit
 
 
 def limit_velocities(physics: ForwardPass, dofs: npt.NDArray[np.intp], limits: Vector) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from simkit.argument_checks import checked_number
 from simkit.compiler.contact_friction import has_directional_friction
@@ -13,18 +13,10 @@ from simkit.runtime.handles.handle import Handle
 
 if TYPE_CHECKING:
     from simkit.runtime.handles.entity_handles import EntityHandles
-    from simkit.scene import SceneCollision, SceneLink
+    from simkit.runtime.handles.link import Link
+    from simkit.scene import SceneCollision
 
 _FRICTION_FIELDS = ("friction", "condim", "priority")
-
-
-class CollisionLink(Protocol):
-    """Link that carries a collision."""
-
-    scene: SceneLink
-
-    def _check(self) -> None:
-        """Raise InputError if the link was removed."""
 
 
 class Collision(Handle):
@@ -34,7 +26,7 @@ class Collision(Handle):
         link: link that carries the collision.
     """
 
-    def __init__(self, handles: EntityHandles, name: str, scoped: str, link: CollisionLink) -> None:
+    def __init__(self, handles: EntityHandles, name: str, scoped: str, link: Link) -> None:
         super().__init__(handles, name, scoped)
         self.link = link
 
@@ -56,15 +48,15 @@ class Collision(Handle):
         if has_directional_friction(surface):
             message = f"the friction of collision {self.scoped!r} has a direction, so it cannot change during a run"
             help_ = f"set it before the load, with overrides=['{self.scoped}.mu=…']"
-            raise InputError(f"SK-CORE-006 {message}\n    help: {help_}", "SK-CORE-006")
+            raise InputError("SK-CORE-006", message, help=help_)
         geoms = self._geoms()
-        found = surface_numbers(self._engine.compiled, replace(surface, mu=mu, mu2=mu))
+        numbers = surface_numbers(self._engine.compiled, replace(surface, mu=mu, mu2=mu))
         for field in _FRICTION_FIELDS if geoms else ():
-            self._engine.numbers.write(f"geom_{field}", geoms, found[field])
+            self._engine.numbers.write(f"geom_{field}", geoms, numbers[field])
         self._engine.numbers.keep("collision", self.scoped, "friction", mu)
 
     def _geoms(self) -> list[int]:
         """Return the geoms of the collision that make contacts."""
-        self.link._check()
+        self.link.check_present()
         names = self._engine.names
         return [g for g in names.link(self.link.scene.scoped).geoms if names.geom_owner(g)[1] == self.scoped]

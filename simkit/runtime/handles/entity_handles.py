@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from simkit.argument_checks import check_kind
+from simkit.runtime.engine.velocity_limits import NO_LIMIT, LimitedDof
 from simkit.runtime.handles.handle import look_up
 from simkit.runtime.handles.joint import Joint
 from simkit.runtime.handles.light import Light
@@ -44,7 +45,6 @@ class EntityHandles:
         self.engine, self.make_movable, self._world = engine, make_movable, engine.world
         self.labels, self.temperatures = Labels(self), Temperatures(self)
         self.exact_limits: list[Joint] = []
-        engine.velocity_limit = self._velocity_limit
         self._by_scene: dict[int, tuple[SceneModel, Model, dict[str, Light]]] = {}
         self._world_lights: dict[str, Light] | None = None
         self._world_joints: dict[str, Joint] | None = None
@@ -57,20 +57,20 @@ class EntityHandles:
             self._world_joints = {j.name: Joint(self, j) for j in self._world.joints}
         for _, model, lights in self._by_scene.values():
             for handle in (*model.everything(), *lights.values()):
-                handle._is_present = False
+                handle.mark_present(False)
         self.models = {name: self._model_handles(scene)[0] for name, scene in structure.models.items()}
         tables: HandleTables = {k: {} for k in ("model", "link", "joint", "light", "sensor")}
         names = structure.compiled.names
         for model in self.models.values():
             for handle in model.everything():
-                handle._is_present = True
+                handle.mark_present()
                 if isinstance(handle, (Link, Joint)):
-                    handle._bind(names)
+                    handle.bind(names)
                 tables[type(handle).__name__.lower()][handle.scoped] = handle
         for name, joint in self._world_joints.items():
-            joint._is_present = joint.scoped in names.joints
-            if joint._is_present:
-                joint._bind(names)
+            joint.mark_present(joint.scoped in names.joints)
+            if joint.is_present:
+                joint.bind(names)
                 tables["joint"][name] = joint
         tables["sensor"] = {s.scoped: s for s in structure.all_sensors()}
         self.tables = tables
@@ -80,7 +80,7 @@ class EntityHandles:
         for scene in structure.models.values():
             lights = self._lights(scene)
             for light in lights.values():
-                light._is_present = True
+                light.mark_present()
             tables["light"].update(lights)
 
     def close(self) -> None:
@@ -88,7 +88,7 @@ class EntityHandles:
         lights = [light for _, _, lights in self._by_scene.values() for light in lights.values()]
         handles = [handle for _, model, _ in self._by_scene.values() for handle in model.everything()]
         for handle in (*handles, *lights, *(self._world_lights or {}).values(), *(self._world_joints or {}).values()):
-            handle._is_present = False
+            handle.mark_present(False)
 
     @property
     def count(self) -> int:
@@ -97,8 +97,8 @@ class EntityHandles:
 
     def forget(self, living: Iterable[SceneModel]) -> None:
         """Drop the handles of models that nothing can bring back."""
-        kept = {id(scene) for scene in living}
-        self._by_scene = {key: handles for key, handles in self._by_scene.items() if key in kept}
+        living_ids = {id(scene) for scene in living}
+        self._by_scene = {key: handles for key, handles in self._by_scene.items() if key in living_ids}
 
     def _model_handles(self, scene: SceneModel) -> tuple[Model, dict[str, Light]]:
         if id(scene) not in self._by_scene:
@@ -125,7 +125,7 @@ class EntityHandles:
             lights.update({li.scoped: Light(self, li) for link in scene.all_links() for li in link.lights})
         return lights
 
-    def set_values(self, values: Mapping[tuple[str, str, str], Any]) -> None:
+    def set_values(self, values: Mapping[tuple[str, str, str], object]) -> None:
         """Set attributes of present handles by kind, scoped name and attribute; entities that are gone are left out."""
         for (kind, scoped, attribute), value in values.items():
             link = self.tables["link"].get(scoped.rpartition("::")[0]) if kind == "collision" else None
@@ -144,9 +144,9 @@ class EntityHandles:
         check_kind(name, str, "the name of a visual", "a text")
         link: Link | None = self.tables["link"].get(name.rpartition("::")[0])
         if link is not None:
-            found = next((v for v in link.visuals.values() if v.scoped == name), None)
-            if found is not None:
-                return found
+            visual = next((v for v in link.visuals.values() if v.scoped == name), None)
+            if visual is not None:
+                return visual
         return look_up(self.visuals(), name, "visual")
 
     def visuals(self) -> dict[str, Visual]:
@@ -160,23 +160,23 @@ class EntityHandles:
 
     def link(self, name: str) -> Link:
         """Return a link by scoped name; a KeyError suggests the closest name."""
-        found: Link = self.find("link", name)
-        return found
+        link: Link = self.find("link", name)
+        return link
 
     def model(self, name: str) -> Model:
         """Return a model by scoped name; a KeyError suggests the closest name."""
-        found: Model = self.find("model", name)
-        return found
+        model: Model = self.find("model", name)
+        return model
 
     def joint(self, name: str) -> Joint:
         """Return a joint by scoped name; a KeyError suggests the closest name."""
-        found: Joint = self.find("joint", name)
-        return found
+        joint: Joint = self.find("joint", name)
+        return joint
 
     def light(self, name: str) -> Light:
         """Return a light by scoped name; a KeyError suggests the closest name."""
-        found: Light = self.find("light", name)
-        return found
+        light: Light = self.find("light", name)
+        return light
 
     def limit_velocity(self, joint: Joint) -> None:
         """Enforce a joint's velocity limit at every step from now on."""
@@ -184,7 +184,15 @@ class EntityHandles:
             self.exact_limits.append(joint)
         self.engine.reschedule()
 
-    def _velocity_limit(self, name: str, axis: int) -> float:
+    def limited_dofs(self) -> tuple[list[LimitedDof], list[LimitedDof]]:
+        """Return the degrees of freedom whose velocity limit is enforced at every step, and the others with a limit."""
+        moving = [joint for joint in self.tables["joint"].values() if joint.mj_dofs]
+        exact = [joint for joint in moving if joint in self.exact_limits]
+        others = [j for j in moving if j not in self.exact_limits and j.least_velocity_limit < NO_LIMIT]
+        return [dof for joint in exact for dof in joint.limited_dofs()], [d for j in others for d in j.limited_dofs()]
+
+    def velocity_limit(self, name: str, axis: int) -> float:
+        """Return the velocity limit of a joint's axis [rad/s or m/s]."""
         return self.joint(name).axis_velocity_limit(axis)
 
     def stateful(self) -> list[Stateful]:

@@ -31,10 +31,21 @@ class Handle(InProcess):
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.scoped!r}{'' if self._is_present else ' (removed)'}>"
 
-    def _check(self) -> None:
+    @property
+    def is_present(self) -> bool:
+        """False after the entity has been removed."""
+        return self._is_present
+
+    def mark_present(self, is_present: bool = True) -> None:
+        """Record that the entity is in the world, or that it was removed."""
+        self._is_present = is_present
+
+    def check_present(self) -> None:
+        """Raise InputError if the entity was removed."""
         if not self._is_present:
             self._engine.check_open()  # closing a simulation ends the presence of all its handles
-            raise InputError(f"{type(self).__name__.lower()} {self.scoped!r} was removed", "SK-NAME-002")
+            text = f"{type(self).__name__.lower()} {self.scoped!r} was removed"
+            raise InputError("SK-NAME-002", text, shows_code=False)
 
 
 class UnknownName(KeyError):

@@ -93,13 +93,13 @@ def _active_connections(engine: EngineState, without: JointBinding) -> dict[int,
 
 def _connected(start: int, links: dict[int, set[int]]) -> set[int]:
     """Return the roots that constraints connect to a root; they do not connect through the world."""
-    found, stack = {start}, [start]
+    roots, stack = {start}, [start]
     while stack:
         root = stack.pop()
-        new = links.get(root, set()) - found if root else set()
-        found |= new
+        new = links.get(root, set()) - roots if root else set()
+        roots |= new
         stack += new
-    return found
+    return roots
 
 
 def _root(engine: EngineState, link: str) -> int:

@@ -20,6 +20,7 @@ from simkit.runtime.handles.joint_numbers import TunableJoint
 
 if TYPE_CHECKING:
     from simkit.compiler.name_map import NameMap
+    from simkit.runtime.engine.velocity_limits import LimitedDof
     from simkit.runtime.handles.entity_handles import EntityHandles
     from simkit.scene import SceneJoint
 
@@ -48,7 +49,8 @@ class Joint(TunableJoint):
         self._effort_limit = np.array([a.effort for a in axes] or [math.inf])
         self._velocity_limit = np.array([a.velocity for a in axes] or [math.inf])
 
-    def _bind(self, names: NameMap) -> None:
+    def bind(self, names: NameMap) -> None:
+        """Look up the joint in a compiled model."""
         binding = names.joint(self.scoped)
         self._binding = binding
         self._ids = [int(j) for j in binding.joint_ids]
@@ -80,7 +82,7 @@ class Joint(TunableJoint):
 
         A ball joint has a rotation vector (3,), a planar joint x, y and angle, a floating joint x y z qw qx qy qz.
         """
-        self._check()
+        self.check_present()
         qpos = self._physics.data.qpos
         if self._one_qpos >= 0:
             return float(qpos[self._one_qpos])
@@ -100,7 +102,7 @@ class Joint(TunableJoint):
         A floating joint has the velocity of the child's joint origin in the parent's joint frame (3), then the angular
         velocity in the child's joint frame (3).
         """
-        self._check()
+        self.check_present()
         qvel = self._physics.data.qvel
         if self._one_dof >= 0:
             return float(qvel[self._one_dof])
@@ -111,7 +113,7 @@ class Joint(TunableJoint):
     @property
     def effort(self) -> JointValue:
         """Sum of the efforts of commands and actuators [N·m or N], within the effort limit."""
-        self._check()
+        self.check_present()
         physics = self._physics
         data = physics.fresh()
         pending = data.qfrc_applied if physics.one_shot else physics.last_applied
@@ -125,7 +127,7 @@ class Joint(TunableJoint):
         """Return position, velocity and effort, faster than one by one."""
         if self._one_qpos < 0 or self._one_dof < 0:
             return self.position, self.velocity, self.effort
-        self._check()
+        self.check_present()
         physics, dof = self._physics, self._one_dof
         data = physics.fresh()
         pending = physics.data.qfrc_applied if physics.one_shot else physics.last_applied
@@ -138,7 +140,7 @@ class Joint(TunableJoint):
 
         The wrench includes the efforts of motor, spring, damper and friction along the joint's axes.
         """
-        self._check()
+        self.check_present()
         physics = self._physics
         binding = self._binding
         body = binding.moved_body
@@ -187,7 +189,7 @@ class Joint(TunableJoint):
 
     def check_position(self, position: float | Sequence[float] | Vector) -> Vector:
         """Return a position as numbers; raise an error if `set_position` would refuse it."""
-        self._check()
+        self.check_present()
         self._check_settable()
         values = self._shaped(position, 7 if self._is_floating else self.dof, "position")
         if self._is_floating and not values[3:].any():
@@ -200,7 +202,7 @@ class Joint(TunableJoint):
         Raises:
             InputError: the joint closes a loop.
         """
-        self._check()
+        self.check_present()
         self._check_settable()
         values = self._shaped(velocity, self.dof, "velocity")
         side = joined_models.loose_side(self._engine, self._binding) if self._binding.is_loop else None
@@ -221,9 +223,13 @@ class Joint(TunableJoint):
         Raises:
             InputError: the joint is floating.
         """
-        self._check()
+        self.check_present()
         if self._is_floating:
-            raise InputError(f"joint {self.scoped!r} is floating; use Link.apply_wrench on its child", "SK-JOINT-012")
+            raise InputError(
+                "SK-JOINT-012",
+                f"joint {self.scoped!r} is floating; use Link.apply_wrench on its child",
+                shows_code=False,
+            )
         physics = self._physics
         if self._one_dof >= 0 and isinstance(effort, float) and math.isfinite(effort):
             most = self._effort_limit.item(0)
@@ -232,7 +238,7 @@ class Joint(TunableJoint):
             limit = self._limit()
             values = np.clip(self._shaped(effort, self.dof, "effort"), -limit, limit)
             physics.data.qfrc_applied[self._dofs] = self._from_joint(values)
-        physics.one_shot = True
+        physics.push_once()
         physics.changed_body(CONTROL, self._body)
 
     # ------------------------------------------------------------------ limits
@@ -258,24 +264,24 @@ class Joint(TunableJoint):
     @property
     def effort_limit(self) -> JointValue:
         """Effort limit [N·m or N]; settable."""
-        self._check()
+        self.check_present()
         return float(self._effort_limit[0]) if len(self._effort_limit) == 1 else self._effort_limit.copy()
 
     @effort_limit.setter
     def effort_limit(self, value: float) -> None:
-        self._check()
+        self.check_present()
         self._effort_limit = np.array(_checked_limits(value, "effort_limit", len(self._effort_limit)))
         self._engine.numbers.keep("joint", self.scoped, "effort_limit", self._effort_limit.tolist())
 
     @property
     def velocity_limit(self) -> JointValue:
         """Velocity limit [rad/s or m/s]; settable, and then enforced at every step."""
-        self._check()
+        self.check_present()
         return float(self._velocity_limit[0]) if len(self._velocity_limit) == 1 else self._velocity_limit.copy()
 
     @velocity_limit.setter
     def velocity_limit(self, value: float) -> None:
-        self._check()
+        self.check_present()
         self._velocity_limit = np.array(_checked_limits(value, "velocity_limit", len(self._velocity_limit)))
         self._engine.numbers.keep("joint", self.scoped, "velocity_limit", self._velocity_limit.tolist())
         self._handles.limit_velocity(self)
@@ -291,6 +297,11 @@ class Joint(TunableJoint):
         axis = checked_integer(axis, "axis", 0, len(self._velocity_limit) - 1)
         limit: float = self._velocity_limit.item(axis)
         return limit
+
+    def limited_dofs(self) -> list[LimitedDof]:
+        """Return the degrees of freedom with their velocity limits; a ball joint has one limit for three of them."""
+        limits, least = self._velocity_limit.tolist(), self.least_velocity_limit
+        return [(dof, limits[axis] if axis < len(limits) else least) for axis, dof in enumerate(self.mj_dofs)]
 
     def get_state(self) -> tuple[Vector, Vector]:
         """Return the limits for a snapshot; their arrays are replaced by a change and never written to."""
@@ -314,12 +325,15 @@ class Joint(TunableJoint):
     def _check_settable(self) -> None:
         if self._binding.is_loop and joined_models.loose_side(self._engine, self._binding) is None:
             raise InputError(
-                f"joint {self.scoped!r} closes a loop: it follows the other joints of the loop; set those",
                 "SK-JOINT-012",
+                f"joint {self.scoped!r} closes a loop: it follows the other joints of the loop; set those",
+                shows_code=False,
             )
         if self._is_floating and not self._binding.free:
             raise InputError(
-                f"floating joint {self.scoped!r} cannot be set: its child has another joint", "SK-JOINT-012"
+                "SK-JOINT-012",
+                f"floating joint {self.scoped!r} cannot be set: its child has another joint",
+                shows_code=False,
             )
 
     def _to_joint(self, stored: Vector) -> Vector:
@@ -334,14 +348,14 @@ class Joint(TunableJoint):
         return np.array(self._physics.data.qpos[start : start + 4])
 
     def _range(self, side: int) -> JointValue:
-        self._check()
+        self.check_present()
         model = self._physics.model
         ends = (-math.inf, math.inf)
         values = [float(model.jnt_range[j][side]) if model.jnt_limited[j] else ends[side] for j in self._ids]
         return values[0] if len(values) == 1 else np.array(values)
 
     def _set_range(self, side: int, value: float) -> None:
-        self._check()
+        self.check_present()
         value = checked_number(value, ("lower", "upper")[side], finite=False)
         ranges, limited = self._engine.touch("jnt_range"), self._engine.touch("jnt_limited")
         for j in self._ids:
@@ -351,3 +365,22 @@ class Joint(TunableJoint):
             limited[j] = 1
         self._engine.numbers.keep("joint", self.scoped, ("lower", "upper")[side], value)
         self._physics.changed(STALE)
+
+
+def wheel_angles(left: Joint, right: Joint) -> tuple[float, float]:
+    """Return the angles of two joints about their first axes [rad], faster than `Joint.position`."""
+    qpos = left._physics.data.qpos
+    return qpos.item(left._first_qpos), qpos.item(right._first_qpos)
+
+
+def joint_angles(joints: Sequence[Joint]) -> tuple[float, ...]:
+    """Return the angles of any number of joints about their first axes [rad], as fast as `wheel_angles`."""
+    qpos: Vector = joints[0]._physics.data.qpos
+    return tuple(qpos.item(joint._first_qpos) for joint in joints)
+
+
+def first_velocity(joint: Joint) -> float:
+    """Return the velocity of a joint about its first axis [rad/s]."""
+    if joint._one_dof >= 0:
+        return float(joint._physics.data.qvel.item(joint._one_dof))
+    return float(np.ravel(joint.velocity)[0])

@@ -76,27 +76,27 @@ class TunableJoint(Handle):
         self._engine.numbers.keep("joint", self.scoped, "kv", gain)
 
     def _numbers(self, field: str) -> JointNumbers:
-        self._check()
+        self.check_present()
         values = getattr(self._physics.model, field)[self._dofs]
         return float(values[0]) if len(values) == 1 else np.array(values)
 
     def _set_numbers(self, name: str, field: str, value: float | Sequence[float]) -> None:
-        self._check()
+        self.check_present()
         count = len(self._dofs)
-        given = [value] * count if np.ndim(value) == 0 else list(value)  # type: ignore[arg-type]  # a number or numbers
-        if len(given) != count:
+        entries = [value] * count if np.ndim(value) == 0 else list(value)  # type: ignore[arg-type]  # a number or numbers
+        if len(entries) != count:
             raise wrong_value(name, f"one number or {count} numbers", value)
-        numbers = [checked_number(number, name, 0.0) for number in given]
+        numbers = [checked_number(number, name, 0.0) for number in entries]
         if count:
             self._engine.numbers.write(field, self._dofs, numbers)
         self._engine.numbers.keep("joint", self.scoped, name, numbers)
 
     def _servo(self, name: str, kinds: Sequence[str]) -> tuple[int, str]:
         """Return id and kind of the servo that a plugin added to the joint."""
-        self._check()
+        self.check_present()
         records = self._engine.structure.builder.records.values()
         for ref in (ref for record in records for ref in record.actuators):
             if ref.joint == self.scoped and ref.kind in kinds:
                 return self._engine.names.actuator(ref), ref.kind
         message = f"joint {self.scoped!r} has no {' or '.join(kinds)} servo, so it has no {name}"
-        raise InputError(f"SK-CORE-006 {message}", "SK-CORE-006")
+        raise InputError("SK-CORE-006", message)

@@ -82,22 +82,22 @@ class Light(Handle):
     @property
     def state(self) -> LightState:
         """Present state."""
-        self._check()
+        self.check_present()
         return self.motion.at(self._engine.time_ns)
 
     @property
     def pose(self) -> Pose:
         """Pose in the world."""
-        self._check()
+        self.check_present()
         pose = self.state.pose
         return self._handles.link(self.scene.link).pose @ pose if self.scene.link else pose
 
     def set_pose(self, pose: Pose) -> None:
         """Move the light and its direction. The pose replaces an earlier motion, for example that of a sun."""
-        self._check()
+        self.check_present()
         pose = checked_pose(pose)
-        own = self._handles.link(self.scene.link).pose.inverse() @ pose if self.scene.link else pose
-        self.motion = LightMotion(replace(self.state, pose=own))
+        pose_in_link = self._handles.link(self.scene.link).pose.inverse() @ pose if self.scene.link else pose
+        self.motion = LightMotion(replace(self.state, pose=pose_in_link))
         self.draw()
 
     @property
@@ -118,7 +118,7 @@ class Light(Handle):
     @property
     def intensity(self) -> float:
         """Factor of the light's colours; settable."""
-        self._check()
+        self.check_present()
         return self.scene.intensity
 
     @intensity.setter
@@ -128,7 +128,7 @@ class Light(Handle):
     @property
     def diffuse(self) -> Colour:
         """Diffuse colour, RGBA from 0 to 1; settable, also by red, green and blue."""
-        self._check()
+        self.check_present()
         return self.scene.diffuse
 
     @diffuse.setter
@@ -138,7 +138,7 @@ class Light(Handle):
     @property
     def specular(self) -> Colour:
         """Specular colour, RGBA from 0 to 1; settable, also by red, green and blue."""
-        self._check()
+        self.check_present()
         return self.scene.specular
 
     @specular.setter
@@ -148,7 +148,7 @@ class Light(Handle):
     @property
     def cast_shadows(self) -> bool:
         """True if the light casts shadows; settable."""
-        self._check()
+        self.check_present()
         return self.scene.cast_shadows
 
     @cast_shadows.setter
@@ -156,7 +156,7 @@ class Light(Handle):
         check_kind(casts, (bool, int), "cast_shadows", "True or False")
         self._set("cast_shadows", bool(casts))
 
-    def _set(self, name: str, value: Any) -> None:
+    def _set(self, name: str, value: object) -> None:
         changes: dict[str, Any] = {name: value}
         self.change(replace(self.scene, **changes))
         self._engine.numbers.keep("light", self.scoped, name, value)
@@ -168,13 +168,13 @@ class Light(Handle):
 
     def follow(self, course: LightCourse) -> None:
         """Let the function `course(time_ns)` set the state of the light; it may depend only on the time."""
-        self._check()
+        self.check_present()
         self.motion = LightMotion(self.state, course)
         self.draw()
 
     def change(self, scene: SceneLight) -> None:
         """Replace colours, attenuation, cone, direction and shadows by those of another description; the pose stays."""
-        self._check()
+        self.check_present()
         for sensor in self._engine.structure.all_sensors():
             sensor.take_held()  # pending images belong to the old light
         self.scene = scene
@@ -188,7 +188,7 @@ class Light(Handle):
 
     def switch(self, on: bool) -> None:
         """Switch the light on or off. The setting replaces an earlier motion, for example that of a sun."""
-        self._check()
+        self.check_present()
         check_kind(on, (bool, int), "on", "True or False")
         self.motion = LightMotion(replace(self.state, on=on))
         self.draw()

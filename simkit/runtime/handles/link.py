@@ -37,7 +37,8 @@ class Link(Handle):
         self._visuals: dict[str, Visual] | None = None
         self._collisions: dict[str, Collision] | None = None
 
-    def _bind(self, names: NameMap) -> None:
+    def bind(self, names: NameMap) -> None:
+        """Look up the link in a compiled model."""
         binding = names.link(self.scoped)
         self._binding, self._body = binding, int(binding.body)
         self._offset: Pose | None = None if binding.offset == IDENTITY else binding.offset
@@ -47,7 +48,7 @@ class Link(Handle):
     @property
     def pose(self) -> Pose:
         """Pose of the link frame in the world."""
-        self._check()
+        self.check_present()
         data = self._physics.fresh()
         pose = Pose(data.xpos[self._body], data.xquat[self._body])
         return pose @ self._offset if self._offset is not None else pose
@@ -57,9 +58,9 @@ class Link(Handle):
         start = self._binding.root_joint_qpos
         return tuple(self._physics.data.qpos[start : start + 7].tolist()) if start >= 0 else None
 
-    def _velocity(self) -> Vector:
+    def spatial_velocity(self) -> Vector:
         """Return angular and linear velocity of the link origin in the world, shape (6,)."""
-        self._check()
+        self.check_present()
         data = self._physics.fresh()
         out = np.zeros(6)
         if self._body:
@@ -69,17 +70,17 @@ class Link(Handle):
     @property
     def linear_velocity(self) -> Vector:
         """Velocity of the link origin [m/s], world frame, shape (3,)."""
-        return self._velocity()[3:]
+        return self.spatial_velocity()[3:]
 
     @property
     def angular_velocity(self) -> Vector:
         """Angular velocity [rad/s], world frame, shape (3,)."""
-        return self._velocity()[:3]
+        return self.spatial_velocity()[:3]
 
     @property
     def linear_acceleration(self) -> Vector:
         """Acceleration of the link origin [m/s²], world frame, without gravity (0 at rest), shape (3,)."""
-        self._check()
+        self.check_present()
         out = np.zeros(6)
         physics = self._physics
         # the engine does not update the numbers of a sleeping body
@@ -93,12 +94,12 @@ class Link(Handle):
     @property
     def mass(self) -> float:
         """Mass [kg]; settable. The inertia changes in proportion."""
-        self._check()
+        self.check_present()
         return float(self._engine.numbers.inertial(self.scene).mass)
 
     @mass.setter
     def mass(self, mass: float) -> None:
-        self._check()
+        self.check_present()
         mass = checked_number(mass, "mass", 0.0)
         old = self._engine.numbers.inertial(self.scene)
         self._engine.numbers.set_inertial(self.scene, with_mass(old, mass))
@@ -107,12 +108,12 @@ class Link(Handle):
     @property
     def inertia(self) -> tuple[float, ...]:
         """Inertia ixx, iyy, izz, ixy, ixz, iyz [kg·m²] about the centre of mass, in link axes; settable."""
-        self._check()
+        self.check_present()
         return self._engine.numbers.inertial(self.scene).inertia
 
     @inertia.setter
     def inertia(self, inertia: Sequence[float]) -> None:
-        self._check()
+        self.check_present()
         moments = six(checked_vector(inertia, "inertia", 6).tolist())
         old = self._engine.numbers.inertial(self.scene)
         self._engine.numbers.set_inertial(self.scene, replace(old, inertia=moments))
@@ -123,7 +124,7 @@ class Link(Handle):
     @property
     def is_free(self) -> bool:
         """True if the link moves freely, together with the links that joints connect to it."""
-        self._check()
+        self.check_present()
         return int(self._binding.root_joint_qpos) >= 0
 
     def set_pose(self, pose: Pose) -> None:
@@ -132,7 +133,7 @@ class Link(Handle):
         Raises:
             InputError: joints or the world hold the link; move its model, or set its joints.
         """
-        self._check()
+        self.check_present()
         pose = checked_pose(pose)
         if not self.is_free:
             raise self._held(f"move the model {self.scoped.rpartition('::')[0]!r}")
@@ -149,7 +150,7 @@ class Link(Handle):
         Raises:
             InputError: joints or the world hold the link.
         """
-        self._check()
+        self.check_present()
         linear = checked_vector(linear, "linear")
         angular = checked_vector(angular, "angular")
         if not self.is_free:
@@ -163,12 +164,12 @@ class Link(Handle):
         self._physics.changed_body(VELOCITY, self._body)
 
     def _held(self, instead: str) -> InputError:
-        message = f"SK-SERVICE-003 link {self.scoped!r} is held by joints or the world; {instead}"
-        return InputError(message, "SK-SERVICE-003")
+        message = f"link {self.scoped!r} is held by joints or the world; {instead}"
+        return InputError("SK-SERVICE-003", message)
 
     def apply_wrench(self, force: VectorLike, torque: VectorLike = (0.0, 0.0, 0.0)) -> None:
         """Add a force [N] and torque [N·m], world frame, at the centre of mass, for the next step."""
-        self._check()
+        self.check_present()
         force, torque = checked_vector(force, "force"), checked_vector(torque, "torque")
         if not self._body:
             return
@@ -176,19 +177,19 @@ class Link(Handle):
         row = physics.data.xfrc_applied[self._body]
         row[:3] += force
         row[3:] += torque
-        physics.one_shot = True
+        physics.push_once()
         physics.changed_body(CONTROL, self._body)
 
     @property
     def collisions_enabled(self) -> bool:
         """True if the link's collisions make contacts; settable."""
-        self._check()
+        self.check_present()
         model = self._physics.model
         return any(model.geom_contype[g] or model.geom_conaffinity[g] for g in self._binding.geoms)
 
     @collisions_enabled.setter
     def collisions_enabled(self, enabled: bool) -> None:
-        self._check()
+        self.check_present()
         check_kind(enabled, (bool, np.bool_, int), "collisions_enabled", "True or False")
         for field in ("geom_contype", "geom_conaffinity"):
             values = self._engine.touch(field)

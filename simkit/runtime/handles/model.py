@@ -56,21 +56,22 @@ class Model(Handle):
             self.models[model.name].replace_scene(model)
 
     def link(self, name: str) -> Link:
-        found: Link = look_up(self._below("links"), name, "link")
-        return found
+        link: Link = look_up(self.below("links"), name, "link")
+        return link
 
     def joint(self, name: str) -> Joint:
-        found: Joint = look_up(self._below("joints"), name, "joint")
-        return found
+        joint: Joint = look_up(self.below("joints"), name, "joint")
+        return joint
 
     def model(self, name: str) -> Model:
-        found: Model = look_up(self._below("models"), name, "model")
-        return found
+        model: Model = look_up(self.below("models"), name, "model")
+        return model
 
-    def _below(self, attribute: str) -> dict[str, Any]:
+    def below(self, attribute: str) -> dict[str, Any]:
+        """Return the links, joints or models of this model and of its nested models, by name below this model."""
         table: dict[str, Any] = dict(getattr(self, attribute))
         for name, nested in self.models.items():
-            table.update({f"{name}::{key}": value for key, value in nested._below(attribute).items()})
+            table.update({f"{name}::{key}": value for key, value in nested.below(attribute).items()})
         return table
 
     # ------------------------------------------------------------------ pose and velocity
@@ -78,7 +79,7 @@ class Model(Handle):
     @property
     def pose(self) -> Pose:
         """Pose of the model frame in the world."""
-        self._check()
+        self.check_present()
         if self._canonical is None or self._in_canonical is None:
             return self._rest
         pose = self._handles.link(self._canonical.scoped).pose
@@ -86,7 +87,7 @@ class Model(Handle):
 
     def set_pose(self, pose: Pose) -> None:
         """Move the whole model; joint positions and velocities stay the same. A static model may be moved too."""
-        self._check()
+        self.check_present()
         pose = checked_pose(pose)
         if self.static:
             self._handles.make_movable(self.scoped.split("::")[0])
@@ -119,7 +120,7 @@ class Model(Handle):
 
     def set_velocity(self, linear: VectorLike, angular: VectorLike = (0.0, 0.0, 0.0)) -> None:
         """Set the twist of every free part of the model about the model's origin, world frame [m/s, rad/s]."""
-        self._check()
+        self.check_present()
         linear = checked_vector(linear, "linear")
         angular = checked_vector(angular, "angular")
         data, names, origin = self._physics.data, self._engine.names, self.pose.position
@@ -137,12 +138,12 @@ class Model(Handle):
 
     def set_joint_positions(self, positions: Mapping[str, float | Sequence[float]]) -> None:
         """Set the present positions of several joints; an error in one of them changes none."""
-        self._check()
+        self.check_present()
         check_kind(positions, Mapping, "positions", "a dict from names of joints to positions")
-        found = [(self.joint(name), value) for name, value in positions.items()]
-        for joint, value in found:
+        targets = [(self.joint(name), value) for name, value in positions.items()]
+        for joint, value in targets:
             joint.check_position(value)
-        for joint, value in found:
+        for joint, value in targets:
             joint.set_position(value)
 
     def get_state(self) -> Pose:

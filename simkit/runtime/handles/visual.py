@@ -34,12 +34,12 @@ class Visual(Handle):
         self.scene, self.link = scene, link
 
     def __repr__(self) -> str:
-        return f"<Visual {self.scoped!r}{'' if self.link._is_present else ' (removed)'}>"
+        return f"<Visual {self.scoped!r}{'' if self.link.is_present else ' (removed)'}>"
 
     @property
     def geoms(self) -> tuple[int, ...]:
         """Ids of the engine's geoms of the visual in the present model; empty for a shape that is not drawn."""
-        self.link._check()
+        self.link.check_present()
         drawn: dict[str, tuple[int, ...]] = self._engine.names.drawn(self.link.scoped)
         return drawn.get(self.scoped, ())
 
@@ -118,30 +118,30 @@ class VisualProperty(MutableMapping[str, Value], abc.ABC):
         Args:
             nested: apply a model's value to the models in it too.
         """
-        found: dict[str, Value] = {}
+        values: dict[str, Value] = {}
         for model in self._handles.engine.structure.models.values() if self.state else ():
-            self._collect(model, None, nested, found)
-        return found
+            self._collect(model, None, nested, values)
+        return values
 
-    def _collect(self, model: SceneModel, outer: Value | None, nested: bool, found: dict[str, Value]) -> None:
+    def _collect(self, model: SceneModel, outer: Value | None, nested: bool, values: dict[str, Value]) -> None:
         state = self.state
-        own = state.get(model.scoped, outer)
+        of_model = state.get(model.scoped, outer)
         for link in model.links:
-            of_link = state.get(link.scoped, own)
+            of_link = state.get(link.scoped, of_model)
             for visual in link.visuals:
                 value = state.get(visual.scoped, of_link)
                 if value is not None:
-                    found[visual.scoped] = value
+                    values[visual.scoped] = value
         for inner in model.models:
-            self._collect(inner, own if nested else None, nested, found)
+            self._collect(inner, of_model if nested else None, nested, values)
 
     # ------------------------------------------------------------------ called by the simulation
 
     def bind(self, structure: WorldStructure) -> None:
         """Drop the values of removed models."""
-        kept = {k: v for k, v in self.state.items() if k.split("::", 1)[0] in structure.models}
-        if len(kept) != len(self.state):
-            self.state = MappingProxyType(kept)
+        remaining = {k: v for k, v in self.state.items() if k.split("::", 1)[0] in structure.models}
+        if len(remaining) != len(self.state):
+            self.state = MappingProxyType(remaining)
 
     def get_state(self) -> Mapping[str, Value]:
         return self.state
@@ -163,8 +163,10 @@ class VisualProperty(MutableMapping[str, Value], abc.ABC):
 
     def _change(self, values: dict[str, Value]) -> None:
         """Replace the values after the pending samples of sensors have been measured with the old ones."""
-        found: list[Any] = [s for s in self._handles.engine.structure.all_sensors() if getattr(s, self.read_by, False)]
-        for camera in found:
+        cameras: list[Any] = [
+            s for s in self._handles.engine.structure.all_sensors() if getattr(s, self.read_by, False)
+        ]
+        for camera in cameras:
             camera.finish_samples()
         self.state = MappingProxyType(values)
 

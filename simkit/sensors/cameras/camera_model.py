@@ -193,10 +193,10 @@ def _read_field_of_view(params: Params) -> float:
     hfov = params.number("horizontal_fov", 1.047, minimum=_NARROWEST)
     if hfov <= _WIDEST:
         return hfov
-    found = params.block("horizontal_fov")
+    element = params.block("horizontal_fov")
     allowed = f"expected a number from {_NARROWEST:g} to {_WIDEST:g} rad for a pinhole camera"
     hint = "give the angle in radians; the sensor type wide_angle_camera allows up to 6.28 rad"
-    found.error("SK-PARAM-002", f"found <horizontal_fov>{hfov:g}</horizontal_fov>, {allowed}", hint)
+    element.error("SK-PARAM-002", f"found <horizontal_fov>{hfov:g}</horizontal_fov>, {allowed}", hint)
     return _WIDEST
 
 
@@ -213,9 +213,9 @@ def _read_projection(projection: Params, model: CameraModel) -> CameraModel:
         projection.number(name, 0.0, minimum=-_MAX_FOCAL_PIXELS, maximum=_MAX_FOCAL_PIXELS) for name in ("tx", "ty")
     )
     rectified = values[0], values[1], values[2], values[3]
-    for name, value, own in zip(names, values, intrinsics, strict=True):
-        if abs(value - own) > 1e-6 * max(1.0, abs(own)):
-            message = f"<{name}>{value:g}</{name}> differs from {own:g} in <intrinsics>"
+    for name, value, intrinsic in zip(names, values, intrinsics, strict=True):
+        if abs(value - intrinsic) > 1e-6 * max(1.0, abs(intrinsic)):
+            message = f"<{name}>{value:g}</{name}> differs from {intrinsic:g} in <intrinsics>"
             effect = "P contains this value, but the image is drawn with <intrinsics>; Gazebo draws with <projection>"
             where = (projection.child(name) or projection).where
             projection.diagnostics.note("SK-SENSOR-006", f"{message}: {effect}", where)

@@ -23,9 +23,9 @@ class DepthCamera(RgbdCamera):
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
         super().__init__(scene, diagnostics)
         options = self.options
-        own, camera = (options.depth_near, options.depth_far), (options.model.near, options.model.far)
-        if own != camera:
-            message = f"depths are from {own[0]:g} to {own[1]:g} m, as in <depth_camera><clip>"
+        depth_range, camera = (options.depth_near, options.depth_far), (options.model.near, options.model.far)
+        if depth_range != camera:
+            message = f"depths are from {depth_range[0]:g} to {depth_range[1]:g} m, as in <depth_camera><clip>"
             where = scene.params.block("camera").block("depth_camera").block("clip").where
             hint = "Gazebo's depth_camera uses the <clip> of <camera> instead; write the range there"
             diagnostics.note("SK-SENSOR-110", f"sensor {self.scoped!r}: {message}", where, hint)

@@ -60,9 +60,9 @@ class DepthClouds:
 
     def points(self, depths: Depths, shift: Depths | None = None) -> npt.NDArray[np.float32]:
         """Return the coordinates only [m], shape (h, w, 3)."""
-        found = np.empty((*self._size, 3), np.float32)
-        self._fill(found, depths, shift)
-        return found
+        cloud = np.empty((*self._size, 3), np.float32)
+        self._fill(cloud, depths, shift)
+        return cloud
 
     def _fill(self, points: npt.NDArray[np.float32], depths: Depths, shift: Depths | None) -> bool:
         """Write the coordinates, and return True if all are finite."""
@@ -106,9 +106,9 @@ def depths_in_millimetres(image: msgs.Image, near: float, far: float) -> msgs.Im
     depths = image_messages.pixels_of(image)
     with np.errstate(invalid="ignore"):
         # a rounding error of the float must not change the result by a millimetre: 1.5 m must become 1500
-        whole = np.floor(depths.astype(np.float64) * _MILLIMETRES + 1e-3)
-        seen = (depths >= near) & (depths <= far) & (whole >= 0) & (whole <= _LARGEST_16)
-    return image_messages.image_message(image.header, np.where(seen, whole, 0).astype(np.uint16), "16UC1")
+        millimetres = np.floor(depths.astype(np.float64) * _MILLIMETRES + 1e-3)
+        seen = (depths >= near) & (depths <= far) & (millimetres >= 0) & (millimetres <= _LARGEST_16)
+    return image_messages.image_message(image.header, np.where(seen, millimetres, 0).astype(np.uint16), "16UC1")
 
 
 def crop_cloud(cloud: msgs.PointCloud2, near: float, far: float) -> msgs.PointCloud2:

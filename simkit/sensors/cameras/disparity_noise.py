@@ -65,16 +65,16 @@ class DisparityNoise:
 
     def on_depths(self, depths: Depths, index: int) -> Depths:
         """Return depths [m], shape (h, w), of sample `index` with noise; infinite depths stay infinite."""
-        one, infinite = np.float32(1.0), np.isinf(depths)
+        unit, infinite = np.float32(1.0), np.isinf(depths)
         with np.errstate(divide="ignore", over="ignore"):
-            inverse = np.divide(one, depths)
-            found = inverse if self._noise.is_silent else self._noise.on_depths(inverse, index)
+            inverse = np.divide(unit, depths)
+            disparities = inverse if self._noise.is_silent else self._noise.on_depths(inverse, index)
             if self._step > 0:
-                found /= self._step
-                np.rint(found, out=found)
-                found *= self._step
-            lost = found <= 0
-            np.divide(one, found, out=found)
-        np.copyto(found, np.float32(np.inf), where=lost)
-        np.copyto(found, depths, where=infinite)
-        return found
+                disparities /= self._step
+                np.rint(disparities, out=disparities)
+                disparities *= self._step
+            lost = disparities <= 0
+            np.divide(unit, disparities, out=disparities)
+        np.copyto(disparities, np.float32(np.inf), where=lost)
+        np.copyto(disparities, depths, where=infinite)
+        return disparities

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -120,13 +119,14 @@ class ImageDistorter:
     def _take_nearest(self, image: AnyArray) -> AnyArray:
         return np.ascontiguousarray(image).ravel().take(self._nearest)
 
-    def _remap(self, image: AnyArray, maps: _Maps, out: AnyArray | None = None) -> Any:
+    def _remap(self, image: AnyArray, maps: _Maps, out: AnyArray | None = None) -> AnyArray:
         import cv2
 
         border = cv2.BORDER_REPLICATE if self._is_full else cv2.BORDER_CONSTANT
         positions, fractions = maps
         image = np.ascontiguousarray(image)
-        return cv2.remap(image, positions, fractions, cv2.INTER_LINEAR, dst=out, borderMode=border)
+        bent: AnyArray = cv2.remap(image, positions, fractions, cv2.INTER_LINEAR, dst=out, borderMode=border)
+        return bent
 
 
 def _pixel_density(x: Vector, y: Vector, known: npt.NDArray[np.bool_], model: CameraModel) -> tuple[float, float]:

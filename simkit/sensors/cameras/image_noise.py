@@ -7,7 +7,6 @@ import threading
 from collections.abc import Iterator
 from dataclasses import dataclass
 from statistics import NormalDist
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -112,8 +111,8 @@ class ImageNoise:
         """Yield the rows of an image, strip by strip, with a random word for each of their pixels."""
         height, width = shape[:2]
         # a generator per frame, so that earlier draws have no influence; SFC64 is the fastest for many numbers
-        key: Any = self._streams[channel].generator(index).bit_generator
-        bits: Any = np.random.SFC64(np.random.SeedSequence(key.random_raw(2).tolist()))
+        key = self._streams[channel].generator(index).bit_generator
+        bits = np.random.SFC64(np.random.SeedSequence(key.random_raw(2).tolist()))
         for first in range(0, height, _strip_height(width)):
             last = min(first + _strip_height(width), height)
             count = (last - first) * width

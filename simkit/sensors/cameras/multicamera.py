@@ -163,8 +163,8 @@ class MultiCamera(RenderedCamera):
         return {o.optical_frame_id: o.pose @ OPTICAL_POSE for o in options if o.optical_frame_id}
 
     def describe(self) -> dict[str, object]:
-        found = super().describe()
-        found["cameras"] = [
+        description = super().describe()
+        description["cameras"] = [
             {
                 "name": eye.name,
                 "pose_sensor": eye.options.pose.as_list(),
@@ -174,7 +174,7 @@ class MultiCamera(RenderedCamera):
             }
             for eye in self.eyes
         ]
-        return found
+        return description
 
     def attach(self, sim: Simulation) -> None:
         for eye in self.eyes:
@@ -200,13 +200,13 @@ class MultiCamera(RenderedCamera):
     # ------------------------------------------------------------------ messages
 
     def products(self) -> dict[str, Product]:
-        found = {}
+        products = {}
         for number, eye in enumerate(self.eyes):
-            found[f"{eye.name}/image"] = Product(image_messages.IMAGE_TYPE, partial(self._image_of, number))
-            found[f"{eye.name}/camera_info"] = Product(
+            products[f"{eye.name}/image"] = Product(image_messages.IMAGE_TYPE, partial(self._image_of, number))
+            products[f"{eye.name}/camera_info"] = Product(
                 image_messages.CAMERA_INFO_TYPE, partial(self._info_of, number), needs_reading=False
             )
-        return found
+        return products
 
     def default_topics(self) -> dict[str, str]:
         base = self._default_topic("")

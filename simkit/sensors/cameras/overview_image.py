@@ -12,7 +12,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from simkit.compiler.geom_groups import VISUAL
+from simkit.compiler.geom_groups import COLLISION_CONTACT, VISUAL
 from simkit.compiler.name_map import LinkBinding
 from simkit.elementary_functions import tan
 from simkit.linear_algebra import norm
@@ -27,6 +27,7 @@ from simkit.sensors.values_with_expiry import temporary_values
 
 Distances = npt.NDArray[np.float32]
 _R2: Final = np.array((0.7548776662466927, 0.5698402909980532))  # steps of a sequence that fills a square evenly
+_STRAIGHT: Final = 0.01  # sine of the angle to the vertical of a view from straight above
 _GOLDEN_ANGLE: Final = 2.399963229728653  # [rad] steps of a spiral that fills a disc evenly
 _SUN_RADIUS: Final = 0.035  # [rad] of the disc of lights: half a shade of 7 cm behind an edge 1 m away
 _DARKEST: Final = 0.12
@@ -56,6 +57,7 @@ def render_view(
     passes: int = 1,
     lit: Sphere | None = None,
     distances: Distances | None = None,
+    ceiling: float = math.inf,
 ) -> Colours:
     """Draw an image of the simulation in its current state.
 
@@ -75,6 +77,8 @@ def render_view(
         lit: sphere that shadows of directional lights cover; by default as for a camera.
         distances: array that receives the distances along the line of sight [m], shape (height, width); infinite where
             nothing is drawn.
+        ceiling: height above which static shapes are not drawn [m]. In a view from straight above, shapes that are only
+            partly above it are cut at this height.
 
     Returns:
         Colours, rows from the top, shape (height, width, 3).
@@ -89,7 +93,10 @@ def render_view(
     half = tan(vertical_fov / 2)
     wide = half * width / height
     distance = max(norm(middle - position), 1e-6)
-    view = View(width, height, -wide, wide, -half, half, min(0.01 * extent, 0.1 * distance), distance + 50.0 * extent)
+    near = min(0.01 * extent, 0.1 * distance)
+    if math.hypot(*(middle - position)[:2]) < _STRAIGHT * distance and position[2] > ceiling:
+        near = max(near, float(position[2]) - ceiling)
+    view = View(width, height, -wide, wide, -half, half, near, distance + 50.0 * extent)
     is_dark = model.nlight == 0
 
     def prepare(scene: mujoco.MjvScene) -> None:
@@ -100,7 +107,12 @@ def render_view(
 
     renderer = renderer_of(sim, quality)
     data = sim.engine.physics.fresh()
-    with temporary_values(model.geom_group, _collisions_to_draw(sim), VISUAL), _visible_colours(model):
+    above = _static_above(sim, ceiling)
+    with (
+        temporary_values(model.geom_group, _collisions_to_draw(sim), VISUAL),
+        temporary_values(model.geom_group, above, COLLISION_CONTACT),
+        _visible_colours(model),
+    ):
         composition = renderer.composer.compose(
             model, data, position, look_at(position, middle), prepare, smooth=passes == 1
         )
@@ -163,12 +175,28 @@ def _sun_directions(composition: Composition, count: int) -> Iterator[list[Vecto
 
 
 def _collisions_to_draw(sim: Simulation) -> list[int]:
-    """Return the collision geoms of models without any visual, which cameras do not see; static ones are left out."""
+    """Return the collision geoms that cameras do not see and that stand for visuals.
+
+    These are the collisions of models without any visual, except static ones, and of links whose visuals are meshes
+    that are missing.
+    """
     by_model: dict[str, list[LinkBinding]] = {}
     for link in sim.engine.names.links.values():
         by_model.setdefault(link.model, []).append(link)
-    invisible = (n for n, links in by_model.items() if not sim.models[n].static and not any(li.visuals for li in links))
-    return [geom for name in invisible for link in by_model[name] for geom in link.geoms]
+    invisible = {n for n, links in by_model.items() if not sim.models[n].static and not any(li.visuals for li in links)}
+    shown = (li for n, links in by_model.items() for li in links if n in invisible or li.has_missing_visuals)
+    return [geom for link in shown for geom in link.geoms]
+
+
+def _static_above(sim: Simulation, ceiling: float) -> list[int]:
+    """Return the static geoms that are wholly above a height [m], without planes."""
+    if not math.isfinite(ceiling):
+        return []
+    model, data = sim.mj_model, sim.engine.physics.fresh()
+    rows = data.geom_xmat.reshape(-1, 3, 3)[:, 2]  # the vertical axis in the frame of each geom
+    lowest = data.geom_xpos[:, 2] + (rows * model.geom_aabb[:, :3] - np.abs(rows) * model.geom_aabb[:, 3:]).sum(axis=1)
+    is_static = (model.body_weldid[model.geom_bodyid] == 0) & (model.geom_type != int(mujoco.mjtGeom.mjGEOM_PLANE))
+    return np.flatnonzero(is_static & (lowest >= ceiling)).tolist()
 
 
 @contextmanager

@@ -146,7 +146,7 @@ class RenderedSampler(Sensor):
             renderer_choice.check_available(self.sim)
         except RenderError as error:
             message = f"camera {self.scoped!r} has no images: {error.message}"
-            raise RenderError(message, error.code, self.scene.where) from None
+            raise RenderError(error.code, message, self.scene.where) from None
 
     def sample(self, tick: int) -> None:
         if self._failure is not None:

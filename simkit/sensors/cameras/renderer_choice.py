@@ -92,11 +92,11 @@ def renderer_of(sim: Simulation, quality: str = "") -> ImageRenderer:
     if key not in drawing.renderers:
         while _abandoned:
             _free_quietly(_abandoned.pop())
-        found = drawing.renderers[key] = _make(key[0], Appearance(sim.world.surroundings, QUALITIES[key[1]]))
-        found.uploads.reserve(*drawing.size)
+        renderer = drawing.renderers[key] = _make(key[0], Appearance(sim.world.surroundings, QUALITIES[key[1]]))
+        renderer.uploads.reserve(*drawing.size)
         with contextlib.suppress(RenderError):  # each image raises the error again
             check_available(sim)
-        weakref.finalize(sim, _abandoned.append, found).atexit = False
+        weakref.finalize(sim, _abandoned.append, renderer).atexit = False
     return drawing.renderers[key]
 
 
@@ -163,11 +163,11 @@ def check_available(sim: Simulation) -> None:
     """
     if chosen_renderer(sim) == GL:
         gl_context.ensure_open()
-        sim.engine.renderer = gl_context.describe_renderer() or "unknown"
+        sim.engine.use_renderer(gl_context.describe_renderer() or "unknown")
         return
     from simkit.sensors.cameras.rendering.software import software_renderer
 
-    sim.engine.renderer = software_renderer.describe_renderer()
+    sim.engine.use_renderer(software_renderer.describe_renderer())
 
 
 def reserve_image(sim: Simulation, width: int, height: int) -> None:

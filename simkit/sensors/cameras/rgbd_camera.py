@@ -260,20 +260,20 @@ class RgbdCamera(RenderedCamera):
         self.points_frame_id = ""
 
     def optical_frames(self) -> dict[str, Pose]:
-        found = super().optical_frames()
+        frames = super().optical_frames()
         if self.points_frame_id:
-            found[self.points_frame_id] = OPTICAL_POSE if self._is_cloud_optical else IDENTITY
-        return found
+            frames[self.points_frame_id] = OPTICAL_POSE if self._is_cloud_optical else IDENTITY
+        return frames
 
     def _angle_to_frame(self) -> float:
         """Return the angle between the frame's axes and optical axes [rad]; 0 if the model has no such link."""
         frame, (owner, _, _) = self._cloud_frame, self.scene.parent.rpartition("::")
         links = [link for model in self.sim.models.values() for link in model.scene.all_links()]
         named = [link for link in links if link.name == frame and link.scoped.rpartition("::")[0] == owner]
-        own = [link for link in links if link.scoped == self.scene.parent]
-        if not (named and own):
+        carriers = [link for link in links if link.scoped == self.scene.parent]
+        if not (named and carriers):
             return 0.0
-        pose = named[0].pose_world.inverse() @ own[0].pose_world @ self.scene.pose_link @ OPTICAL_POSE
+        pose = named[0].pose_world.inverse() @ carriers[0].pose_world @ self.scene.pose_link @ OPTICAL_POSE
         return 2 * math.acos(min(abs(float(pose.quaternion[0])), 1.0))
 
 

@@ -31,9 +31,9 @@ def find_collision(name: str, link: SceneLink, model: SceneModel) -> SceneCollis
     rigid = _RigidLinks(model)
     carriers = list(rigid.carriers(link))
     for carrier in carriers:
-        found = rigid.converted(carrier).get(name)
-        if found is not None:
-            return found
+        converted = rigid.converted(carrier).get(name)
+        if converted is not None:
+            return converted
     # the number in a merged name depends on all merged collisions and may be outdated, so only base names are compared
     stem = _NUMBER_SUFFIX.sub("", name.rsplit(_LUMPED_INFIX, 1)[-1])
     near = [c for base, c in rigid.lumped(carriers[-1]) if stem == f"{base}_collision"]
@@ -79,8 +79,10 @@ class _RigidLinks:
 
     def converted(self, root: SceneLink) -> dict[str, SceneCollision]:
         """Return the collisions of all links that Gazebo merges into `root`, with Gazebo's names as keys."""
-        found: dict[str, SceneCollision] = {}
+        collisions: dict[str, SceneCollision] = {}
         for number, (base, collision) in enumerate(self.lumped(root)):
             name = f"{base}_collision" + (f"_{number}" if number else "")
-            found.setdefault(name if name.startswith(root.name) else f"{root.name}{_LUMPED_INFIX}{name}", collision)
-        return found
+            collisions.setdefault(
+                name if name.startswith(root.name) else f"{root.name}{_LUMPED_INFIX}{name}", collision
+            )
+        return collisions

@@ -53,6 +53,7 @@ class Contact(Sensor):
 
     kinds = ("contact",)
     example = "<contact><collision>c</collision></contact>"
+    sees_scene = False
     needs_acceleration = True  # the contact forces of the last step are needed
     reads_contacts = True
     is_deferred = True
@@ -84,15 +85,15 @@ class Contact(Sensor):
             return  # the sensor is on a joint, which is reported elsewhere
         listed = [c.name for c in link.collisions]
         available = f"; the link has: {', '.join(map(repr, listed))}" if listed else "; the link has none"
-        found: dict[str, None] = {}
+        scoped_names: dict[str, None] = {}
         for name, where in self.options.collisions:
             collision = find_collision(name, link, model)
             if collision is None:
                 message = f"contact sensor {self.scoped!r}: its link has no collision {name!r}{available}"
                 self.diagnostics.warning("SK-SENSOR-040", message, where, self._hint(name, listed, model))
             else:
-                found[collision.scoped] = None
-        self.collisions = tuple(found)
+                scoped_names[collision.scoped] = None
+        self.collisions = tuple(scoped_names)
         if not self.options.collisions:
             message = f"contact sensor {self.scoped!r} has no <collision>: it detects nothing, as in Gazebo{available}"
             hint = "add <collision>NAME</collision> to its <contact>"
@@ -150,12 +151,12 @@ class Contact(Sensor):
         frame = self._states_frame
         if frame is None or frame in _WORLD_FRAMES or self._quirks:
             return None
-        found = [scoped for scoped in names.links if f"::{scoped}".endswith(f"::{frame}")]
-        own = self.scene.parent.split("::")[0] + "::"
-        found.sort(key=lambda scoped: not scoped.startswith(own))
-        if not found:
+        matching = [scoped for scoped in names.links if f"::{scoped}".endswith(f"::{frame}")]
+        top_model_prefix = self.scene.parent.split("::")[0] + "::"
+        matching.sort(key=lambda scoped: not scoped.startswith(top_model_prefix))
+        if not matching:
             return None
-        link = names.link(found[0])
+        link = names.link(matching[0])
         return int(link.body), link.offset.position, link.offset.matrix
 
     # ------------------------------------------------------------------ readings
@@ -175,22 +176,22 @@ class Contact(Sensor):
 
     def capture(self, model: mujoco.MjModel, data: mujoco.MjData) -> RawContacts:
         """Return the engine's contacts and the link positions that the bumper's states need."""
-        found = find_contacts(model, data, self._mine)
+        contacts = find_contacts(model, data, self._mine)
         if self._states_frame is None:
-            return RawContacts(found, self._numbers, self._order)
+            return RawContacts(contacts, self._numbers, self._order)
         centres = {
             number: data.xpos[body] + matmul(data.xmat[body].reshape(3, 3), centre)
-            for number, (body, centre) in (self._centres.items() if found is not None else ())
+            for number, (body, centre) in (self._centres.items() if contacts is not None else ())
         }
         if self._frame is None:
             keeps_name = self._quirks or self._states_frame in _WORLD_FRAMES
             frame = self._states_frame if keeps_name and self._states_frame else "world"
-            return RawContacts(found, self._numbers, self._order, centres, frame)
+            return RawContacts(contacts, self._numbers, self._order, centres, frame)
         body, position, rotation = self._frame
         axes = data.xmat[body].reshape(3, 3)
         origin = data.xpos[body] + matmul(axes, position)
         return RawContacts(
-            found, self._numbers, self._order, centres, self._states_frame, origin, matmul(axes, rotation)
+            contacts, self._numbers, self._order, centres, self._states_frame, origin, matmul(axes, rotation)
         )
 
     def finish(self, raw: RawContacts) -> ContactReading:

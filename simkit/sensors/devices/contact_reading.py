@@ -86,11 +86,11 @@ class RawContacts:
         return ContactReading(pairs, origin, _AXES if self.axes is None else self.axes, self.frame_id)
 
 
-def _group_by_pair(raw: RawContacts, found: CollisionContacts) -> tuple[ContactPair, ...]:
+def _group_by_pair(raw: RawContacts, contacts: CollisionContacts) -> tuple[ContactPair, ...]:
     """Group the contacts by pairs of collisions; a contact between two of the sensor's collisions counts for each."""
     order, names = raw.order, raw.collisions.names
     sides: list[tuple[int, int, int, int, float]] = []
-    for row, (first, second) in enumerate(raw.collisions.of_geom.take(found.geoms).tolist()):
+    for row, (first, second) in enumerate(raw.collisions.of_geom.take(contacts.geoms).tolist()):
         # the engine's frame and wrench belong to its second geom
         if second in order:
             sides.append((order[second], first, second, row, 1.0))
@@ -98,26 +98,26 @@ def _group_by_pair(raw: RawContacts, found: CollisionContacts) -> tuple[ContactP
             sides.append((order[first], second, first, row, -1.0))
     sides.sort()
     rows, sign = [s[3] for s in sides], np.array([s[4] for s in sides])[:, None]
-    positions, depths, frames = found.positions[rows], found.depths[rows], found.frames[rows]
+    positions, depths, frames = contacts.positions[rows], contacts.depths[rows], contacts.frames[rows]
     normals = frames[:, 0] * sign
     # the rows of each frame are its axes, so this product rotates into the world
-    wrenches = matmul((found.wrenches[rows] * sign).reshape(-1, 2, 3), frames)
+    wrenches = matmul((contacts.wrenches[rows] * sign).reshape(-1, 2, 3), frames)
     pairs, start = [], 0
     while start < len(sides):
-        _, other, own, *_ = sides[start]
-        end = next((i for i in range(start, len(sides)) if sides[i][1:3] != (other, own)), len(sides))
+        _, other, sensed, *_ = sides[start]
+        end = next((i for i in range(start, len(sides)) if sides[i][1:3] != (other, sensed)), len(sides))
         k = slice(start, end)
         pairs.append(
             ContactPair(
-                collision1=names[own],
+                collision1=names[sensed],
                 collision2=names[other] if other >= 0 else "",
-                ids=(own + 1, other + 1),
+                ids=(sensed + 1, other + 1),
                 positions=positions[k],
                 normals=normals[k],
                 depths=depths[k],
                 forces=wrenches[k, 0],
                 torques=wrenches[k, 1],
-                centre=_ORIGIN if raw.centres is None else raw.centres[own],
+                centre=_ORIGIN if raw.centres is None else raw.centres[sensed],
             )
         )
         start = end
@@ -201,11 +201,11 @@ def _state(
     forces = matmul(pair.forces, axes)
     torques = matmul(pair.torques + np.cross(pair.positions - pair.centre, pair.forces), axes)
     total_force, total_torque = vectors(np.stack([forces.sum(axis=0), torques.sum(axis=0)]))
-    own, other, stamp = pair.collision1, pair.collision2, header.stamp
-    info = f"Debug:  i: ({which})     my geom: [{own}]  other geom: [{other}]"
+    sensed, other, stamp = pair.collision1, pair.collision2, header.stamp
+    info = f"Debug:  i: ({which})     my geom: [{sensed}]  other geom: [{other}]"
     return types.state(
         f"{info}        time: [{stamp.sec}.{stamp.nanosec}]\n",
-        own,
+        sensed,
         other,
         [wrench(f, t) for f, t in zip(vectors(forces), vectors(torques), strict=True)],
         wrench(total_force, total_torque),

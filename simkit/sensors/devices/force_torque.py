@@ -47,6 +47,7 @@ class ForceTorque(VectorSensor):
     example = "<force_torque/>"
     product, message_type = "forcetorque", _TYPES[0]
     belongs_to = ("joint",)
+    sees_scene = False
     has_dynamic_bias = True
     needs_acceleration = True
     # a sleeping load on a static body has no contact forces, so its weight would not be measured

@@ -32,6 +32,7 @@ class AirPressure(AirSensor):
 
     kinds = ("air_pressure",)
     example = "<air_pressure/>"
+    sees_scene = False
     product, message_type = "air_pressure", "sensor_msgs/msg/FluidPressure"
     options: AirPressureOptions
 

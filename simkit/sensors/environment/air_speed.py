@@ -33,6 +33,7 @@ class AirSpeed(AirSensor):
 
     kinds = ("air_speed",)
     example = "<air_speed/>"
+    sees_scene = False
     product, message_type = "air_speed", "ros_gz_interfaces/msg/AirSpeed"
     options: AirSpeedOptions
 

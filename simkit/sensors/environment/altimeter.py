@@ -33,6 +33,7 @@ class Altimeter(VectorSensor):
 
     kinds = ("altimeter",)
     example = "<altimeter/>"
+    sees_scene = False
     product, message_type = "altimeter", "ros_gz_interfaces/msg/Altimeter"
     options: AltimeterOptions
     _reference: float | None = None

@@ -94,8 +94,8 @@ class WorldOnPlanet:
 
     def on_planet(self, position: Vector) -> Vector:
         """Return a world position [m] in the planet's axes [m]; both of shape (3,)."""
-        found: Vector = self.origin + matmul(self.axes, position)
-        return found
+        position_on_planet: Vector = self.origin + matmul(self.axes, position)
+        return position_on_planet
 
     def geodetic(self, position: Vector) -> Geodetic:
         """Return the geodetic coordinates of a position in the world [m], shape (3,)."""

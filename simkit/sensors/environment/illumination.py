@@ -132,8 +132,8 @@ class ShadowRay:
         names = self._names = compiled.names
         casters = names.shared("shadow casters", lambda: _shadow_casters(compiled.model, names))
         housings = [names.link(name) for name in (link, lamp) if name]
-        own = {geom for housing in housings for geom in (*housing.visuals, *housing.ray_geoms)}
-        self._casters = np.array([g for g in casters if g not in own], dtype=np.intp)
+        housing_geoms = {geom for housing in housings for geom in (*housing.visuals, *housing.ray_geoms)}
+        self._casters = np.array([g for g in casters if g not in housing_geoms], dtype=np.intp)
 
     def find(self, model: mujoco.MjModel, data: mujoco.MjData, origin: Vector, beam: Beam) -> str:
         """Return the scoped name of the first visual or collision between `origin` and the light, or "".
@@ -153,10 +153,10 @@ def _shadow_casters(model: mujoco.MjModel, names: NameMap) -> list[int]:
     """Return the ids of the geoms that cast shadows."""
     opaque: npt.NDArray[np.bool_] = model.geom_rgba[:, 3] >= LEAST_OPACITY
     drawn = opaque & np.asarray(model.geom_castshadow, dtype=bool)
-    found: set[int] = set()
+    casters: set[int] = set()
     for link in names.links.values():
         if link.visuals:
-            found.update(g for g in link.visuals if drawn[g] and model.geom_group[g] in (VISUAL, DRAWN_COLLISION))
+            casters.update(g for g in link.visuals if drawn[g] and model.geom_group[g] in (VISUAL, DRAWN_COLLISION))
         else:
-            found.update(g for g in link.ray_geoms if model.geom_group[g] in SEEN_AS_COLLISIONS)
-    return sorted(found)
+            casters.update(g for g in link.ray_geoms if model.geom_group[g] in SEEN_AS_COLLISIONS)
+    return sorted(casters)

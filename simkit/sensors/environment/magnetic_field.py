@@ -96,8 +96,8 @@ class EarthField:
         """Return the field [T] at a position [m], both in the world's axes, shape (3,)."""
         cell = tuple(round(v / _CELL) for v in position.tolist())
         centre, field, gradient = self._cell(cell)
-        found: Vector = field + matmul(gradient, position - centre)
-        return found
+        field_at_position: Vector = field + matmul(gradient, position - centre)
+        return field_at_position
 
     def exactly_at(self, position: Vector) -> Vector:
         """Return the same field without linearisation."""
@@ -143,14 +143,14 @@ def _harmonics(x: float, y: float, z: float) -> list[complex]:
     """
     inverse = 1.0 / (x * x + y * y + z * z)
     turn, rise = complex(x, y) * inverse, z * inverse
-    found: list[complex] = [complex(math.sqrt(inverse))]
+    harmonics: list[complex] = [complex(math.sqrt(inverse))]
     for n in range(1, _DEGREE + 2):
-        before, earlier = found[-n:], found[-2 * n + 1 : -n] if n > 1 else []
+        before, earlier = harmonics[-n:], harmonics[-2 * n + 1 : -n] if n > 1 else []
         for m in range(n - 1):
-            found.append(((2 * n - 1) * rise * before[m] - (n + m - 1) * inverse * earlier[m]) / (n - m))
-        found.append((2 * n - 1) * rise * before[n - 1])
-        found.append((2 * n - 1) * turn * before[n - 1])
-    return found
+            harmonics.append(((2 * n - 1) * rise * before[m] - (n + m - 1) * inverse * earlier[m]) / (n - m))
+        harmonics.append((2 * n - 1) * rise * before[n - 1])
+        harmonics.append((2 * n - 1) * turn * before[n - 1])
+    return harmonics
 
 
 def _field_weights(rows: list[list[float]], years: float) -> Vector:

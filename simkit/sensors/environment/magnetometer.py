@@ -70,6 +70,7 @@ class Magnetometer(VectorSensor):
 
     kinds = ("magnetometer",)
     example = "<magnetometer/>"
+    sees_scene = False
     product, message_type = "magnetometer", _TYPES[0]
     options: MagnetometerOptions
 

@@ -12,7 +12,7 @@ import numpy as np
 from simkit import msgs
 from simkit.linear_algebra import matmul
 from simkit.params import Params
-from simkit.pose import Vector
+from simkit.pose import Vector, wrap_angle
 from simkit.scene import SphericalCoordinates
 from simkit.sensors.base import Product, Sensor
 from simkit.sensors.environment.geodesy import WorldOnPlanet, east_north_up
@@ -66,6 +66,7 @@ class NavSat(Sensor):
 
     kinds = ("navsat", "gps")
     example = "<navsat/>"
+    sees_scene = False
     options: NavSatOptions
     noise: Noise
 
@@ -154,7 +155,7 @@ class NavSat(Sensor):
         values = self.noise.apply(np.array((first, second, reading.altitude, *reading.velocity.tolist())), index)
         first, second, altitude = values[:3].tolist()
         if self._quirks:
-            latitude, longitude = _normalised(math.radians(first)), _normalised(math.radians(second))
+            latitude, longitude = wrap_angle(math.radians(first)), wrap_angle(math.radians(second))
         else:
             latitude, longitude = self._move_over_ground(reading, first - reading.east, second - reading.north)
         return NavSatReading(reading.east, reading.north, latitude, longitude, altitude, values[3:])
@@ -223,8 +224,3 @@ class NavSat(Sensor):
             position_covariance_type=kind,
         )
         return message
-
-
-def _normalised(angle: float) -> float:
-    """Return an angle reduced to the range from -π to π."""
-    return math.remainder(angle, math.tau)

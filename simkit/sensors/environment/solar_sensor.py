@@ -216,8 +216,8 @@ class SolarSensor(Sensor):
     @property
     def reading(self) -> SolarReading | None:
         """True reading of the newest sample (direction, shadow, incidence, light, power), or None before the first."""
-        found: SolarReading | None = self._true_reading()
-        return found
+        true_reading: SolarReading | None = self._true_reading()
+        return true_reading
 
     @property
     def shadow(self) -> str:

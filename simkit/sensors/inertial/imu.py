@@ -12,8 +12,9 @@ from simkit.msgs.cdr_template import CdrTemplate
 from simkit.pose import Vector
 from simkit.sensors.base import Product
 from simkit.sensors.bias_drift import NoiseInterval, NoiseState
-from simkit.sensors.inertial.imu_measurement import ImuMeasurement, ImuReading
+from simkit.sensors.inertial.imu_measurement import ImuMeasurement, ImuReading, ImuRule
 from simkit.sensors.inertial.inertial_kinematics import NO_ROTATION, sensor_motion
+from simkit.sensors.noise import with_noise
 from simkit.sensors.sample import Sample
 from simkit.sensors.sampler import Sampler
 from simkit.sensors.sensor_batch import SensorBatch, form_batches
@@ -32,10 +33,9 @@ _VARIABLE_FIELDS = (
 
 def _batch_key(imu: ImuMeasurement) -> Hashable | None:
     """Return the properties that all IMUs of a batch share; None if a batch cannot compute this IMU's reading."""
-    noise = imu.noise
-    if noise.evolves or noise._is_quantised or not imu._attitude_noise.is_silent or imu._more_noise is not None:
+    if not imu.has_plain_noise:
         return None
-    return imu.is_mounted_straight, imu.is_against_world, noise.is_silent, noise._white is None
+    return imu.is_mounted_straight, imu.is_against_world, imu.noise.is_silent, imu.noise.white is None
 
 
 class ImuBatch(SensorBatch[ImuMeasurement]):
@@ -44,14 +44,14 @@ class ImuBatch(SensorBatch[ImuMeasurement]):
     def __init__(self, members: Sequence[ImuMeasurement]) -> None:
         super().__init__(members)
         model, first = self.model, members[0]
-        self._bodies = np.array([imu._body for imu in members], dtype=np.intp)
+        self._bodies = np.array([imu.body for imu in members], dtype=np.intp)
         self._roots = model.body_rootid[self._bodies].astype(np.intp)
         self._arms = np.array([imu._arm for imu in members]).T.copy()
         self._mounts = None if first.is_mounted_straight else np.array([imu._mount for imu in members]).T.copy()
         self._turns = np.array([imu._rotation for imu in members]).T.copy()
         references = [imu._from_reference for imu in members]
         self._references = None if first.is_against_world else np.array(references).T.copy()
-        self._is_silent, self._is_white = first.noise.is_silent, first.noise._white is not None
+        self._is_silent, self._is_white = first.noise.is_silent, first.noise.white is not None
         self._normals, self._first_index, self._seed = np.empty((0, 0, 0)), 0, self.sim.engine.streams.seed
         self._index = -1
         self._constants_of: NoiseInterval | None = None
@@ -85,9 +85,7 @@ class ImuBatch(SensorBatch[ImuMeasurement]):
         sample = Sample(index, self._time_ns)
         sample.raw = self._raw[member_index].tobytes()  # read by `truth`
         sample.messages["imu"] = message = self._message(member_index)
-        member._index, member._time_ns, member._newest = index, self._time_ns, sample
-        for _, publisher, _ in member._read_publishers:
-            publisher.publish(message)
+        member.publish_made(sample, message)
         return True
 
     def _message(self, member_index: int) -> msgs.Imu:
@@ -112,8 +110,12 @@ class ImuBatch(SensorBatch[ImuMeasurement]):
         if not self._is_silent:
             numbers[:, 4:] = self._with_noise(numbers[:, 4:], index)
         self._rows, self._index = numbers.tolist(), index
-        if self._constants_of is not self.members[0].noise.state.interval:
+        frames = [constants[0] for constants in self._message_constants]
+        if self._constants_of is not self.members[0].noise.state.interval or frames != self._frames():
             self._update_message_constants()
+
+    def _frames(self) -> list[str]:
+        return [imu.frame_id for imu in self.members]
 
     def _update_message_constants(self) -> None:
         """Update the parts of all members' messages that change only with the rate."""
@@ -127,16 +129,13 @@ class ImuBatch(SensorBatch[ImuMeasurement]):
             self._states = states
             self._constants = np.array([state.constant for state in states])
             self._deviations = np.array([state.interval.stddev for state in states])
-        out: Vector = motion + self._constants
-        if self._is_white:
-            out += self._deviations * self._white(index)
-        return out
+        return with_noise(motion, self._constants, self._deviations, self._white(index) if self._is_white else None)
 
     def _white(self, index: int) -> Vector:
         """Return the standard normal numbers of all members' samples, shape (members, 6)."""
         row = index - self._first_index
         if not 0 <= row < len(self._normals) or self._seed != self.sim.engine.streams.seed:
-            streams = [imu.noise._white for imu in self.members if imu.noise._white is not None]
+            streams = [imu.noise.white for imu in self.members if imu.noise.white is not None]
             parts = [stream.normals(index, _NOISE_BLOCK) for stream in streams]
             self._normals, self._first_index, row = np.stack(parts, axis=1), index, 0
             self._seed = self.sim.engine.streams.seed
@@ -149,12 +148,16 @@ class Imu(ImuMeasurement):
 
     kinds = ("imu",)
     example = "<imu/>"
+    sees_scene = False
     _template_of: tuple[list[Vector], str] = ([], "")
 
     @classmethod
     def make_batches(cls, sensors: Sequence[ImuMeasurement]) -> None:
         if cls is Imu:
             form_batches(sensors, ImuBatch, _batch_key)
+
+    def array_rule(self) -> ImuRule:
+        return ImuRule(self)
 
     def pack_samples(self, first: int, times: Sequence[int], captures: Sequence[bytes]) -> list[bytes]:
         if _batch_key(self) is None:

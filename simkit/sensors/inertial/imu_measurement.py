@@ -5,26 +5,29 @@ from __future__ import annotations
 import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import mujoco
 import numpy as np
 
 from simkit.compiler import Compiled
 from simkit.params import Params
-from simkit.pose import Vector, quat_conjugate, quat_from_rpy, quat_multiply
+from simkit.pose import Vector, hamilton_product, quat_conjugate, quat_from_rpy, quat_multiply
+from simkit.runtime.array_rules import CannotBatchError, Floats, Ids, SensorRule, Ticks
 from simkit.sensors.base import Sensor
 from simkit.sensors.bias_drift import NoiseInterval
 from simkit.sensors.inertial.inertial_kinematics import (
     NO_ROTATION,
     QuaternionTuple,
-    hamilton_product,
     quaternion_of_rotation_vector,
     sensor_motion,
 )
 from simkit.sensors.inertial.orientation_reference import OrientationReference, read_reference, reference_orientation
 from simkit.sensors.noise import Noise, NoiseModel, ThreeAxes, read_axes, read_noise
 from simkit.sensors.sample import Memory
+
+if TYPE_CHECKING:
+    from simkit.runtime.state_arrays import StateArrays
 
 _unpack_numbers = struct.Struct("=31d").unpack  # captured numbers
 
@@ -154,6 +157,12 @@ class ImuMeasurement(Sensor):
             self.sim.communication.bus.settle_topic(publisher.topic)
 
     @property
+    def has_plain_noise(self) -> bool:
+        """True if the noise is the same function of a sample's number for all samples, without quantisation."""
+        is_plain = not (self.noise.evolves or self.noise.is_quantised)
+        return is_plain and self._attitude_noise.is_silent and self._more_noise is None
+
+    @property
     def is_mounted_straight(self) -> bool:
         """True if the sensor's axes are parallel to the axes of its body."""
         return self._mount == NO_ROTATION
@@ -249,3 +258,55 @@ class ImuMeasurement(Sensor):
             covariance.flags.writeable = False
         self._covariances = covariances
         return covariances
+
+
+class ImuRule(SensorRule):
+    """Readings of an inertial unit on a free base in n simulations: orientation w, x, y, z and `motion`.
+
+    Raises:
+        CannotBatchError: the acceleration of the unit's link is not that of a free joint.
+    """
+
+    inputs = ("xquat", "xmat", "xpos", "cvel", "qvel", "qacc")
+
+    def __init__(self, imu: ImuMeasurement) -> None:
+        model = imu.sim.mj_model
+        self._root = int(model.body_weldid[imu._body])
+        joint = int(model.body_jntadr[self._root])
+        is_free = self._root > 0 and joint >= 0 and int(model.jnt_type[joint]) == mujoco.mjtJoint.mjJNT_FREE
+        if not is_free or imu._more_noise is not None:
+            raise CannotBatchError(f"sensor {imu.scoped!r}: its link is not rigidly connected to a free base")
+        self._imu, self._dof = imu, int(model.jnt_dofadr[joint])
+
+    def bind(self, states: StateArrays, *, is_truth: bool) -> None:
+        self._fields = [states.field(name) for name in self.inputs]
+        self._noise, self._turns = self._imu.noise.rows(states.count), self._imu._attitude_noise.rows(states.count)
+        self._is_truth = is_truth
+        self._references, self._gravity = np.zeros((states.count, 4)), np.zeros((states.count, 3))
+
+    def take(self, row: int) -> None:
+        self._noise.take(row)
+        self._turns.take(row)
+        self._references[row], self._gravity[row] = self._imu._from_reference, self._imu.sim.mj_model.opt.gravity
+
+    def read(self, ids: Ids, index: Ticks) -> Floats:
+        xquat, xmat, xpos, cvel, qvel, qacc = self._fields
+        imu, body, dof = self._imu, self._imu._body, self._dof
+        # the reference point is the base's origin, whose motion is that of the free joint
+        spin, speed = cvel[:, self._root, :3], qvel[:, dof : dof + 3]
+        turn = xmat[:, self._root].reshape(-1, 3, 3)
+        growth = np.einsum("nij,nj->ni", turn, qacc[:, dof + 3 : dof + 6])
+        force = qacc[:, dof : dof + 3] - self._gravity - np.cross(spin, speed)
+        state = (xquat[:, body], xmat[:, body], xpos[:, body], xpos[:, self._root], spin, speed, growth, force)
+        mount = None if imu.is_mounted_straight else imu._mount
+        numbers = np.hstack([part.reshape(len(spin), -1) for part in state]).T
+        attitude, motion = sensor_motion(numbers, imu._arm, mount, imu._rotation, self._references.T)
+        measured = np.stack(motion, axis=1)
+        if not self._is_truth:
+            self._noise.apply(measured, ids, index)
+            if not imu._attitude_noise.is_silent:
+                turns = np.zeros((len(spin), 3))
+                self._turns.apply(turns, ids, index)
+                small = np.array([quaternion_of_rotation_vector(vector) for vector in turns.tolist()])
+                attitude = hamilton_product(attitude, small.T)
+        return np.column_stack((*attitude, measured))

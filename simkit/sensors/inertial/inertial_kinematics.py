@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+from simkit.pose import hamilton_product
+
 # A float, or an array with one float for each of several sensors.
 Number = Any
 Numbers = tuple[Number, ...]
@@ -66,18 +68,6 @@ def sensor_motion(
     if reference is not None:
         attitude = hamilton_product(reference, attitude)
     return attitude, (wx, wy, wz, fx, fy, fz)
-
-
-def hamilton_product(a: Iterable[Number], b: Iterable[Number]) -> Numbers:
-    """Return the Hamilton product of two quaternions (w, x, y, z), each of numbers or of arrays."""
-    aw, ax, ay, az = a
-    bw, bx, by, bz = b
-    return (
-        aw * bw - ax * bx - ay * by - az * bz,
-        aw * bx + ax * bw + ay * bz - az * by,
-        aw * by - ax * bz + ay * bw + az * bx,
-        aw * bz + ax * by - ay * bx + az * bw,
-    )
 
 
 def quaternion_of_rotation_vector(vector: Sequence[float]) -> QuaternionTuple:

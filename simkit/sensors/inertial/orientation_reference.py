@@ -64,17 +64,17 @@ def reference_orientation(reference: OrientationReference | None, sensor: SceneS
 
     Without a block, or after a diagnostic, the result is the sensor's own attitude.
     """
-    own = sensor.pose_world.quaternion
+    attitude = sensor.pose_world.quaternion
     if reference is None:
-        return own
+        return attitude
     diagnostics = sensor.params.diagnostics
     if sim.world.gazebo_quirks and _is_unsupported_by_gazebo(reference, diagnostics):
-        return own
+        return attitude
     if reference.localization in _NAMED_AXES:
         return quat_multiply(_heading(sim), quat_from_rpy(*_NAMED_AXES[reference.localization]))
     parent = _find_parent_frame(reference, sensor, sim, diagnostics)
     if parent is None:
-        return own
+        return attitude
     if reference.localization == "CUSTOM":
         # Gazebo applies the heading here too, so the parent frame `world` means east-north-up
         start = _heading(sim) if reference.parent_frame == WORLD else parent.quaternion
@@ -89,7 +89,7 @@ def reference_orientation(reference: OrientationReference | None, sensor: SceneS
             message = f"orientation reference {reference.localization}: the world has no gravity"
             hint = "use ENU, NED, NWU or CUSTOM, which need no gravity"
         diagnostics.error("SK-SENSOR-071", message, reference.where, hint)
-        return own
+        return attitude
     return levelled
 
 
@@ -147,9 +147,9 @@ def _find_parent_frame(
     scope = sensor.parent.split("::")[:-1]
     # as in SDF, the search begins in the model of the sensor's link and continues outwards
     for depth in range(len(scope), -1, -1):
-        found = known.get("::".join((*scope[:depth], name)))
-        if found is not None:
-            return found
+        frame = known.get("::".join((*scope[:depth], name)))
+        if frame is not None:
+            return frame
     model = "::".join((*scope, ""))
     nearby = [scoped.removeprefix(model) for scoped in known if scoped.startswith(model)]
     message = f"found parent_frame {name!r}; expected 'world', or the name of a link, joint, frame or model"

@@ -14,11 +14,11 @@ def main(name: str | None) -> int:
     if name is None:
         sys.stdout.write(presets_page())
         return 0
-    found = find(name)
-    if not found:
+    presets_of_name = find(name)
+    if not presets_of_name:
         sys.stderr.write(f"there is no preset {name!r}; {did_you_mean(name, [p.name for p in presets()])}\n")
         return 2
-    sys.stdout.write("\n\n".join(map(describe_preset, found.values())) + "\n")
+    sys.stdout.write("\n\n".join(map(describe_preset, presets_of_name.values())) + "\n")
     return 0
 
 

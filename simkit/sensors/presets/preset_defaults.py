@@ -55,14 +55,14 @@ def add_preset_defaults(sensor: SceneSensor, diagnostics: Diagnostics) -> SceneS
 
 
 def _find_preset(sensor: SceneSensor, element: Params, diagnostics: Diagnostics) -> Preset | None:
-    found = find(element.value)
+    presets_of_name = find(element.value)
     fitting = [p for p in presets() if sensor.kind in p.sensor_kinds]
-    for preset in found.values():
+    for preset in presets_of_name.values():
         if sensor.kind in preset.sensor_kinds:
             return preset
     names_of_kind = ", ".join(p.name for p in fitting)
-    if found:
-        kinds = " and ".join(found)
+    if presets_of_name:
+        kinds = " and ".join(presets_of_name)
         message = f"sensor {sensor.scoped!r} of type {sensor.kind!r}: preset {element.value!r} is for {kinds}"
         hint = f"presets of this kind: {names_of_kind}" if names_of_kind else "there are none of this kind"
         diagnostics.error("SK-SENSOR-091", message, element.where, hint)

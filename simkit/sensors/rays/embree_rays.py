@@ -97,9 +97,9 @@ class TriangleScene:
         # a slightly larger limit, because rounding to float32 may move a surface just beyond the limit
         reach = (limit - np.float32(start)) * np.float32(1.000001)
         reach += np.float32(1e-5)
-        found = self._scene.run(starts, rays, dists=reach)
-        hits = np.flatnonzero(found >= 0)
-        triangles = found[hits]
+        first_triangles = self._scene.run(starts, rays, dists=reach)
+        hits = np.flatnonzero(first_triangles >= 0)
+        triangles = first_triangles[hits]
         planes = self._planes.take(triangles, 0)
         hit_directions = directions.take(hits, 0)
         normals = planes[:, :3]
@@ -125,8 +125,8 @@ class TriangleScene:
         corners = self.vertices[self.faces[triangles]] - origin
         along = np.einsum("ijk,ik->ij", corners, directions)
         low, high = along.min(axis=1), along.max(axis=1)
-        kept: Vector = np.clip(np.where(np.isfinite(distances), distances, low), low, high)
-        return kept
+        clamped: Vector = np.clip(np.where(np.isfinite(distances), distances, low), low, high)
+        return clamped
 
 
 class TriangleBody:
@@ -189,6 +189,9 @@ class MovingBodies:
         self._ids = np.array([body.body for body in bodies], dtype=np.intp)
         self._centres = np.array([body.centre for body in bodies]).reshape(-1, 3)
         self._radii = np.array([body.radius for body in bodies])
+
+    def __len__(self) -> int:
+        return len(self._bodies)
 
     def reached(self, data: mujoco.MjData, rays: RayBundle) -> Iterator[tuple[TriangleBody, Ids]]:
         """Yield each body that rays may hit, with the indices of those rays."""

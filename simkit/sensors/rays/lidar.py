@@ -13,7 +13,7 @@ from simkit.sensors.base import Product
 from simkit.sensors.point_cloud_messages import LEGACY_CLOUD_TYPE, legacy_point_cloud, point_cloud
 from simkit.sensors.rays.geom_types import Ids
 from simkit.sensors.rays.lidar_batch import LidarBatch, lidar_batch_key
-from simkit.sensors.rays.lidar_measurement import MAX_RANGE, LidarMeasurement, LidarReading
+from simkit.sensors.rays.lidar_measurement import MAX_RANGE, LidarMeasurement, LidarReading, LidarRule
 from simkit.sensors.sensor_batch import form_batches
 
 SCAN, CLOUD = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2"
@@ -47,6 +47,9 @@ class Lidar(LidarMeasurement):
     def make_batches(cls, sensors: Sequence[LidarMeasurement]) -> None:
         if cls is Lidar:
             form_batches(sensors, LidarBatch, lidar_batch_key)
+
+    def array_rule(self) -> LidarRule:
+        return LidarRule(self)
 
     def products(self) -> dict[str, Product]:
         return {
@@ -120,7 +123,7 @@ class Lidar(LidarMeasurement):
         height, width = self.options.vertical.samples, self.options.horizontal.samples
         low, high = self.cloud_range
         in_range = (reading.ranges > low) & (reading.ranges < high) & (reading.intensities >= self.min_intensity)
-        which = np.arange(self._fan.count) if self.keeps_order else np.flatnonzero(in_range)
+        which = np.arange(self.fan.count) if self.keeps_order else np.flatnonzero(in_range)
         points = self._points(reading, which, _WIDE_POINT)
         points["ring"] = which // width
         if not self.keeps_order:

@@ -22,10 +22,10 @@ _MARGIN = 1e-9
 
 def lidar_batch_key(lidar: LidarMeasurement) -> Hashable | None:
     """Return the properties that lidars of one batch share; None for a lidar whose rays are not cast in NumPy."""
-    fan = lidar._fan
-    if fan._by_engine or fan._targets.needs_engine or fan._grid is None:
+    fan = lidar.fan
+    if fan.by_engine or fan.targets.needs_engine or fan.grid is None:
         return None
-    common = fan.directions.tobytes(), fan.reach, id(fan._targets), fan._bounds
+    common = fan.directions.tobytes(), fan.reach, id(fan.targets), fan.bounds
     return (*common, lidar._start, lidar.sees_visuals)
 
 
@@ -34,7 +34,7 @@ class LidarBatch(SensorBatch[LidarMeasurement]):
 
     def __init__(self, members: Sequence[LidarMeasurement]) -> None:
         super().__init__(members)
-        self._start, self._targets = members[0]._start, members[0]._fan._targets
+        self._start, self._targets = members[0]._start, members[0].fan.targets
         self._which = self._targets.shapes
         self._geoms, self._carriers = self._targets.geoms[self._which], self._targets.carriers[self._which]
         self._radii = self.model.geom_rbound[self._geoms]
@@ -50,7 +50,7 @@ class LidarBatch(SensorBatch[LidarMeasurement]):
             return
         frames = [self.members[index].ray_frame(data) for index in read]
         origins, rotations = (np.array(part) for part in zip(*frames, strict=True))
-        self._cast([self.members[index]._fan for index in read], data, origins, rotations)
+        self._cast([self.members[index].fan for index in read], data, origins, rotations)
         for index in read:
             self._readings[index] = self.members[index].reading_of_cast()
 
@@ -69,28 +69,28 @@ class LidarBatch(SensorBatch[LidarMeasurement]):
             rotations: rotation matrices of the fans' frames, shape (k, 3, 3).
         """
         first, start = fans[0], self._start
-        count, directions = first.count, first._fan
+        count, directions = first.count, first.numpy_directions
         assert directions is not None
         best, hits = np.full(len(fans) * count, np.inf), np.full(len(fans) * count, -1, dtype=np.int32)
         for i, fan in enumerate(fans):
             own_rays = slice(i * count, (i + 1) * count)
             fan.distances, fan.hits = best[own_rays], hits[own_rays]
-            fan._cast_on_planes_and_triangles(data, fan._rays(origins[i], rotations[i], start))
+            fan.cast_on_planes_and_triangles(data, fan.rays_from(origins[i], rotations[i], start))
         for fan_indices, shapes in self._near(fans, data, origins, rotations):
-            found = self._targets.shapes_in_frame(
+            shapes_in_fans = self._targets.shapes_in_frame(
                 data, self._which.take(shapes), origins.take(fan_indices, 0), rotations.take(fan_indices, 0)
             )
-            cast_on_shapes(directions, found, first.reach, start, best, hits, fan_indices * count)
+            cast_on_shapes(directions, shapes_in_fans, first.reach, start, best, hits, fan_indices * count)
         for fan in fans:
             # copies, because a view would keep the arrays of all scans alive
             fan.distances, fan.hits = fan.distances.copy(), fan.hits.copy()
-            fan._finish()
+            fan.finish()
 
     def _near(
         self, fans: Sequence[RayFan], data: mujoco.MjData, origins: Vector, rotations: Vector
     ) -> Iterator[tuple[Ids, Ids]]:
         """Yield pairs of a fan and a shape that its rays may hit, for some fans at a time; no such pair is missing."""
-        carriers = np.array([fan._carrier for fan in fans], dtype=np.intp)
+        carriers = np.array([fan.carrier for fan in fans], dtype=np.intp)
         centres = data.geom_xpos.take(self._geoms, 0)
         reach = (self._radii + fans[0].reach) * (1 + 1e-9) + _MARGIN
         fans_per_chunk = max(1, _CHUNK // max(1, len(self._geoms)))
@@ -98,8 +98,10 @@ class LidarBatch(SensorBatch[LidarMeasurement]):
             part = slice(first, first + fans_per_chunk)
             offsets = centres - origins[part, None]
             square = offsets[..., 0] ** 2 + offsets[..., 1] ** 2 + offsets[..., 2] ** 2
-            own = carriers[part, None]
-            of, shapes = np.nonzero((square <= reach * reach) & ((own != self._carriers) | (own == 0)))
+            fan_carriers = carriers[part, None]
+            of, shapes = np.nonzero(
+                (square <= reach * reach) & ((fan_carriers != self._carriers) | (fan_carriers == 0))
+            )
             axes = rotations[part, :, 2].take(of, 0)
             height = (offsets[of, shapes] * axes).sum(axis=1)
             within = self._within(fans[0], data, shapes, axes, height, square[of, shapes])
@@ -109,7 +111,7 @@ class LidarBatch(SensorBatch[LidarMeasurement]):
         self, fan: RayFan, data: mujoco.MjData, shapes: Ids, axes: Vector, height: Vector, square: Vector
     ) -> npt.NDArray[np.bool_]:
         """Check which shapes reach into the fan's range of elevations, by their height above it."""
-        lowest, highest = fan._bounds
+        lowest, highest = fan.bounds
         radii = self._radii.take(shapes)
         if lowest == highest == 0.0:
             turns = data.geom_xmat.take(self._geoms.take(shapes), 0).reshape(-1, 3, 3)

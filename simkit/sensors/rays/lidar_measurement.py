@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
@@ -15,11 +16,15 @@ from simkit.diagnostics import Diagnostics
 from simkit.linear_algebra import matmul
 from simkit.params import Params
 from simkit.pose import Vector
+from simkit.runtime.array_rules import CannotBatchError, Ids, SensorRule, Ticks
 from simkit.scene import SceneSensor
 from simkit.sensors.base import Sensor
 from simkit.sensors.noise import Noise, NoiseModel, UniformNoise, read_noise
-from simkit.sensors.rays.ray_fan import RayFan, fan_directions
+from simkit.sensors.rays.ray_fan import RayFan, RayFanRows, fan_directions
 from simkit.sensors.visibility_mask import ALL_VISIBLE, hidden_geoms, read_visibility_mask
+
+if TYPE_CHECKING:
+    from simkit.runtime.state_arrays import StateArrays
 
 _MAX_RAYS = 4_000_000
 MAX_RANGE = 3e38  # [m]; messages contain 32-bit floats
@@ -114,11 +119,11 @@ class LidarMeasurement(Sensor):
         groups = (DRAWN_COLLISION, VISUAL) if self.sees_visuals else SEEN_AS_COLLISIONS
         grid = options.vertical.angles, options.horizontal.angles
         self._directions = fan_directions(grid[1], grid[0])
-        self._fan = RayFan(self._directions, groups, options.range_max, grid=grid)
+        self.fan = RayFan(self._directions, groups, options.range_max, grid=grid)
         self._start = 0.0 if self.sees_visuals else options.range_min
         self._retro: Vector | None = None
         # shared by all readings and messages, and therefore read-only
-        self._dark, self._dark_layer = np.zeros(self._fan.count), np.zeros(options.horizontal.samples, np.float32)
+        self._dark, self._dark_layer = np.zeros(self.fan.count), np.zeros(options.horizontal.samples, np.float32)
         self._dark.flags.writeable = self._dark_layer.flags.writeable = False
         # arrays, because NumPy needs as long to convert a number as to process a whole planar scan
         self._limits = np.array(options.range_min), np.array(options.range_max)
@@ -159,13 +164,13 @@ class LidarMeasurement(Sensor):
         }
 
     def prepare(self) -> None:
-        self.noise = self._make_uniform_noise(self.options.noise, self._fan.count, "ranges")
+        self.noise = self._make_uniform_noise(self.options.noise, self.fan.count, "ranges")
 
     def bind(self, compiled: Compiled) -> None:
         super().bind(compiled)
         names = compiled.names
         link = names.link(self.scene.parent)
-        own = link.visuals if self.sees_visuals else link.ray_geoms
+        link_geoms = link.visuals if self.sees_visuals else link.ray_geoms
         self._is_moved = bool(self._offset_position.any())
         self._is_turned = not np.array_equal(self._offset_rotation, np.eye(3))
         hidden = hidden_geoms(self.options.visibility_mask, names) if self.sees_visuals else []
@@ -173,7 +178,7 @@ class LidarMeasurement(Sensor):
             model = self.scene.parent.split("::")[0] + "::"
             links = [part for scoped, part in names.links.items() if scoped.startswith(model)]
             hidden += [geom for part in links for geom in (part.visuals if self.sees_visuals else part.ray_geoms)]
-        self._fan.bind(compiled.model, names, self._body, own, hidden=hidden, offset=self._offset)
+        self.fan.bind(compiled.model, names, self._body, link_geoms, hidden=hidden, offset=self._offset)
         kind = "visuals" if self.sees_visuals else "collisions"
         self._retro = names.shared(f"laser_retro of {kind}", lambda: self._reflectances(compiled))
         self._names = names.shared("scoped names of geoms", lambda: _scoped_names(compiled))
@@ -233,26 +238,40 @@ class LidarMeasurement(Sensor):
 
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> LidarReading:
         origin, rotation = self.ray_frame(data)
-        self._fan.cast(model, data, origin, rotation, self._start)
+        self.fan.cast(model, data, origin, rotation, self._start)
         return self.reading_of_cast()
 
     def measure_now(self) -> LidarReading:
         """Measure the state at this tick."""
-        return self.measure(self.sim.mj_model, self._computed_data())
+        return self.measure(self.sim.mj_model, self.computed_data())
 
     def reading_of_cast(self) -> LidarReading:
         """Return the reading of the last cast."""
-        fan = self._fan
-        ranges, infinite = fan.distances, fan.infinite
-        if self.sees_visuals and np.minimum.reduce(ranges) < self.options.range_min:
+        fan = self.fan
+        ranges, infinite = fan.distances, self._mark_too_near(fan.distances, fan.infinite)
+        return LidarReading(ranges, self._intensities(infinite), infinite, fan.hits, fan.ids, self._names)
+
+    def _mark_too_near(self, ranges: Vector, infinite: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+        """Set too short ranges of a rendered lidar to -inf, and return which ranges are infinite; any shape."""
+        if self.sees_visuals and np.minimum.reduce(ranges, axis=None) < self.options.range_min:
             too_near = ranges < self.options.range_min
             ranges[too_near] = -np.inf
             infinite = infinite | too_near
-        return LidarReading(ranges, self._intensities(infinite), infinite, fan.hits, fan.ids, self._names)
+        return infinite
+
+    def _limit(self, ranges: Vector, exact: Vector, infinite: npt.NDArray[np.bool_]) -> None:
+        """Limit ranges with noise in place; infinite ranges have no noise. The arrays have any shape."""
+        low, high = self._limits
+        np.maximum(ranges, low, out=ranges)
+        np.minimum(ranges, high, out=ranges)
+        np.copyto(ranges, exact, where=infinite)
 
     def ray_frame(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
         """Return position and rotation matrix in the world, like `_frame_in_world` but faster for an offset of zero."""
-        position, rotation = data.xpos[self._body], data.xmat[self._body].reshape(3, 3)
+        return self._place_fan(data.xpos[self._body], data.xmat[self._body].reshape(3, 3))
+
+    def _place_fan(self, position: Vector, rotation: Vector) -> tuple[Vector, Vector]:
+        """Return position and rotation matrix of the fan for those of the body; the first axes may be simulations."""
         if self._is_moved:
             position = position + matmul(rotation, self._offset_position)
         return position, matmul(rotation, self._offset_rotation) if self._is_turned else rotation
@@ -260,7 +279,7 @@ class LidarMeasurement(Sensor):
     def _intensities(self, infinite: npt.NDArray[np.bool_]) -> Vector:
         if self._retro is None:
             return self._dark
-        values: Vector = self._retro[self._fan.geoms]
+        values: Vector = self._retro[self.fan.geoms]
         values[infinite] = 0.0
         return values
 
@@ -268,23 +287,21 @@ class LidarMeasurement(Sensor):
         ray_noise, range_noise = self.ray_noise, self.range_noise
         if self.noise.is_silent and ray_noise is None and range_noise is None and self.point_noise is None:
             return reading
-        ranges, (low, high) = self.noise.apply(reading.ranges, index), self._limits
+        ranges = self.noise.apply(reading.ranges, index)
         if ray_noise is not None:
             ranges = ray_noise.apply(ranges, index)
         if range_noise is not None:
             ranges += range_noise.apply(np.zeros(1), index)
-        np.maximum(ranges, low, out=ranges)
-        np.minimum(ranges, high, out=ranges)
-        np.copyto(ranges, reading.ranges, where=reading.infinite)
+        self._limit(ranges, reading.ranges, reading.infinite)
         scatter = None
         if self.point_noise is not None:
-            scatter = self.point_noise.apply(np.zeros(4 * self._fan.count), index).reshape(-1, 4)
+            scatter = self.point_noise.apply(np.zeros(4 * self.fan.count), index).reshape(-1, 4)
         r = reading
         return LidarReading(ranges, r.intensities, r.infinite, r.hits, r.geoms, r.names, scatter)
 
     def add_ray_noise(self, stddev: float) -> None:
         """Set `ray_noise` with a standard deviation [m]."""
-        self.ray_noise = self._make_uniform_noise(NoiseModel(stddev=stddev), self._fan.count, "more on ranges")
+        self.ray_noise = self._make_uniform_noise(NoiseModel(stddev=stddev), self.fan.count, "more on ranges")
 
     def add_range_noise(self, stddev: float) -> None:
         """Set `range_noise` with a standard deviation [m]."""
@@ -292,7 +309,53 @@ class LidarMeasurement(Sensor):
 
     def add_point_noise(self, stddev: float) -> None:
         """Set `point_noise` with a standard deviation, in m for positions and in the unit of intensity."""
-        self.point_noise = self._make_uniform_noise(NoiseModel(stddev=stddev), 4 * self._fan.count, "points")
+        self.point_noise = self._make_uniform_noise(NoiseModel(stddev=stddev), 4 * self.fan.count, "points")
+
+
+class LidarRule(SensorRule):
+    """Ranges of a lidar's scan in n simulations, within the range limits.
+
+    Raises:
+        CannotBatchError: plugins add noise to the lidar, its first message is no scan, or its rays are cast in a way
+            that depends on single simulations.
+    """
+
+    inputs = ("xpos", "xmat", "xquat")
+
+    def __init__(self, lidar: LidarMeasurement) -> None:
+        name = lidar.scoped
+        if lidar.ray_noise is not None or lidar.range_noise is not None:
+            raise CannotBatchError(f"noise that a plugin adds to sensor {name!r}")
+        if not lidar.fan.casts_in_rows:
+            raise CannotBatchError(f"more than 2047 rays, or rays that may hit moving meshes, of sensor {name!r}")
+        product = next(iter(lidar.topics))
+        if product != "scan":
+            raise CannotBatchError(f"message {product!r} of sensor {name!r}")
+        self._lidar = lidar
+
+    def bind(self, states: StateArrays, *, is_truth: bool) -> None:
+        self._positions, self._turns = states.field("xpos"), states.field("xmat")
+        self.fan = RayFanRows(self._lidar.fan, states)
+        self._noise = None if is_truth else self._lidar.noise.rows(states.count)
+
+    def take(self, row: int) -> None:
+        self.fan.take(row)
+        if self._noise is not None:
+            self._noise.take(row)
+
+    def read(self, ids: Ids, index: Ticks) -> npt.NDArray[np.float32]:
+        lidar, body, options = self._lidar, self._lidar._body, self._lidar.options
+        frames = lidar._place_fan(self._positions[:, body], self._turns[:, body].reshape(-1, 3, 3))
+        ranges = self.fan.cast(*frames, lidar._start)
+        infinite = lidar._mark_too_near(ranges, np.isinf(ranges))
+        if self._noise is not None:
+            exact = ranges.copy()
+            self._noise.apply(ranges, ids, index)
+            lidar._limit(ranges, exact, infinite)
+        width = options.horizontal.samples
+        first = options.vertical.samples // 2 * width  # the middle layer is that of the scan
+        layer = ranges[:, first : first + width].astype(np.float32)
+        return np.clip(layer, float(options.range_min), float(options.range_max))
 
 
 def _read_sweep(params: Params, samples: int) -> Sweep:

@@ -43,9 +43,9 @@ def _cast(
         geom = np.empty(1, np.int32)
         for i in np.flatnonzero(distances < start).tolist():
             position = rays.origin + start * directions[i]
-            found = mujoco.mj_ray(model, data, position, directions[i], groups, 1, exclude, geom, None)
-            infinite[i] = found < 0 or start + found > rays.reach
-            distances[i] = np.inf if infinite[i] else start + found
+            distance = mujoco.mj_ray(model, data, position, directions[i], groups, 1, exclude, geom, None)
+            infinite[i] = distance < 0 or start + distance > rays.reach
+            distances[i] = np.inf if infinite[i] else start + distance
             geoms[i] = geom[0]
     return distances, geoms, infinite
 
@@ -58,23 +58,23 @@ class WholeModelCaster:
     """
 
     def __init__(self, model: mujoco.MjModel, seen: npt.NDArray[np.bool_]) -> None:
-        self.model = own = copy.copy(model)
-        own.geom_group[:] = np.where(seen, _SEEN, _UNSEEN)
-        own.geom_matid[:] = -1
-        own.geom_rgba[:, 3] = 1.0
-        rows, bounds = _bounds_to_widen(own, seen)
-        own.bvh_aabb[rows] = bounds
+        self.model = copied = copy.copy(model)
+        copied.geom_group[:] = np.where(seen, _SEEN, _UNSEEN)
+        copied.geom_matid[:] = -1
+        copied.geom_rgba[:, 3] = 1.0
+        rows, bounds = _bounds_to_widen(copied, seen)
+        copied.bvh_aabb[rows] = bounds
 
-    def cast(self, data: mujoco.MjData, rays: RayBundle, body: int, own: Sequence[int]) -> RayHits:
+    def cast(self, data: mujoco.MjData, rays: RayBundle, body: int, excluded: Sequence[int]) -> RayHits:
         """Cast rays through all visible geoms.
 
         Args:
             data: physics data with up-to-date poses.
             rays: rays to cast.
             body: moving body that is not hit, or 0.
-            own: geoms that are not hit if `body` is 0; excluding the world body would exclude all static geoms.
+            excluded: geoms that are not hit if `body` is 0; excluding the world body would exclude all static geoms.
         """
-        with temporary_values(self.model.geom_group, own if body <= 0 else (), _UNSEEN):
+        with temporary_values(self.model.geom_group, excluded if body <= 0 else (), _UNSEEN):
             return _cast(self.model, data, rays, _SOLIDS, body if body > 0 else -1)
 
 
@@ -101,12 +101,13 @@ class ReducedModelCaster:
         first = int(np.count_nonzero(is_static))
         self._static = _compile_reduced_model(model, full[:first], carriers[:first])
         self._all = _compile_reduced_model(model, full, carriers) if first < len(full) else self._static
-        kept = np.array(sorted(set(carriers[first:].tolist())), carriers.dtype)  # `np.unique` imports `numpy.ma`, 15 ms
+        # not `np.unique`, because it imports `numpy.ma`, which takes 15 ms
+        used_carriers = np.array(sorted(set(carriers[first:].tolist())), carriers.dtype)
         self._model, self.ids = model, np.append(full, -1).astype(np.int32)
         # carrier 0 is static; the poses of the other carriers are copied for each cast
         self.movers, self._carriers = full[first:], carriers[first:]
-        self._bodies = np.array([bodies[c] for c in kept], dtype=np.intp)
-        self._firsts = np.searchsorted(self._carriers, kept)  # index of each carrier's first geom
+        self._bodies = np.array([bodies[c] for c in used_carriers], dtype=np.intp)
+        self._firsts = np.searchsorted(self._carriers, used_carriers)  # index of each carrier's first geom
         data = self._all[1]
         self._geom_xpos, self._geom_xmat = data.geom_xpos[first:], data.geom_xmat[first:]
         self._poses = data.xipos[1:], data.xpos[1:], data.ximat[1:], data.xmat[1:]
@@ -129,17 +130,25 @@ class ReducedModelCaster:
             is_reachable &= can_reach(self._model, body, offset, self.movers, lowest, highest)
         return np.flatnonzero(is_reachable)
 
+    def model_for_rows(self, has_movers: bool) -> mujoco.MjModel:
+        """Return the model in which the rays of many simulations are cast, with all movers or with none."""
+        return (self._all if has_movers else self._static)[0]
+
+    def mover_bodies(self, carrier: int) -> tuple[Ids, npt.NDArray[np.bool_]]:
+        """Return the body of the compiled model of each moving body, and whether a fan on a carrier may hit it."""
+        return self._bodies, self._carriers[self._firsts] != carrier
+
     def cast(self, data: mujoco.MjData, rays: RayBundle, nearby: NearbyGeoms) -> RayHits:
         """Cast rays through planes, static shapes, and those of `movers` that are in `nearby`.
 
         Geoms in the result are indices in `ids`.
         """
-        found = nearby.reached(data, rays)
-        if not found.size:
+        reached = nearby.reached(data, rays)
+        if not reached.size:
             groups = _SOLIDS_AND_PLANES if self._planes and self._reaches_plane(rays) else _SOLIDS
             return _cast(*self._static, rays, groups)
         is_reached = np.zeros(len(self.movers), dtype=np.bool_)
-        is_reached[found] = True
+        is_reached[reached] = True
         self._move(data, is_reached)
         return _cast(*self._all, rays, _SOLIDS_AND_PLANES)
 
@@ -200,8 +209,8 @@ def _bounds_to_widen(model: mujoco.MjModel, is_seen: npt.NDArray[np.bool_]) -> t
     seen = seen[model.body_bvhnum[bodies] > 0]
     bodies = model.geom_bodyid[seen]
     turn = np.empty((model.nbody, 9))
-    found = np.array(sorted(set(bodies.tolist())), bodies.dtype)
-    for body in found:
+    moved_bodies = np.array(sorted(set(bodies.tolist())), bodies.dtype)
+    for body in moved_bodies:
         mujoco.mju_quat2Mat(turn[body], model.body_iquat[body])
     centre = model.geom_pos[seen] - model.body_ipos[bodies]
     centre = np.einsum("gji,gj->gi", turn.reshape(-1, 3, 3)[bodies], centre)
@@ -211,9 +220,12 @@ def _bounds_to_widen(model: mujoco.MjModel, is_seen: npt.NDArray[np.bool_]) -> t
     low, high = np.full((model.nbody, 3), np.inf), np.full((model.nbody, 3), -np.inf)
     np.minimum.at(low, bodies, centre - radius)
     np.maximum.at(high, bodies, centre + radius)
-    rows = roots[found].astype(np.intp)
+    rows = roots[moved_bodies].astype(np.intp)
     box = model.bvh_aabb[rows]
-    low, high = np.minimum(low[found], box[:, :3] - box[:, 3:]), np.maximum(high[found], box[:, :3] + box[:, 3:])
+    low, high = (
+        np.minimum(low[moved_bodies], box[:, :3] - box[:, 3:]),
+        np.maximum(high[moved_bodies], box[:, :3] + box[:, 3:]),
+    )
     wide = np.hstack(((low + high) / 2, (high - low) / 2))
     changed = (wide[:, 3:] > box[:, 3:] + 1e-12).any(axis=1)
     return rows[changed], wide[changed]

@@ -196,9 +196,9 @@ def _neighbours(half_angle: float) -> npt.NDArray[np.intp]:
     """Return the nearest rays of each ray of a cone, shape (8, n)."""
     directions = cone_directions(half_angle, (0.0, 0.0, 1.0))
     most = min(_NEIGHBOURS, len(directions) - 1)
-    found = np.empty((len(directions), most), dtype=np.intp)
+    neighbours = np.empty((len(directions), most), dtype=np.intp)
     for i, direction in enumerate(directions):
         distance = ((directions - direction) ** 2).sum(axis=1)
         distance[i] = np.inf
-        found[i] = np.argsort(distance, kind="stable")[:most]
-    return np.ascontiguousarray(found.T)
+        neighbours[i] = np.argsort(distance, kind="stable")[:most]
+    return np.ascontiguousarray(neighbours.T)

@@ -281,15 +281,15 @@ def cast_on_shapes(
                 directions = np.einsum("in,nij->jn", directions, selected.turns.take(owners, 0))
             with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
                 enter, leave = function(origins.take(owners, 1), directions, sizes.take(owners, 1))
-                found = np.where(enter >= start, enter, leave)
-                is_hit = (enter <= leave) & (found >= start) & (found < best.take(rays))
+                ray_distances = np.where(enter >= start, enter, leave)
+                is_hit = (enter <= leave) & (ray_distances >= start) & (ray_distances < best.take(rays))
             keep = np.flatnonzero(is_hit)
-            rays, found = rays[keep], found[keep]
+            rays, ray_distances = rays[keep], ray_distances[keep]
             if len(owners) == 1:
-                best[rays], hits[rays] = found, selected.geoms[owners]
+                best[rays], hits[rays] = ray_distances, selected.geoms[owners]
             else:
-                np.minimum.at(best, rays, found)
-                first = best[rays] == found
+                np.minimum.at(best, rays, ray_distances)
+                first = best[rays] == ray_distances
                 hits[rays[first]] = selected.geoms.take(owners[keep[first]])
 
 

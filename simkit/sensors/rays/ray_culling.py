@@ -101,8 +101,8 @@ def reaches_between_cones(
     """
     above = height * math.cos(highest) - side * math.sin(highest)
     below = side * math.sin(lowest) - height * math.cos(lowest)
-    found: npt.NDArray[np.bool_] = (above <= radius + _MARGIN) & (below <= radius + _MARGIN)
-    return found
+    is_reached: npt.NDArray[np.bool_] = (above <= radius + _MARGIN) & (below <= radius + _MARGIN)
+    return is_reached
 
 
 def geom_half_sizes(model: mujoco.MjModel, geoms: npt.NDArray[np.intp]) -> Vector:
@@ -147,8 +147,8 @@ class NearbyGeoms:
         else:
             side = np.sqrt(np.maximum(square.take(near) - height * height, 0.0))
             near = near[reaches_between_cones(height, side, radii, rays.lowest, rays.highest)]
-        found: npt.NDArray[np.intp] = self._which.take(near)
-        return found
+        geoms: npt.NDArray[np.intp] = self._which.take(near)
+        return geoms
 
 
 def can_reach(

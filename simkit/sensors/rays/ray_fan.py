@@ -15,24 +15,29 @@ Embree's float32 decides on which side of a mesh edge a ray passes.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final
+from typing import TYPE_CHECKING, Any, Final
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
 from simkit.compiler.name_map import NameMap
+from simkit.linear_algebra import matmul
 from simkit.pose import Pose, Vector
 from simkit.sensors.rays.embree_rays import MovingBodies, TriangleBody
 from simkit.sensors.rays.geom_types import Ids
+from simkit.sensors.rays.mujoco_rays import ReducedModelCaster
 from simkit.sensors.rays.numpy_rays import (
     FanDirections,
     cast_on_plane,
     cast_on_shapes,
     rotate_vectors,
 )
-from simkit.sensors.rays.ray_culling import NearbyGeoms, RayBundle, can_reach, finite_limit_bits, reaches_plane
+from simkit.sensors.rays.ray_culling import ENDLESS, NearbyGeoms, RayBundle, can_reach, finite_limit_bits, reaches_plane
 from simkit.sensors.rays.ray_targets import MAX_MOVING_BODIES, RayTargets
+
+if TYPE_CHECKING:
+    from simkit.runtime.state_arrays import StateArrays
 
 MANY_RAYS: Final = 2048
 """Number of rays from which NumPy is faster on shapes than the engine."""
@@ -51,6 +56,11 @@ class RayFan:
         ids: geom ids of the compiled model; the last is -1.
         groups: visible geom groups, shape (6,), 1 for visible.
         body: body that is not hit; 0 for none.
+        targets: geoms that the rays can hit.
+        carrier: carrier that is not hit; see `RayTargets`.
+        bounds: lowest and highest elevation of the rays [rad].
+        by_engine: True if the engine casts on shapes, False if NumPy does.
+        numpy_directions: directions for casts in NumPy; None if the engine casts.
 
     Args:
         directions: unit vectors in the sensor's frame, shape (n, 3).
@@ -81,11 +91,14 @@ class RayFan:
         self._rotated = np.empty((self.count, 3))
         self.groups = np.zeros(6, dtype=np.uint8)
         self.groups[list(groups)] = 1
-        self._grid, self._fan = grid, None if self.count < MANY_RAYS else FanDirections(self.directions, grid)
+        self.grid, self.numpy_directions = (
+            grid,
+            None if self.count < MANY_RAYS else FanDirections(self.directions, grid),
+        )
         self._use_embree = use_embree
-        self._bounds = -np.pi / 2, np.pi / 2
+        self.bounds = -np.pi / 2, np.pi / 2
         if grid is not None and np.abs(grid[0]).max() <= np.pi / 2:
-            self._bounds = float(grid[0].min()), float(grid[0].max())
+            self.bounds = float(grid[0].min()), float(grid[0].max())
 
     @property
     def geoms(self) -> npt.NDArray[np.int32]:
@@ -115,18 +128,23 @@ class RayFan:
         """
         self.body = body if body > 0 else 0
         self._own = [] if body > 0 else list(own_geoms)
-        self._targets = self._find_targets(model, names, hidden)
-        self._carrier = self._targets.carrier_of(self.body, self._own)
-        if self._carrier < 0 and not self._targets.needs_engine:
-            self._targets = self._find_targets(model, names, (*hidden, *self._own))
-            self._carrier = 0
+        self.targets = self._find_targets(model, names, hidden)
+        self.carrier = self.targets.carrier_of(self.body, self._own)
+        if self.carrier < 0 and not self.targets.needs_engine:
+            self.targets = self._find_targets(model, names, (*hidden, *self._own))
+            self.carrier = 0
         self._offset, self._static, self._nearby = offset, None, None
-        targets = self._targets
+        targets = self.targets
         # ids of the compiled model; `cast` replaces them with the ids of the reduced model if it casts all rays
         self.ids = np.append(np.arange(model.ngeom), -1).astype(np.int32)
-        self._by_engine = self.count < MANY_RAYS and targets.moving_shapes <= MAX_MOVING_BODIES
-        if not self._by_engine and self._fan is None:
-            self._fan = FanDirections(self.directions, self._grid)
+        self.by_engine = self.count < MANY_RAYS and targets.moving_shapes <= MAX_MOVING_BODIES
+        if not self.by_engine and self.numpy_directions is None:
+            self.numpy_directions = FanDirections(self.directions, self.grid)
+
+    @property
+    def casts_in_rows(self) -> bool:
+        """True if `RayFanRows` can cast the rays: they are few, and hit no moving triangles."""
+        return self.by_engine and not self.targets.needs_engine and not len(self._movers)
 
     def _find_targets(self, model: mujoco.MjModel, names: NameMap, hidden: Sequence[int]) -> RayTargets:
         def find() -> RayTargets:
@@ -150,15 +168,15 @@ class RayFan:
             rotation: rotation matrix of the sensor's frame, shape (3, 3).
             start: distance from the origin at which the rays start [m].
         """
-        rays, targets = self._rays(origin, rotation, start), self._targets
+        rays, targets = self.rays_from(origin, rotation, start), self.targets
         if targets.needs_engine:
             self.distances, self.hits, self.infinite = targets.whole.cast(data, rays, self.body, self._own)
             return
-        if self._by_engine:
+        if self.by_engine:
             shapes = targets.shapes_by_engine
             if shapes is not None:
                 if self._nearby is None:
-                    movers = shapes.reachable_movers(self._carrier, self.body, self._offset, *self._bounds)
+                    movers = shapes.reachable_movers(self.carrier, self.body, self._offset, *self.bounds)
                     self._nearby = NearbyGeoms(targets.model, movers, shapes.movers[movers])
                 self.distances, self.hits, self.infinite = shapes.cast(data, rays, self._nearby)
                 if not targets.triangles_for_engine:
@@ -170,15 +188,15 @@ class RayFan:
             self._cast_on_triangles(targets.triangles_for_engine, data, rays)
         else:
             self._clear()
-            self._cast_on_planes_and_triangles(data, rays)
+            self.cast_on_planes_and_triangles(data, rays)
             self._cast_on_shapes(data, rays, rotation)
-        self._finish()
+        self.finish()
 
-    def _rays(self, origin: Vector, rotation: Vector, start: float) -> RayBundle:
+    def rays_from(self, origin: Vector, rotation: Vector, start: float) -> RayBundle:
         rotate_vectors(self.directions, rotation.T, out=self._rotated)
-        return RayBundle(origin, self._rotated, start, self.reach, self._limit, rotation[:, 2], *self._bounds)
+        return RayBundle(origin, self._rotated, start, self.reach, self._limit, rotation[:, 2], *self.bounds)
 
-    def _finish(self) -> None:
+    def finish(self) -> None:
         self.infinite = self.distances > min(self.reach, _LARGEST)
         np.copyto(self.distances, np.inf, where=self.infinite)
 
@@ -186,36 +204,36 @@ class RayFan:
         self.hits = np.full(self.count, -1, dtype=np.int32)
         self.distances = np.full(self.count, np.inf)
 
-    def _cast_on_planes_and_triangles(self, data: mujoco.MjData, rays: RayBundle) -> None:
+    def cast_on_planes_and_triangles(self, data: mujoco.MjData, rays: RayBundle) -> None:
         """Cast on planes in NumPy and on triangles with Embree."""
-        best, targets = self.distances, self._targets
+        best, targets = self.distances, self.targets
         self._cast_on_triangles(targets.triangles_and_boxes, data, rays)
         for i in targets.planes.tolist():
-            if self._carrier and targets.carriers[i] == self._carrier:
+            if self.carrier and targets.carriers[i] == self.carrier:
                 continue
             geom = int(targets.geoms[i])
             turn, size = data.geom_xmat[geom].reshape(3, 3), targets.model.geom_size[geom]
             if not reaches_plane(rays, data.geom_xpos[geom].tolist(), turn[:, 2].tolist()):
                 continue
-            found = cast_on_plane(rays.origin, rays.directions, data.geom_xpos[geom], turn, size, rays.start)
-            if found is not None:
-                nearer = found < best
-                np.copyto(best, found, where=nearer)
+            plane_distances = cast_on_plane(rays.origin, rays.directions, data.geom_xpos[geom], turn, size, rays.start)
+            if plane_distances is not None:
+                nearer = plane_distances < best
+                np.copyto(best, plane_distances, where=nearer)
                 self.hits[nearer] = geom
 
     def _cast_on_shapes(self, data: mujoco.MjData, rays: RayBundle, rotation: Vector) -> None:
-        targets = self._targets
+        targets = self.targets
         if self._nearby is None:
             which = targets.shapes
-            if self._carrier:
-                which = which[targets.carriers[which] != self._carrier]
+            if self.carrier:
+                which = which[targets.carriers[which] != self.carrier]
             self._nearby = NearbyGeoms(targets.model, which, targets.geoms[which])
         which = self._nearby.reached(data, rays)
         if not len(which):
             return
-        assert self._fan is not None
+        assert self.numpy_directions is not None
         shapes = targets.shapes_in_frame(data, which, rays.origin, rotation)
-        cast_on_shapes(self._fan, shapes, rays.reach, rays.start, self.distances, self.hits)
+        cast_on_shapes(self.numpy_directions, shapes, rays.reach, rays.start, self.distances, self.hits)
 
     def _cast_on_triangles(self, bodies: list[TriangleBody], data: mujoco.MjData, rays: RayBundle) -> None:
         """Cast on static triangles, then on each moving body with the rays that may hit it."""
@@ -226,12 +244,12 @@ class RayFan:
             for first in range(0, self.count, _RAYS_PER_CHUNK):
                 part = slice(first, first + _RAYS_PER_CHUNK)
                 limit = np.minimum(self.distances[part], rays.reach, dtype=np.float32)
-                found = body.cast(data, rays.origin, rays.directions[part], rays.start, limit)
-                self._shorten(found[0] + first, *found[1:])
+                body_hits = body.cast(data, rays.origin, rays.directions[part], rays.start, limit)
+                self._shorten(body_hits[0] + first, *body_hits[1:])
         for body, rays_of_body in self._movers.reached(data, rays):
             limit = np.minimum(self.distances.take(rays_of_body), rays.reach, dtype=np.float32)
-            found = body.cast(data, rays.origin, rays.directions.take(rays_of_body, 0), rays.start, limit)
-            self._shorten(rays_of_body[found[0]], *found[1:])
+            body_hits = body.cast(data, rays.origin, rays.directions.take(rays_of_body, 0), rays.start, limit)
+            self._shorten(rays_of_body[body_hits[0]], *body_hits[1:])
 
     def _shorten(self, rays: Ids, distances: Vector, geoms: npt.NDArray[np.int32]) -> None:
         """Replace the distances and geoms of those rays whose new distance is shorter."""
@@ -240,11 +258,105 @@ class RayFan:
         self.distances[rays], self.hits[rays] = distances[nearer], geoms[nearer]
 
     def _can_reach(self, body: TriangleBody) -> bool:
-        if body.carrier == self._carrier:
+        if body.carrier == self.carrier:
             return False
         if self._offset is None:
             return True
-        return bool(can_reach(self._targets.model, self.body, self._offset, body.geoms, *self._bounds).any())
+        return bool(can_reach(self.targets.model, self.body, self._offset, body.geoms, *self.bounds).any())
+
+
+class RayFanRows:
+    """Casts of one fan in n simulations, whose static surroundings may differ.
+
+    The engine casts through planes and shapes, and Embree through static triangles, as `RayFan` does.
+
+    Args:
+        fan: fan of the simulation that resets all others.
+        states: states of all simulations.
+    """
+
+    def __init__(self, fan: RayFan, states: StateArrays) -> None:
+        self._fan, self._states = fan, states
+        self._casters: list[ReducedModelCaster | None] = [None] * states.count
+        self._triangles: list[list[TriangleBody]] = [[]] * states.count
+        self._batch: Any = None
+        self._movers: Any = None
+
+    def take(self, row: int) -> None:
+        """Copy the surroundings of the fan to one row."""
+        shapes = self._fan.targets.shapes_by_engine
+        if shapes is not self._casters[row]:
+            self._casters[row], self._batch = shapes, None
+        self._triangles[row] = self._fan._static or []
+
+    def _make_batch(self) -> None:
+        """Make the batch of the reduced models, which contain planes and shapes only."""
+        from mujoco.batch import Batch
+
+        fan, states = self._fan, self._states
+        shapes = next((caster for caster in self._casters if caster is not None), None)
+        if shapes is None:
+            return
+        has_movers = len(shapes.reachable_movers(fan.carrier, fan.body, fan._offset, *fan.bounds)) > 0
+        models = [(caster or shapes).model_for_rows(has_movers) for caster in self._casters]
+        self._batch = Batch(models[0], states.count, states.threads)
+        if any(model is not models[0] for model in models):
+            self._batch.set_models(models)
+        self._movers = None
+        if has_movers:
+            places = self._batch.bind("mocap_pos"), self._batch.bind("mocap_quat")
+            self._movers = (*places, *shapes.mover_bodies(fan.carrier))
+
+    def cast(self, origins: Vector, rotations: Vector, start: float) -> Vector:
+        """Return the distances in all simulations [m], shape (n, rays); infinite for no hit within the reach.
+
+        Args:
+            origins: points from which distances are measured, in the world [m], shape (n, 3).
+            rotations: rotation matrices of the sensor's frame, shape (n, 3, 3).
+            start: distance from the origin at which the rays start [m].
+        """
+        fan, states = self._fan, self._states
+        if self._batch is None:
+            self._make_batch()
+        origins = np.nan_to_num(origins)
+        directions = np.nan_to_num(matmul(fan.directions, rotations.transpose(0, 2, 1)))
+        distances = np.full(directions.shape[:2], np.inf)
+        if self._batch is not None:
+            if self._movers is not None:
+                places, quaternions, bodies, is_kept = self._movers
+                places[:], quaternions[:] = states.field("xpos")[:, bodies], states.field("xquat")[:, bodies]
+                places[:, ~is_kept] = ENDLESS
+            distances = self._cast_on_shapes(origins, directions, start)
+        self._cast_on_triangles(origins, directions, distances, start)
+        distances[~(distances <= fan.reach)] = np.inf
+        return distances
+
+    def _cast_on_shapes(self, origins: Vector, directions: Vector, start: float) -> Vector:
+        points = np.broadcast_to(origins[:, None], directions.shape)
+        distances: Vector = self._batch.ray(points, directions)[0]
+        distances[distances < 0] = np.inf
+        near = distances < start
+        if near.any():
+            # the engine has no start distance, so rays with a hit before the start are cast again
+            rows = near.any(axis=1)
+            beyond = self._batch.ray(points[rows] + start * directions[rows], directions[rows], ids=rows)[0]
+            again = np.where(beyond < 0, np.inf, start + beyond)
+            distances[rows] = np.where(near[rows], again, distances[rows])
+        return distances
+
+    def _cast_on_triangles(self, origins: Vector, directions: Vector, distances: Vector, start: float) -> None:
+        """Shorten the distances of rays that hit static triangles, for all simulations with the same ones at once."""
+        fan, data = self._fan, self._states.sim.mj_data
+        kinds = np.array([id(bodies) for bodies in self._triangles])
+        for kind in set(kinds.tolist()):
+            rows = np.flatnonzero(kinds == kind)
+            points = np.repeat(origins[rows], fan.count, axis=0)
+            rays, shortest = directions[rows].reshape(-1, 3), distances[rows].reshape(-1)
+            for body in self._triangles[rows[0]]:
+                limit = np.minimum(shortest, fan.reach, dtype=np.float32)
+                hits, lengths, _ = body.cast(data, points, rays, start, limit)
+                shortest[hits] = np.minimum(shortest[hits], lengths)
+            distances[rows] = shortest.reshape(len(rows), -1)
 
 
 def fan_directions(azimuths: Vector, elevations: Vector) -> Vector:

@@ -125,8 +125,8 @@ class RayTargets:
     def shapes(self) -> Ids:
         """Indices in `geoms` of the shapes that are not traced as triangles."""
         boxes = self._static_boxes
-        found = self._select(lambda t: t in SHAPES)
-        return found[~np.isin(found, boxes)]
+        shapes = self._select(lambda t: t in SHAPES)
+        return shapes[~np.isin(shapes, boxes)]
 
     @cached_property
     def _static_boxes(self) -> Ids:

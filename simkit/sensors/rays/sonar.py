@@ -127,11 +127,11 @@ class Sonar(Sensor):
 
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> SonarReading:
         options = self.options
-        found, geom = self._cone.find(model, data, *self._frame_in_world(data))
-        if found > options.range_max:
+        distance, geom = self._cone.find(model, data, *self._frame_in_world(data))
+        if distance > options.range_max:
             return SonarReading(math.inf, "")
         owner = str(self._geom_owner(geom)[1])
-        return SonarReading(found if found >= options.range_min else -math.inf, owner)
+        return SonarReading(distance if distance >= options.range_min else -math.inf, owner)
 
     def perturb(self, reading: SonarReading, index: int) -> SonarReading:
         if self.noise.is_silent or math.isinf(reading.range):

@@ -4,33 +4,40 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from simkit.diagnostics import did_you_mean
+from simkit.runtime.array_rules import CannotBatchError
 from simkit.testing.conditions import syntax_tree as syntax
 from simkit.testing.conditions.bound_expression import (
     BoundNode,
     Function,
+    NotInRows,
+    ValueGetter,
     as_vector,
     attribute_of,
     is_scalar,
     listed_attributes,
+    vector_of,
 )
 from simkit.testing.conditions.history_functions import HISTORY_FUNCTIONS
 from simkit.testing.conditions.math_functions import (
     LIST_FUNCTIONS,
     NUMBER_FUNCTIONS,
     NUMBER_OPERATORS,
+    ROW_OPERATORS,
     VECTOR_OPERATORS,
 )
-from simkit.testing.conditions.value_types import NUMBER, NUMBERS, TEXT, TRUTH, VECTOR, ValueType, is_vector_like
+from simkit.testing.conditions.value_types import JOINT, NUMBER, NUMBERS, TEXT, TRUTH, VECTOR, ValueType, is_vector_like
 from simkit.testing.conditions.world_functions import WORLD_FUNCTIONS
 
 if TYPE_CHECKING:
+    import numpy.typing as npt
+
     from simkit.testing.conditions.world_view import WorldView
 
 
@@ -52,7 +59,7 @@ _COMPARISON_OPERATORS: Final[dict[str, Callable[[Any, Any], bool]]] = {
 }
 
 
-_CONSTANTS: Final[dict[str, tuple[ValueType, Any]]] = {
+_CONSTANTS: Final[dict[str, tuple[ValueType, float | bool]]] = {
     **{name: (NUMBER, value) for name, value in (("pi", math.pi), ("inf", math.inf), ("nan", math.nan))},
     **{name: (TRUTH, name.lower() == "true") for name in ("true", "false", "True", "False")},
 }
@@ -69,6 +76,19 @@ def bind(expression: syntax.Expression, view: WorldView) -> BoundNode:
     return Binder(expression.source, view).part(expression.root)
 
 
+def bind_rows(expression: syntax.Expression, view: WorldView) -> BoundNode:
+    """Bind an expression to many worlds at once; its values are arrays whose first axis is the world.
+
+    Args:
+        expression: Expression that is already bound to one of these worlds, so that its types are right.
+        view: View of the worlds, whose entities, joints, contacts and clock have arrays.
+
+    Raises:
+        CannotBatchError: A part of the expression has no value as arrays.
+    """
+    return RowsBinder(expression.source, view).part(expression.root)
+
+
 class Binder:
     """Binder of one expression.
 
@@ -76,6 +96,9 @@ class Binder:
         source: Text of the expression.
         view: World.
     """
+
+    in_rows = False
+    number_operators: Mapping[str, Callable[[Any, Any], Any]] = NUMBER_OPERATORS
 
     def __init__(self, source: str, view: WorldView) -> None:
         self.source, self.view = source, view
@@ -238,7 +261,7 @@ class Binder:
         items = tuple(self.number(item) for item in node.items)
         gets = tuple(item.get for item in items)
         kind = VECTOR if len(items) == 3 else ValueType(NUMBERS.name, item=NUMBER, length=len(items))
-        return BoundNode(node, kind, lambda: np.array([get() for get in gets]), items)
+        return BoundNode(node, kind, lambda: vector_of([get() for get in gets]), items)
 
     def _sign(self, node: syntax.Sign) -> BoundNode:
         operand = self.part(node.operand)
@@ -253,7 +276,7 @@ class Binder:
     def _arithmetic(self, node: syntax.Arithmetic) -> BoundNode:
         left, right = self.part(node.left), self.part(node.right)
         if left.kind is NUMBER and right.kind is NUMBER:
-            act, a, b = NUMBER_OPERATORS[node.sign], left.get, right.get
+            act, a, b = self.number_operators[node.sign], left.get, right.get
             return BoundNode(node, NUMBER, lambda: act(a(), b()), (left, right))
         for part in (left, right):
             if part.kind is not NUMBER and not is_vector_like(part.kind):
@@ -270,17 +293,21 @@ class Binder:
         if len(lengths) > 1:
             message = f"cannot combine vectors of {' and '.join(map(str, sorted(lengths, key=str)))} numbers"
             raise self.fault("SK-COND-004", message, node.span)
-        act, a, b = VECTOR_OPERATORS[node.sign], as_vector(left), as_vector(right)
+        act, a, b = VECTOR_OPERATORS[node.sign], self.operand(left), self.operand(right)
         source = node.span.text(self.source)
 
-        def value() -> Any:
+        def value() -> object:
             x, y = a(), b()
-            if both and len(x) != len(y):
-                raise syntax.UndecidedValue(f"{source} combines lists of {len(x)} and {len(y)} numbers")
+            if both and x.shape[-1] != y.shape[-1]:
+                raise syntax.UndecidedValue(f"{source} combines lists of {x.shape[-1]} and {y.shape[-1]} numbers")
             return act(x, y)
 
         kind = next(part.kind for part in (left, right) if is_vector_like(part.kind))
         return BoundNode(node, kind if kind.is_numbers else NUMBERS, value, (left, right))
+
+    def operand(self, part: BoundNode) -> ValueGetter:
+        """Return the function that gets an operand of an operator of vectors: a vector or a factor."""
+        return as_vector(part)
 
     # ------------------------------------------------------------------ parts of values
 
@@ -290,13 +317,13 @@ class Binder:
             hint = f"write pose('{node.of.name}').{node.name} for a pose; names need quotes"
             raise self.fault("SK-COND-002", f"unknown name {name!r}", node.span, hint)
         of = self.part(node.of)
-        found = attribute_of(of, node.name)
-        if found is None:
+        attribute = attribute_of(of, node.name)
+        if attribute is None:
             allowed = listed_attributes(of.kind)
             message = f"{of.node.span.text(self.source)} is {of.kind}, which has no {node.name!r}"
             hint = did_you_mean(node.name, allowed) or _parts_hint(of.kind) or "it has no attributes"
             raise self.fault("SK-COND-007", message, node.name_span, hint)
-        kind, get = found
+        kind, get = attribute
         return BoundNode(node, kind, get, (of,), of.feed)
 
     def _index(self, node: syntax.Index) -> BoundNode:
@@ -315,14 +342,68 @@ class Binder:
         source = node.span.text(self.source)
         is_number = item is NUMBER
 
-        def value() -> Any:
+        def value() -> object:
             items, place = get(), at()
             if not (-len(items) <= place < len(items)) or place != int(place):
                 raise syntax.UndecidedValue(f"{source} is out of range: there are {len(items)} items")
-            found = items[int(place)]
-            return float(found) if is_number else bool(found) if item is TRUTH else found
+            item_value = items[int(place)]
+            return float(item_value) if is_number else bool(item_value) if item is TRUTH else item_value
 
         return BoundNode(node, item, value, (of, index), of.feed if fixed is not None else None)
+
+
+class RowsBinder(Binder):
+    """Binder of one expression to many worlds at once."""
+
+    in_rows = True
+    number_operators = ROW_OPERATORS
+
+    def part(self, node: syntax.Node) -> BoundNode:
+        has_rows = not isinstance(node, syntax.Index) and not (isinstance(node, syntax.Name) and node.name == "tick")
+        if isinstance(node, syntax.Call):
+            has_rows = FUNCTIONS[node.name].has_rows
+        try:
+            if has_rows:
+                return super().part(node)
+        except NotInRows:
+            pass
+        text = node.span.text(self.source)
+        raise CannotBatchError(f"{text} in the expression {self.source!r}; simkit.gym.Batched has one for arrays")
+
+    def _attribute(self, node: syntax.Attribute) -> BoundNode:
+        part = super()._attribute(node)
+        (owner,) = part.below
+        if owner.kind is JOINT and not hasattr(owner.get(), node.name):
+            raise NotInRows
+        return part
+
+    def _not(self, node: syntax.Not) -> BoundNode:
+        operand = self.truth(node.operand)
+        return BoundNode(node, TRUTH, lambda: np.logical_not(operand.get()), (operand,))
+
+    def _junction(self, node: syntax.Junction) -> BoundNode:
+        operands = tuple(self.truth(operand) for operand in node.operands)
+        join = np.logical_or if node.word == "or" else np.logical_and
+        return BoundNode(
+            node, TRUTH, lambda: join.reduce(np.broadcast_arrays(*(part.get() for part in operands))), operands
+        )
+
+    def _comparison(self, node: syntax.Comparison) -> BoundNode:
+        operands = tuple(self.part(operand) for operand in node.operands)
+        signs = [_COMPARISON_OPERATORS[sign] for sign in node.signs]
+
+        def value() -> object:
+            holds: bool | npt.NDArray[np.bool_] = True
+            for sign, (left, right) in zip(signs, pairwise([part.get() for part in operands]), strict=True):
+                holds = np.logical_and(holds, sign(left, right))
+            return holds
+
+        return BoundNode(node, TRUTH, value, operands)
+
+    def operand(self, part: BoundNode) -> ValueGetter:
+        get = as_vector(part)
+        # a factor of each world multiplies all numbers of the world's vector
+        return (lambda: np.asarray(get())[..., None]) if part.kind is NUMBER else get
 
 
 def _parts_hint(kind: ValueType) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from operator import attrgetter, itemgetter
 from typing import TYPE_CHECKING, Any, Final, Protocol
@@ -11,7 +11,7 @@ import numpy as np
 
 from simkit.errors import InputError
 from simkit.msgs import Message
-from simkit.pose import Pose, Vector, rpy_from_quat
+from simkit.pose import Pose, Vector, rpy_of_quaternions
 from simkit.testing.conditions import syntax_tree as syntax
 from simkit.testing.conditions import value_types as kinds
 from simkit.testing.conditions.syntax_tree import REMOVED_CODE, UndecidedValue
@@ -66,7 +66,7 @@ def value_text(value: Any) -> str:
     return f"a {getattr(value, '__msgtype__', type(value).__name__)}"
 
 
-def _join_texts(values: Any) -> str:
+def _join_texts(values: Iterable[object]) -> str:
     return ", ".join(value_text(v.item() if hasattr(v, "item") else v) for v in values)
 
 
@@ -134,16 +134,22 @@ def is_scalar(kind: ValueType) -> bool:
     return kind in (NUMBER, TRUTH, TEXT)
 
 
+class NotInRows(Exception):
+    """A part of an expression has no value as arrays."""
+
+
 class ExpressionBinder(Protocol):
     """Interface of the binder for functions of the expression language.
 
     Attributes:
         source: Text of the expression.
         view: World that the expression is bound to.
+        in_rows: True for many worlds at once, whose values are arrays; the first axis is the world.
     """
 
     source: str
     view: WorldView
+    in_rows: bool
 
     def part(self, node: syntax.Node) -> BoundNode:
         """Bind a node."""
@@ -174,12 +180,14 @@ class Function:
         usage: Call syntax, for messages.
         least, most: Limits of the number of arguments.
         make: Function that binds a call.
+        has_rows: True if the function has values as arrays, for many worlds at once.
     """
 
     usage: str
     least: int
     most: int
     make: BindFunction
+    has_rows: bool = False
 
 
 def quoted_argument(binder: ExpressionBinder, call: syntax.Call, index: int, what: str) -> syntax.Text:
@@ -235,7 +243,7 @@ def as_numbers(part: BoundNode) -> ValueGetter | None:
     get = part.get
     if part.kind.message == SCAN:
 
-        def met() -> Any:
+        def met() -> Vector:
             ranges = np.asarray(get().ranges, dtype=np.float64)
             return ranges[ranges < np.inf]
 
@@ -261,8 +269,20 @@ def _numbered(names: Sequence[str], numbers: Callable[[Any], Any]) -> dict[str, 
     return {name: (kinds.NUMBER, _number_at(at, numbers)) for at, name in enumerate(names)}
 
 
-def _number_at(at: int, numbers: Callable[[Any], Any]) -> Callable[[Any], float]:
-    return lambda value: float(numbers(value)[at])
+def _number_at(at: int, numbers: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    return lambda value: number_of(numbers(value), at)
+
+
+def number_of(values: Vector, at: int) -> float | Vector:
+    """Return one number of a vector, or one number of the vector of each world, shape (worlds,)."""
+    return values[:, at] if getattr(values, "ndim", 1) == 2 else float(values[at])
+
+
+def vector_of(values: Sequence[float | Vector]) -> Vector:
+    """Return numbers as a vector, or as the vector of each world, shape (worlds, n), if one of them is an array."""
+    if any(isinstance(value, np.ndarray) for value in values):
+        return np.stack(np.broadcast_arrays(*values), axis=-1)
+    return np.array(values)
 
 
 _AXIS_FIELDS = _numbered(_AXES, lambda vector: vector)
@@ -271,9 +291,9 @@ _VALUE_FIELDS: Final[dict[kinds.ValueType, dict[str, _ReadField]]] = {
         "position": (kinds.VECTOR, attrgetter("position")),
         "orientation": (kinds.ORIENTATION, attrgetter("quaternion")),
         **_numbered(_AXES, attrgetter("position")),
-        **_numbered(_ANGLES, lambda pose: rpy_from_quat(pose.quaternion)),
+        **_numbered(_ANGLES, lambda pose: rpy_of_quaternions(pose.quaternion)),
     },
-    kinds.ORIENTATION: {**_numbered("wxyz", lambda quaternion: quaternion), **_numbered(_ANGLES, rpy_from_quat)},
+    kinds.ORIENTATION: {**_numbered("wxyz", lambda quaternion: quaternion), **_numbered(_ANGLES, rpy_of_quaternions)},
     kinds.TWIST: {"linear": (kinds.VECTOR, itemgetter(0)), "angular": (kinds.VECTOR, itemgetter(1))},
 }
 
@@ -303,10 +323,10 @@ def attribute_of(part: BoundNode, name: str) -> AttributeGetter | None:
             kind, get = kinds.POSE, as_pose(part)
         elif kinds.is_orientation_like(kind):
             kind, get = kinds.ORIENTATION, lambda: _quaternion(part.get())
-    found = _fields_of_value(kind).get(name)
-    if found is None:
+    reader = _fields_of_value(kind).get(name)
+    if reader is None:
         return None
-    of, read = found
+    of, read = reader
     return of, lambda: read(get())
 
 
@@ -325,7 +345,7 @@ def _joint_attribute(joint: Joint, name: str) -> AttributeGetter | None:
             raise UndecidedValue(f"{joint.scoped} was removed") from None
 
     if joint.dof == 1:
-        return kinds.NUMBER, lambda: float(value())
+        return kinds.NUMBER, lambda: number if isinstance(number := value(), np.ndarray) else float(number)
     return kinds.ValueType(kinds.NUMBERS.name, item=kinds.NUMBER), value
 
 

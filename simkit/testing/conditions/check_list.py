@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from simkit.errors import InputError
+from simkit.errors import InputError, raise_together
 from simkit.run_spec import Check
 from simkit.testing.conditions import checks as check_kinds
 from simkit.testing.conditions.checks import CheckResult, ConditionCheck, ReachedCheck, RunningCheck
@@ -53,9 +53,8 @@ class CheckList:
                 entries.append(_CHECK_CLASSES[check.kind](check, self._view))
             except InputError as error:
                 place = f"{check.where}: " if check.where else ""
-                errors.append(InputError(f"{place}{error}", error.code))
-        if errors:
-            raise InputError("\n".join(map(str, errors)), errors[0].code)
+                errors.append(InputError(error.code, f"{place}{error}", shows_code=False))
+        raise_together(errors)
         return entries
 
     def bind_waiting(self) -> None:

@@ -209,10 +209,10 @@ class ReachedCheck(ConditionCheck):
 
     def _nearest_values(self) -> str:
         """Return the present values, and earlier values if these were nearer to the goal."""
-        found = self.condition.findings()
-        if not self._nearest_text or self._nearest_text in found:
-            return found
-        return f"{found}; nearest at {time_text(self._nearest_time)}: {self._nearest_text}"
+        present = self.condition.findings()
+        if not self._nearest_text or self._nearest_text in present:
+            return present
+        return f"{present}; nearest at {time_text(self._nearest_time)}: {self._nearest_text}"
 
     def _at_end(self, early_end: str) -> CheckResult:
         end = f"was not reached by {time_text(self._clock.time)}" + (f", when {early_end}" if early_end else "")
@@ -247,10 +247,10 @@ class AlwaysCheck(ConditionCheck):
             return self._decide(False, f"was never evaluated: {reason}")
         if early_end:
             return self._decide(False, f"held until {now}, when {early_end}")
-        found = self.condition.findings(expected=False)
+        values = self.condition.findings(expected=False)
         if self._last < self._clock.time - 0.5 * self._clock.timestep:
-            return self._decide(True, f"held from {time_text(self._since)} to {time_text(self._last)}, then: {found}")
-        return self._decide(True, f"held from {time_text(self._since)} to {now}: {found}")
+            return self._decide(True, f"held from {time_text(self._since)} to {time_text(self._last)}, then: {values}")
+        return self._decide(True, f"held from {time_text(self._since)} to {now}: {values}")
 
 
 class FinalCheck(ConditionCheck):
@@ -274,8 +274,8 @@ class SeparationCheck(RunningCheck):
         super().__init__(check, view)
         names, source = check.models, " ".join(map(repr, check.models))
         if not 1 <= len(names) <= 2:
-            message = f"SK-COND-009 the check 'apart' has {len(names)} models; expected one or two"
-            raise InputError(message, "SK-COND-009")
+            message = f"the check 'apart' has {len(names)} models; expected one or two"
+            raise InputError("SK-COND-009", message)
         spans, at = [], 0
         for name in names:
             spans.append(Span(at, at + len(repr(name))))
@@ -306,7 +306,7 @@ class TopicRateCheck(RunningCheck):
     def __init__(self, check: Check, view: WorldView) -> None:
         super().__init__(check, view)
         if not check.topic:
-            raise InputError("SK-COND-009 a rate check has no topic", "SK-COND-009")
+            raise InputError("SK-COND-009", "a rate check has no topic")
         self._topic = absolute_name(check.topic)
         self._counter, self._view = view.message_counter(self._topic), view
 
@@ -322,19 +322,19 @@ class TopicRateCheck(RunningCheck):
             near = did_you_mean(self._topic, topics)
             return self._decide(False, f"no publisher on {self._topic}" + (f"; {near}" if near else ""))
         target = check.rate if check.rate is not None else self._view.configured_rate(self._topic)
-        found = counter.rate()
+        rate = counter.rate()
         first, last = time_text(counter.first / 1e9), time_text(counter.last / 1e9)
-        if found is None:
+        if rate is None:
             message = f"only one message received on {self._topic} until {now}, at {last}"
             return self._decide(
                 False, message if counter.count == 1 else f"{counter.count} messages received, all at {last}"
             )
-        text = f"{self._topic}: {found:.6g} Hz ({counter.count} messages from {first} to {last})"
+        text = f"{self._topic}: {rate:.6g} Hz ({counter.count} messages from {first} to {last})"
         if target is None:
-            target, expected = found, ""
+            target, expected = rate, ""
         else:
             expected = f", expected {target:.6g} Hz"
-        if abs(found - target) > check.tolerance * target:
+        if abs(rate - target) > check.tolerance * target:
             return self._decide(False, f"{text}{expected} ± {check.tolerance * 100:.3g} %")
         if clock.time - counter.last / 1e9 > _MAX_LATENESS / target + 1.5 * clock.timestep:
             return self._decide(False, f"{text}, and no further message until {now}")

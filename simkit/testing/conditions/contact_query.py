@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import mujoco
 import numpy as np
@@ -48,8 +48,8 @@ class ContactQuery:
 
     def force(self) -> float:
         """Return the sum of the normal forces [N]."""
-        found = self.now()
-        if not found:
+        contacts = self.now()
+        if not contacts:
             return 0.0
         physics = self._sim.engine.physics
         data = physics.data_of(physics.hold()) if self._sleepers(physics.fresh()) else physics.fresh()
@@ -64,8 +64,8 @@ class ContactQuery:
         names = self._sim.engine.names
         pairs: dict[str, None] = {}
         for _, mine, other in self.now():
-            one, two = (names.geom_owner(geom)[0] or f"geom {geom}" for geom in (mine, other))
-            pairs[f"{one} touches {two}"] = None
+            first, second = (names.geom_owner(geom)[0] or f"geom {geom}" for geom in (mine, other))
+            pairs[f"{first} touches {second}"] = None
         listed = list(pairs)
         return ", ".join(listed[:3]) + (f" and {len(listed) - 3} more" if len(listed) > 3 else "")
 
@@ -102,23 +102,23 @@ class ContactQuery:
         trees = np.unique(model.body_treeid[model.geom_bodyid[np.flatnonzero(geoms)]])
         return [int(tree) for tree in trees if tree >= 0]
 
-    def among(self, data: Any) -> tuple[tuple[int, int, int], ...]:
+    def among(self, data: mujoco.MjData) -> tuple[tuple[int, int, int], ...]:
         """Return the contacts of data of the present model, as `now` does."""
         if not data.ncon:
             return ()
         contact = data.contact
         pairs = contact.geom
-        mine, others, found, up = self._mine, self._others, [], None
+        mine, others, contacts, up = self._mine, self._others, [], None
         # for few contacts, Python numbers are faster than arrays
         is_few = len(pairs) <= _MANY_CONTACTS
         rows = range(len(pairs)) if is_few else self._concerned[pairs].any(axis=1).nonzero()[0].tolist()
         geoms = pairs.tolist() if is_few else None
         for row in rows:
-            one, two = geoms[row] if geoms is not None else pairs[row].tolist()
-            if mine[one] and others[two]:
-                touch, sign = (row, one, two), -1.0
-            elif mine[two] and others[one]:
-                touch, sign = (row, two, one), 1.0
+            first, second = geoms[row] if geoms is not None else pairs[row].tolist()
+            if mine[first] and others[second]:
+                touch, sign = (row, first, second), -1.0
+            elif mine[second] and others[first]:
+                touch, sign = (row, second, first), 1.0
             else:
                 continue
             if contact.dist[row] > 0.0:
@@ -129,8 +129,8 @@ class ContactQuery:
                 rise = sign * float_sum(n * u for n, u in zip(contact.frame[row].tolist(), up, strict=False))
                 if rise >= _MAX_SLOPE or self._is_height_map[touch[2]]:
                     continue
-            found.append(touch)
-        return tuple(found)
+            contacts.append(touch)
+        return tuple(contacts)
 
     def _up(self) -> tuple[float, float, float]:
         """Return the unit vector opposite to gravity; the z axis in a world without gravity."""

@@ -1,15 +1,22 @@
-"""Operators and functions for numbers and lists as in IEEE 754: results may be NaN, but never an exception."""
+"""Operators and functions for numbers and lists as in IEEE 754: results may be NaN, but never an exception.
+
+For many worlds at once, numbers are arrays of the shape (worlds,) and vectors of the shape (worlds, n). A function of
+numbers is then applied to each of them, by NumPy where this gives the same bits.
+"""
 
 from __future__ import annotations
 
 import math
 import operator
 from collections.abc import Callable
-from typing import Any, Final
+from functools import partial
+from typing import Any, Final, SupportsFloat, TypeVar
 
 import numpy as np
 
+from simkit.elementary_functions import each
 from simkit.linear_algebra import dot
+from simkit.pose import Vector, wrap_angle
 from simkit.testing.conditions.bound_expression import (
     UNLIMITED_ARGUMENTS,
     BoundNode,
@@ -18,6 +25,7 @@ from simkit.testing.conditions.bound_expression import (
     ValueGetter,
     as_numbers,
     as_vector,
+    vector_of,
 )
 from simkit.testing.conditions.syntax_tree import Call, UndecidedValue
 from simkit.testing.conditions.value_types import NUMBER, TRUTH, is_vector_like
@@ -44,13 +52,13 @@ def remainder(a: float, b: float) -> float:
 def power(a: float, b: float) -> float:
     """Return a raised to the power b."""
     try:
-        found = math.pow(a, b)
+        result = math.pow(a, b)
     except OverflowError:
         odd = b % 2 == 1
         return -math.inf if a < 0 and odd else math.inf
     except ValueError:
         return math.inf if not a else math.nan
-    return found
+    return result
 
 
 def nan_where_undefined(function: Callable[..., float], otherwise: float = math.nan) -> Callable[..., float]:
@@ -77,16 +85,19 @@ def round_finite(function: Callable[[float], int]) -> Callable[[float], float]:
     return lambda a: float(function(a)) if math.isfinite(a) else a
 
 
-def wrap_angle(angle: float) -> float:
+def wrapped_angle(angle: float) -> float:
     """Wrap an angle [rad] to (-pi, pi]."""
     if not math.isfinite(angle):
         return math.nan
-    found = math.remainder(angle, 2 * math.pi)
-    return found if found > -math.pi else found + 2 * math.pi
+    wrapped = wrap_angle(angle)
+    return wrapped if wrapped > -math.pi else wrapped + 2 * math.pi
 
 
-def _without_warnings(act: Callable[[Any, Any], Any]) -> Callable[[Any, Any], Any]:
-    def value(a: Any, b: Any) -> Any:
+Operand = TypeVar("Operand")
+
+
+def _without_warnings(act: Callable[[Operand, Operand], Operand]) -> Callable[[Operand, Operand], Operand]:
+    def value(a: Operand, b: Operand) -> Operand:
         with np.errstate(all="ignore"):
             return act(a, b)
 
@@ -101,6 +112,14 @@ NUMBER_OPERATORS: Final[dict[str, BinaryOperator]] = {
     "%": remainder,
     "**": power,
 }
+ROW_OPERATORS: Final[dict[str, Callable[[Any, Any], Any]]] = {
+    **NUMBER_OPERATORS,
+    "/": _without_warnings(np.divide),
+    "%": partial(each, remainder),
+    "**": partial(each, power),
+}
+"""Operators for the numbers of many worlds."""
+
 VECTOR_OPERATORS: Final = {
     "+": _without_warnings(operator.add),
     "-": _without_warnings(operator.sub),
@@ -109,18 +128,29 @@ VECTOR_OPERATORS: Final = {
 }
 
 
-def _numeric(usage: str, count: int, function: Callable[..., float]) -> Function:
-    """Return a function of the expression language that has a fixed number of numeric arguments."""
+def _numeric(
+    usage: str, count: int, function: Callable[..., float], rows: Callable[..., Any] | None = None
+) -> Function:
+    """Return a function of the expression language that has a fixed number of numeric arguments.
+
+    Args:
+        usage: Call syntax, for messages.
+        count: Number of arguments.
+        function: Function of numbers.
+        rows: The same function of arrays; None applies `function` to each number.
+    """
 
     def make(binder: ExpressionBinder, call: Call) -> BoundNode:
         parts = tuple(binder.number(node) for node in call.arguments)
-        gets = [part.get for part in parts]
+        gets, act = [part.get for part in parts], function
+        if binder.in_rows:
+            act = partial(each, function) if rows is None else rows
         if count == 1:
             get = gets[0]
-            return BoundNode(call, NUMBER, lambda: function(get()), parts)
-        return BoundNode(call, NUMBER, lambda: function(*[get() for get in gets]), parts)
+            return BoundNode(call, NUMBER, lambda: act(get()), parts)
+        return BoundNode(call, NUMBER, lambda: act(*[get() for get in gets]), parts)
 
-    return Function(usage, count, count, make)
+    return Function(usage, count, count, make, has_rows=True)
 
 
 def _clamp(value: float, low: float, high: float) -> float:
@@ -142,21 +172,24 @@ _ONE_NUMBER: dict[str, Callable[[float], float]] = {
     "round": round_finite(round),
     "rad": math.radians,
     "deg": math.degrees,
-    "wrap": wrap_angle,
+    "wrap": wrapped_angle,
 }
 
+_OF_ARRAYS: dict[str, np.ufunc] = {"sqrt": np.sqrt, "sin": np.sin, "cos": np.cos}
+
 NUMBER_FUNCTIONS: Final[dict[str, Function]] = {
-    **{name: _numeric(f"{name}(a)", 1, function) for name, function in _ONE_NUMBER.items()},
+    **{name: _numeric(f"{name}(a)", 1, function, _OF_ARRAYS.get(name)) for name, function in _ONE_NUMBER.items()},
     "atan2": _numeric("atan2(y, x)", 2, math.atan2),
-    "angle": _numeric("angle(a, b)", 2, lambda a, b: wrap_angle(a - b)),
-    "clamp": _numeric("clamp(a, low, high)", 3, _clamp),
+    "angle": _numeric("angle(a, b)", 2, lambda a, b: wrapped_angle(a - b)),
+    "clamp": _numeric("clamp(a, low, high)", 3, _clamp, lambda a, low, high: np.maximum(low, np.minimum(high, a))),
 }
 
 
 # ---------------------------------------------------------------------- functions of lists
 
 
-Reduction = Callable[[Any], float]
+Reduction = Callable[[Vector], SupportsFloat]
+"""Function that reduces the last axis of an array."""
 
 
 def cached_by_message(part: BoundNode, get: ValueGetter) -> ValueGetter:
@@ -166,7 +199,7 @@ def cached_by_message(part: BoundNode, get: ValueGetter) -> ValueGetter:
         return get
     latest, seen, value = feed.latest, None, None
 
-    def cached_value() -> Any:
+    def cached_value() -> object:
         nonlocal seen, value
         message = latest()
         if message is not seen:
@@ -194,26 +227,35 @@ def _bind_reduction(usage: str, function: Reduction, *, empty_value: float | Non
                 if part.kind is not NUMBER:
                     raise binder.not_a_number(part)
             gets = [part.get for part in parts]
+            if binder.in_rows:
+                return BoundNode(call, NUMBER, lambda: function(vector_of([get() for get in gets])), parts)
             return BoundNode(call, NUMBER, lambda: float(function(np.array([get() for get in gets]))), parts)
         numbers = as_numbers(parts[0])
         if numbers is None:
             raise binder.not_a_number(parts[0])
+        if binder.in_rows:
+            return BoundNode(call, NUMBER, lambda: function(numbers()), parts)
 
         def value() -> float:
-            found = numbers()
-            if len(found):
-                return float(function(found))
+            values = numbers()
+            if len(values):
+                return float(function(values))
             if empty_value is None:
                 raise UndecidedValue(f"{source} has an empty list")
             return empty_value
 
         return BoundNode(call, NUMBER, cached_by_message(parts[0], value), parts, parts[0].feed)
 
-    return Function(usage, 1, UNLIMITED_ARGUMENTS, make)
+    return Function(usage, 1, UNLIMITED_ARGUMENTS, make, has_rows=True)
 
 
-def _norm(values: Any) -> float:
-    return math.sqrt(dot(values, values))  # without a warning for an overflow
+def length(values: Vector) -> float | Vector:
+    """Return the length of a vector, or of the vector of each world, without a warning for an overflow."""
+    if np.ndim(values) == 2:
+        with np.errstate(all="ignore"):
+            lengths: Vector = np.sqrt(np.square(values).sum(axis=1))
+        return lengths
+    return math.sqrt(dot(values, values))
 
 
 def _len(binder: ExpressionBinder, call: Call) -> BoundNode:
@@ -266,12 +308,12 @@ def _bind_any_or_all(usage: str, decisive: bool) -> Function:
 
 
 LIST_FUNCTIONS: Final[dict[str, Function]] = {
-    "min": _bind_reduction("min(list), min(a, b, …)", np.min, empty_value=math.inf),
-    "max": _bind_reduction("max(list), max(a, b, …)", np.max, empty_value=-math.inf),
-    "mean": _bind_reduction("mean(list), mean(a, b, …)", np.mean, empty_value=None),
-    "sum": _bind_reduction("sum(list), sum(a, b, …)", np.sum, empty_value=0.0),
-    "norm": _bind_reduction("norm(vector), norm(a, b, …)", _norm, empty_value=0.0),
-    "abs": _numeric("abs(a)", 1, abs),
+    "min": _bind_reduction("min(list), min(a, b, …)", partial(np.min, axis=-1), empty_value=math.inf),
+    "max": _bind_reduction("max(list), max(a, b, …)", partial(np.max, axis=-1), empty_value=-math.inf),
+    "mean": _bind_reduction("mean(list), mean(a, b, …)", partial(np.mean, axis=-1), empty_value=None),
+    "sum": _bind_reduction("sum(list), sum(a, b, …)", partial(np.sum, axis=-1), empty_value=0.0),
+    "norm": _bind_reduction("norm(vector), norm(a, b, …)", length, empty_value=0.0),
+    "abs": _numeric("abs(a)", 1, abs, np.abs),
     "len": Function("len(list)", 1, 1, _len),
     "isfinite": Function("isfinite(a)", 1, 1, _isfinite),
     "any": _bind_any_or_all("any(a, b, …)", True),

@@ -50,7 +50,7 @@ def tokenize(source: str) -> list[Token]:
         message = f"the expression has {len(source)} characters; the limit is {MAX_LENGTH}"
         span = syntax.Span(MAX_LENGTH, MAX_LENGTH + 1)
         raise syntax.expression_error("SK-COND-008", message, source, span, "split it into several checks")
-    found: list[Token] = []
+    tokens: list[Token] = []
     at = 0
     while at < len(source):
         match = _TOKEN.match(source, at)
@@ -58,11 +58,11 @@ def tokenize(source: str) -> list[Token]:
             raise _invalid_character(source, at)
         if match.lastgroup != "space":
             token = Token(match.lastgroup, match.group(), syntax.Span(at, match.end()))  # type: ignore[arg-type]
-            _check_separation(source, found[-1] if found else None, token)
-            found.append(token)
+            _check_separation(source, tokens[-1] if tokens else None, token)
+            tokens.append(token)
         at = match.end()
-    found.append(Token("end", "", syntax.Span(len(source), len(source) + 1)))
-    return found
+    tokens.append(Token("end", "", syntax.Span(len(source), len(source) + 1)))
+    return tokens
 
 
 def _check_separation(source: str, before: Token | None, token: Token) -> None:

@@ -35,10 +35,7 @@ class UndecidedValue(Exception):
 
 def expression_error(code: str, message: str, source: str, span: Span, hint: str = "") -> InputError:
     """Return an error that shows the expression, carets under the error, and a hint."""
-    text = f"{code} {message}\n    {underlined_expression(source, span)}"
-    if hint:
-        text += f"\n    help: {hint}"
-    return InputError(text, code)
+    return InputError(code, f"{message}\n    {underlined_expression(source, span)}", help=hint)
 
 
 def underlined_expression(source: str, span: Span) -> str:

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit import msgs
+
+if TYPE_CHECKING:
+    from simkit.msgs.definition_parser import FieldNode
 
 _BASE, _NAME, _ARRAY = 1, 2, 3  # rosbags.interfaces.Nodetype
 _NUMBERS = ("int", "uint", "float")
@@ -80,14 +83,14 @@ def is_orientation_like(kind: ValueType) -> bool:
 def fields_of(type_name: str) -> dict[str, tuple[str, ValueType]]:
     """Return the fields of a message type: name -> attribute and type."""
     name = msgs.full_name(type_name)
-    found: dict[str, tuple[str, ValueType]] = {}
+    named_fields: dict[str, tuple[str, ValueType]] = {}
     attributes = list(msgs.type_of(name).__dataclass_fields__)
     for (field, node), attribute in zip(msgs.type_store().fielddefs[name][1], attributes, strict=False):
-        found[field] = attribute, _field_type(node)
-    return found
+        named_fields[field] = attribute, _field_type(node)
+    return named_fields
 
 
-def _field_type(node: Any) -> ValueType:
+def _field_type(node: FieldNode) -> ValueType:
     nodetype, what = int(node[0]), node[1]
     if nodetype == _NAME:
         return message_type(what)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
-from simkit.linear_algebra import dot
 from simkit.pose import Vector, quat_conjugate, quat_rotate
 from simkit.testing.conditions import value_types as kinds
 from simkit.testing.conditions.bound_expression import (
@@ -14,11 +12,13 @@ from simkit.testing.conditions.bound_expression import (
     BoundNode,
     ExpressionBinder,
     Function,
+    NotInRows,
     ValueGetter,
     as_pose,
     as_vector,
     quoted_argument,
 )
+from simkit.testing.conditions.math_functions import length
 from simkit.testing.conditions.syntax_tree import Call, Node, Text, UndecidedValue
 
 if TYPE_CHECKING:
@@ -41,11 +41,13 @@ def _bind_relative(
     """Return a function that reads a value of a model or link, in the world or relative to a second model or link."""
 
     def make(binder: ExpressionBinder, call: Call) -> BoundNode:
-        one = entity_argument(binder, call, 0)
+        entity = entity_argument(binder, call, 0)
         if len(call.arguments) == 1:
-            return BoundNode(call, kind, lambda: in_world(one))
+            return BoundNode(call, kind, lambda: in_world(entity))
+        if binder.in_rows:
+            raise NotInRows
         frame = entity_argument(binder, call, 1)
-        return BoundNode(call, kind, lambda: seen(frame, one))
+        return BoundNode(call, kind, lambda: seen(frame, entity))
 
     return make
 
@@ -88,13 +90,11 @@ def _distance(binder: ExpressionBinder, call: Call) -> BoundNode:
     first, second = gets
     source = call.span.text(binder.source)
 
-    def value() -> float:
+    def value() -> float | Vector:
         a, b = first(), second()
-        if len(a) != len(b):
-            raise UndecidedValue(f"{source} compares lists of {len(a)} and {len(b)} numbers")
-        gap = a - b
-        # `vdot` gives no warning for an overflow: the distance of points that are 1e308 m apart is infinite
-        return math.sqrt(dot(gap, gap))
+        if a.shape[-1] != b.shape[-1]:
+            raise UndecidedValue(f"{source} compares lists of {a.shape[-1]} and {b.shape[-1]} numbers")
+        return length(a - b)
 
     return BoundNode(call, kinds.NUMBER, value, tuple(parts))
 
@@ -178,9 +178,11 @@ def _contact(binder: ExpressionBinder, call: Call) -> BoundNode:
     touching = contact_query(binder, call)
 
     def contact_details() -> str:
-        found = touching.describe()
-        return f" ({found})" if found else ""
+        pairs = touching.describe()
+        return f" ({pairs})" if pairs else ""
 
+    if binder.in_rows:
+        return BoundNode(call, kinds.TRUTH, touching.now)
     return BoundNode(call, kinds.TRUTH, lambda: bool(touching.now()), tell=contact_details)
 
 
@@ -194,18 +196,18 @@ def _contact_force(binder: ExpressionBinder, call: Call) -> BoundNode:
 
 
 WORLD_FUNCTIONS: Final[dict[str, Function]] = {
-    "pose": Function("pose('model or link'[, 'seen from'])", 1, 2, _pose),
-    "twist": Function("twist('model or link'[, 'axes of'])", 1, 2, _twist),
-    "velocity": Function("velocity('model or link'[, 'axes of'])", 1, 2, _velocity),
-    "joint": Function("joint('model::joint').position", 1, 1, _joint),
+    "pose": Function("pose('model or link'[, 'seen from'])", 1, 2, _pose, has_rows=True),
+    "twist": Function("twist('model or link'[, 'axes of'])", 1, 2, _twist, has_rows=True),
+    "velocity": Function("velocity('model or link'[, 'axes of'])", 1, 2, _velocity, has_rows=True),
+    "joint": Function("joint('model::joint').position", 1, 1, _joint, has_rows=True),
     "exists": Function("exists('model or link')", 1, 1, _exists),
-    "distance": Function("distance(a, b)", 2, 2, _distance),
+    "distance": Function("distance(a, b)", 2, 2, _distance, has_rows=True),
     "topic": Function("topic('/topic').field", 1, 1, _topic),
     "scan": Function("scan('/scan')", 1, 1, _scan),
     "count": Function("count('/topic')", 1, 1, _count),
     "rate": Function("rate('/topic')", 1, 1, _rate),
     "age": Function("age('/topic')", 1, 1, _age),
-    "contact": Function("contact('model or link'[, 'another'])", 1, 2, _contact),
+    "contact": Function("contact('model or link'[, 'another'])", 1, 2, _contact, has_rows=True),
     "contacts": Function("contacts('model or link'[, 'another'])", 1, 2, _contacts),
     "contact_force": Function("contact_force('model or link'[, 'another'])", 1, 2, _contact_force),
 }

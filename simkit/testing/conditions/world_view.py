@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Container, Iterable, Mapping, Sequence
 from typing import Any, Literal, Protocol
 
 import numpy as np
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
+from simkit.float_sum import float_sum
 from simkit.msgs.topic_names import absolute_name
 from simkit.pose import Pose, Vector
-from simkit.runtime import Joint, Simulation
+from simkit.runtime import Joint, Link, Model, Simulation
 from simkit.runtime.contact.collision_contacts import collision_table
 from simkit.testing.conditions.contact_query import ContactQuery
 from simkit.testing.conditions.syntax_tree import REMOVED_CODE, Span, UndecidedValue, expression_error
 from simkit.testing.conditions.topic_listeners import LatestMessage, MessageCounter, TopicListener
-from simkit.testing.conditions.topic_rates import configured_rate
 
 _MAX_LISTED = 12  # maximum number of names in an error message
 
@@ -70,7 +70,7 @@ class Entity:
         handle: Handle of the model or link.
     """
 
-    def __init__(self, sim: Simulation, handle: Any) -> None:
+    def __init__(self, sim: Simulation, handle: Model | Link) -> None:
         self.handle, self.name = handle, handle.scoped
         self._sim = sim
         self._kind = "link" if hasattr(handle, "linear_velocity") else "model"
@@ -91,22 +91,22 @@ class Entity:
         except InputError as error:
             return self._twist(self._find_replacement(error))
 
-    def _twist(self, handle: Any) -> tuple[Vector, Vector]:
-        if self._kind == "link":
-            both = handle._velocity()
+    def _twist(self, handle: Model | Link) -> tuple[Vector, Vector]:
+        if isinstance(handle, Link):
+            both = handle.spatial_velocity()
             return both[3:], both[:3]
         origin = handle.pose.position
         carrier = self._sim.contents.handles.tables["link"].get(handle.scene.canonical_link)
         if carrier is None:
             return np.zeros(3), np.zeros(3)
-        both = carrier._velocity()
+        both = carrier.spatial_velocity()
         angular = both[:3]
         # velocity of the model's origin, which is rigidly connected to the canonical link
         x, y, z = (origin - carrier.pose.position).tolist()
         a, b, c = angular.tolist()
         return both[3:] + np.array((b * z - c * y, c * x - a * z, a * y - b * x)), angular
 
-    def _find_replacement(self, error: InputError) -> Any:
+    def _find_replacement(self, error: InputError) -> Model | Link:
         """Return the new entity that has the name of the removed one.
 
         Raises:
@@ -114,11 +114,11 @@ class Entity:
         """
         if error.code != REMOVED_CODE:
             raise error
-        found = self._sim.contents.handles.tables[self._kind].get(self.name)
-        if found is None:
+        replacement: Model | Link | None = self._sim.contents.handles.tables[self._kind].get(self.name)
+        if replacement is None:
             raise UndecidedValue(f"{self.name} was removed") from None
-        self.handle = found
-        return found
+        self.handle = replacement
+        return replacement
 
 
 class History(Protocol):
@@ -174,13 +174,13 @@ class WorldView:
 
     def joint(self, name: str, source: str, span: Span) -> Joint:
         """Return a joint by its scoped name, or by its short name if that is unique."""
-        found: Joint = self._find(("joint",), name, source, span)
-        return found
+        handle: Joint = self._find(("joint",), name, source, span)
+        return handle
 
     def current_joint(self, joint: Joint) -> Joint:
         """Return the joint that has the name of a joint now, or the same joint if it was removed."""
-        found: Joint = self._tables["joint"].get(joint.scoped, joint)
-        return found
+        present: Joint = self._tables["joint"].get(joint.scoped, joint)
+        return present
 
     def existence(self, name: str) -> Callable[[], bool]:
         """Return a function that checks whether a model or link of a name exists."""
@@ -202,8 +202,8 @@ class WorldView:
         """Return the scoped name of a model, a link or a collision."""
         if name in self._collision_names():
             return name
-        found: str = self._find(("model", "link"), name, source, span).scoped
-        return found
+        scoped: str = self._find(("model", "link"), name, source, span).scoped
+        return scoped
 
     def _find(self, kinds: tuple[str, ...], name: str, source: str, span: Span) -> Any:
         tables = self._tables
@@ -211,12 +211,12 @@ class WorldView:
             if name in tables[kind]:
                 return tables[kind][name]
         everything: dict[str, object] = {k: v for kind in reversed(kinds) for k, v in tables[kind].items()}
-        own = [key for key in everything if key.rpartition("::")[2] == name]
-        if len(own) == 1:
-            return everything[own[0]]
+        matching = [key for key in everything if key.rpartition("::")[2] == name]
+        if len(matching) == 1:
+            return everything[matching[0]]
         what = " or ".join(kinds)
-        if own:
-            message = f"{len(own)} entities have the name {name!r}: {_list_names(own)}"
+        if matching:
+            message = f"{len(matching)} entities have the name {name!r}: {_list_names(matching)}"
             raise expression_error("SK-COND-005", message, source, span, "write the scoped name")
         short = [key.rpartition("::")[2] for key in everything]
         near = did_you_mean(name, [*everything, *short])
@@ -255,6 +255,11 @@ class WorldView:
             raise AbsentTopic(topic, near)
         message = f"there is no topic {topic!r}"
         raise expression_error("SK-COND-006", message, source, span, near or _available_text(topics))
+
+    @property
+    def topics_read(self) -> Collection[str]:
+        """Topics whose newest messages expressions read."""
+        return self._latest_messages
 
     def latest_message(self, topic: str) -> LatestMessage:
         """Return the object with the newest message of a topic."""
@@ -323,3 +328,26 @@ def _list_names(names: Iterable[str]) -> str:
 def _available_text(names: Iterable[str]) -> str:
     listed = _list_names(names)
     return f"available: {listed}" if listed else "the world has none"
+
+
+def configured_rate(sim: Simulation, topic: str) -> float | None:
+    """Return the sum of the configured rates of a topic's publishers [Hz]; None if a rate is unknown."""
+    owners: list[object] = [sensor for sensor in sim.engine.structure.all_sensors() if topic in sensor.topics.values()]
+    if not owners:
+        for _, end, _, what in sim.communication.bus.endpoints(topic):
+            if what == "publishes" and end.active:
+                owners.append(None if getattr(end, "latched", False) else end.owner)
+    rates = [_publisher_rate(owner, sim.timestep) for owner in owners]
+    return float_sum(rate for rate in rates if rate is not None) if rates and None not in rates else None
+
+
+def _publisher_rate(owner: object, timestep: float) -> float | None:
+    """Return the rate of a sensor or of a plugin's hook `after_step` [Hz]; None if it is unknown.
+
+    A sensor with an update rate of 0 publishes after every step.
+    """
+    rate = getattr(owner, "update_rate", None)
+    if isinstance(rate, (int, float)) and hasattr(owner, "scoped") and hasattr(owner, "sample"):
+        return min(float(rate), 1.0 / timestep) if rate > 0 else 1.0 / timestep
+    rate = getattr(owner, "after_step_rate", None)
+    return float(rate) if isinstance(rate, (int, float)) and rate > 1e-3 else None

@@ -11,7 +11,7 @@ import json
 import lzma
 import math
 import struct
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -59,13 +59,13 @@ class Packer:
         if len(values) > 1 and values.size and _is_constant(values):
             entry["constant"] = True
             values = values[:1]
-        whole = self._whole_numbers(values, step, entry)
+        integers = self._whole_numbers(values, step, entry)
         data = _byte_planes(values.reshape(-1))
-        if whole is not None:
-            found = _predict(whole)
-            if "step" in entry or found.cost < 0.98 * _entropy_bits(data, values.size):
-                entry |= {"order": found.order, "width": found.width}
-                data = found.data
+        if integers is not None:
+            prediction = _predict(integers)
+            if "step" in entry or prediction.cost < 0.98 * _entropy_bits(data, values.size):
+                entry |= {"order": prediction.order, "width": prediction.width}
+                data = prediction.data
         entry["bytes"] = len(data)
         self._entries.append(entry)
         self._parts.append(data)
@@ -79,10 +79,10 @@ class Packer:
         """
         head = json.dumps({"arrays": self._entries, "about": about}, separators=(",", ":"), ensure_ascii=False)
         text = head.encode()
-        whole = b"".join((_MAGIC, struct.pack("<I", len(text)), text, *self._parts))
+        content = b"".join((_MAGIC, struct.pack("<I", len(text)), text, *self._parts))
         # large blocks compress well with any preset, and the best preset takes minutes
-        preset = _PRESET if len(whole) <= _LONG_BLOCK_BYTES else _FAST
-        return lzma.compress(whole, format=lzma.FORMAT_XZ, check=lzma.CHECK_CRC64, preset=preset)
+        preset = _PRESET if len(content) <= _LONG_BLOCK_BYTES else _FAST
+        return lzma.compress(content, format=lzma.FORMAT_XZ, check=lzma.CHECK_CRC64, preset=preset)
 
     def _whole_numbers(self, values: Array, step: float, entry: dict[str, object]) -> Array | None:
         """Convert the values to integer multiples of the step; None if they must be stored bit by bit."""
@@ -113,22 +113,22 @@ class Unpacker:
     """
 
     def __init__(self, data: bytes) -> None:
-        whole = _decompress(data)
-        if not whole.startswith(_MAGIC) or len(whole) < len(_MAGIC) + 4:
+        content = _decompress(data)
+        if not content.startswith(_MAGIC) or len(content) < len(_MAGIC) + 4:
             raise PackingError("the data do not start with the header of a block")
         start = len(_MAGIC) + 4
-        (length,) = struct.unpack("<I", whole[len(_MAGIC) : start])
+        (length,) = struct.unpack("<I", content[len(_MAGIC) : start])
         try:
-            head = parse_json(whole[start : start + length].decode())
-            self.about: Any = head["about"]
+            head = parse_json(content[start : start + length].decode())
+            self.about: JsonObject = head["about"]
             self._entries = [_validate_entry(entry) for entry in head["arrays"]]
         except (ValueError, KeyError, TypeError, OverflowError) as error:
             raise PackingError(f"the table of the block cannot be read: {error}") from None
         if sum(_size(entry) for entry in self._entries) > MAX_BLOCK_BYTES:
             raise PackingError("the arrays of the block are too large")
-        self._whole = memoryview(whole)
+        self._whole = memoryview(content)
         self._starts = np.cumsum([start + length, *(entry["bytes"] for entry in self._entries)]).tolist()
-        if self._starts[-1] != len(whole):
+        if self._starts[-1] != len(content):
             raise PackingError("the block is truncated or has additional data at its end")
 
     def array(self, number: object) -> Array:
@@ -152,8 +152,8 @@ class Unpacker:
         kept_as = np.dtype(entry["width"]) if entry["order"] else dtype
         values = _join_byte_planes(data, kept_as, math.prod(stored))
         if entry["order"]:
-            whole = _undo_prediction(_unzigzag(values).reshape(stored), entry["order"])
-            values = whole.astype(dtype) if not entry["step"] else (whole * entry["step"]).astype(dtype)
+            integers = _undo_prediction(_unzigzag(values).reshape(stored), entry["order"])
+            values = integers.astype(dtype) if not entry["step"] else (integers * entry["step"]).astype(dtype)
             if entry["kinds"] is not None:
                 values = self._with_kinds(values, entry)
         values = values.reshape(stored)
@@ -172,15 +172,15 @@ class Unpacker:
 def _decompress(data: bytes) -> bytes:
     decompressor = lzma.LZMADecompressor(format=lzma.FORMAT_XZ, memlimit=_MAX_MEMORY)
     try:
-        whole = decompressor.decompress(data, max_length=MAX_BLOCK_BYTES)
+        content = decompressor.decompress(data, max_length=MAX_BLOCK_BYTES)
     except (lzma.LZMAError, EOFError) as error:
         raise PackingError(f"the block cannot be decompressed: {error}") from None
     if not decompressor.eof or decompressor.unused_data:
         raise PackingError("the block is truncated, too large, or has additional data at its end")
-    return whole
+    return content
 
 
-def _validate_entry(entry: Any) -> dict[str, object]:
+def _validate_entry(entry: JsonObject) -> dict[str, object]:
     """Validate an entry of a block's table, which may come from an untrusted source."""
     shape, dtype, size = entry["shape"], entry["dtype"], entry["bytes"]
     if dtype not in _TYPES or type(shape) is not list or len(shape) > _MAX_DIMENSIONS:
@@ -220,13 +220,13 @@ class _Prediction(NamedTuple):
     cost: float
 
 
-def _predict(whole: Array) -> _Prediction:
+def _predict(integers: Array) -> _Prediction:
     """Encode an array with the kind of prediction that needs the fewest bytes."""
     best: _Prediction | None = None
     for order in _ORDERS:
-        if (order == "across" and whole.ndim < 2) or (order in ("time", "time2") and len(whole) < 2):
+        if (order == "across" and integers.ndim < 2) or (order in ("time", "time2") and len(integers) < 2):
             continue
-        small = _smallest_type(_zigzag(whole if order == "plain" else _difference(whole, order)))
+        small = _smallest_type(_zigzag(integers if order == "plain" else _difference(integers, order)))
         data = _byte_planes(small)
         cost = _entropy_bits(data, small.size)
         if best is None or cost < best.cost * 0.98:
@@ -248,21 +248,21 @@ def _entropy_bits(data: bytes, count: int) -> float:
     return bits
 
 
-def _difference(whole: Array, order: str) -> Array:
+def _difference(integers: Array, order: str) -> Array:
     if order == "across":
-        found = np.diff(whole, axis=1, prepend=0)
-        found[:, 0] = np.diff(whole[:, 0], axis=0, prepend=0)
-        return found
+        differences = np.diff(integers, axis=1, prepend=0)
+        differences[:, 0] = np.diff(integers[:, 0], axis=0, prepend=0)
+        return differences
     for _ in range(2 if order == "time2" else 1):
-        whole = np.diff(whole, axis=0, prepend=0)
-    return whole
+        integers = np.diff(integers, axis=0, prepend=0)
+    return integers
 
 
 def _undo_prediction(residual: Array, order: str) -> Array:
     if order == "across":
-        found = residual.copy()
-        found[:, 0] = np.cumsum(residual[:, 0], axis=0)
-        return np.asarray(np.cumsum(found, axis=1))
+        sums = residual.copy()
+        sums[:, 0] = np.cumsum(residual[:, 0], axis=0)
+        return np.asarray(np.cumsum(sums, axis=1))
     for _ in range(("plain", "time", "time2").index(order)):
         residual = np.cumsum(residual, axis=0)
     return np.asarray(residual)
@@ -292,7 +292,7 @@ def _byte_planes(values: Array) -> bytes:
     return np.ascontiguousarray(little.view(np.uint8).reshape(-1, size).T).tobytes()
 
 
-def _join_byte_planes(data: bytes, dtype: np.dtype[Any], count: int) -> Array:
+def _join_byte_planes(data: bytes, dtype: np.dtype[np.generic], count: int) -> Array:
     if len(data) != count * dtype.itemsize:
         raise ValueError("the data do not have the declared length")
     planes = np.frombuffer(data, np.uint8).reshape(dtype.itemsize, count)

@@ -1,4 +1,4 @@
-"""Check of a golden run: run the same scenario again, compare the results and explain differences."""
+"""Check of a golden run: run the same scenario again, compare the results, explain differences, draw both worlds."""
 
 from __future__ import annotations
 
@@ -9,12 +9,18 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import Diagnostics, Where
-from simkit.errors import InputError, SimkitError
+from simkit.errors import InputError, RenderError, SimkitError
+from simkit.recording.pictures.camera import Camera
+from simkit.recording.pictures.frames import Look, choose_camera, draw_frame
+from simkit.recording.pictures.overlay import Marks
+from simkit.recording.pictures.subject import find_subject
 from simkit.run_spec import FilePath, JsonMapping, RunSpec
+from simkit.sensors.cameras.overview_image import render_view
 from simkit.testing.golden.cause import explain, world_changes
+from simkit.testing.golden.cause.world_patch import patch_world
 from simkit.testing.golden.compare.difference import Verdict
 from simkit.testing.golden.compare.runs import compare
 from simkit.testing.golden.store import (
@@ -25,13 +31,18 @@ from simkit.testing.golden.store import (
     read_history,
     write_golden,
 )
-from simkit.testing.golden.world_pictures import draw_worlds
 from simkit.testing.run_record.fingerprint import RENDERER
 from simkit.testing.run_record.record import RunRecord
-from simkit.testing.run_record.run_recorder import ENVIRONMENT_VARIABLES, run_record
+from simkit.testing.run_record.run_recorder import ENVIRONMENT_VARIABLES, record_run
 from simkit.testing.scenarios.code_permission import check_requests, permit_code
 from simkit.testing.scenarios.readable_files import OUTSIDE, ReadableFiles, Refusal, label
 from simkit.testing.scenarios.scenario_file import read_scenario
+from simkit.testing.scenarios.scenario_run import open_scenario
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+    from simkit.testing.run_record.record import RunRecord
+
 
 CAUSE_BUDGET_SECONDS: Final = 60.0
 """Wall-clock limit of the search for causes [s]."""
@@ -81,8 +92,7 @@ def check_golden(
     """
     if bless is not None and not bless.strip():
         raise InputError(
-            "SK-GOLDEN-007 --bless has no reason\n    help: state one, such as --bless 'wheels are 1 mm larger'",
-            "SK-GOLDEN-007",
+            "SK-GOLDEN-007", "--bless has no reason", help="state one, such as --bless 'wheels are 1 mm larger'"
         )
     place = golden_folder(folder)
     golden = read_golden(place)
@@ -105,7 +115,7 @@ def _run_today(golden: RunRecord, scenario: RunSpec) -> Iterator[tuple[RunRecord
     """Run a scenario and yield its record and its wall time [s]; close the simulation at the end of the block."""
     started = time.perf_counter()
     try:
-        run = run_record(scenario)
+        run = record_run(scenario)
     except InputError as error:
         raise _append_world_changes(error, golden, scenario) from None
     try:
@@ -120,7 +130,7 @@ def _append_world_changes(error: InputError, golden: RunRecord, scenario: RunSpe
     """Add the changes of the world to an error, because a change may have removed a topic that the scenario needs."""
     still = replace(scenario, commands=(), play="", play_topics=(), checks=(), until="", timeout=None, duration=0.0)
     try:
-        run = run_record(still)
+        run = record_run(still)
     except SimkitError:
         return error  # the error is that the world cannot be loaded
     if run.simulation is not None:
@@ -132,7 +142,7 @@ def _append_world_changes(error: InputError, golden: RunRecord, scenario: RunSpe
     if len(changes) > len(lines):
         lines.append(f"{len(changes) - len(lines)} more")
     text = "\n".join(f"    changed since the golden run: {line}" for line in lines)
-    return InputError(f"{error}\n{text}", error.code)
+    return InputError(error.code, f"{error}\n{text}", shows_code=False)
 
 
 def _current_scenario(
@@ -147,23 +157,24 @@ def _current_scenario(
     if stored.file is not None or not (stored.test or stored.plugins):
         refused_files(place, stored, folders).raise_if_errors()
     if stored.file is not None and stored.file.is_file():
-        scripts = [request for request in stored.code_requests if not request.is_folder]
+        scripts = [request for request in stored.code_requests if request.path == stored.file]
         check_requests(scripts, allow_code, plugin_paths)  # reading a scenario in Python runs it
         return read_scenario(stored.file, folders)
     if stored.file is not None:
-        problem = f": its scenario {stored.file.resolve()} does not exist\n    help: restore the file, or record anew"
+        problem = f": its scenario {stored.file.resolve()} does not exist"
+        help_ = "restore the file, or record anew"
     elif stored.test:
         test = shlex.quote(os.path.normpath(place / "../../.." / stored.test))
-        problem = f" belongs to a test that creates plugins or steps the simulation\n    help: run pytest {test}"
+        problem, help_ = " belongs to a test that creates plugins or steps the simulation", f"run pytest {test}"
     elif stored.plugins:
-        problem = (
-            f" was recorded with plugins created in Python ({', '.join(map(str, stored.plugins))}), unknown here\n"
-            "    help: check the run in the program that creates the plugins: use the fixture sensor_regression, or "
+        problem = f" was recorded with plugins created in Python ({', '.join(map(str, stored.plugins))}), unknown here"
+        help_ = (
+            "check the run in the program that creates the plugins: use the fixture sensor_regression, or "
             "simkit.testing.golden.check.check_golden(folder, scenario=...)"
         )
     else:
         return stored
-    raise InputError(f"SK-GOLDEN-006 {place}{problem}", "SK-GOLDEN-006")
+    raise InputError("SK-GOLDEN-006", f"{place}{problem}", help=help_)
 
 
 def refused_files(place: Path, scenario: RunSpec, folders: Sequence[FilePath] = ()) -> Diagnostics:
@@ -174,7 +185,7 @@ def refused_files(place: Path, scenario: RunSpec, folders: Sequence[FilePath] = 
         scenario: Scenario that the golden run stores.
         folders: Folders of the user.
     """
-    found = Diagnostics()
+    diagnostics = Diagnostics()
     file = place / MAIN_FILE
     refused: Iterator[tuple[tuple[object, ...], Refusal]]
     files = ReadableFiles(file, folders, container=_container(place.absolute()))
@@ -184,8 +195,10 @@ def refused_files(place: Path, scenario: RunSpec, folders: Sequence[FilePath] = 
     else:
         refused = files.refused(scenario)
     for keys, (problem, hint) in refused:
-        found.error(OUTSIDE, f"{label(keys)}: {problem}", Where(str(file), line_of_key(place, str(keys[0]))), hint)
-    return found
+        diagnostics.error(
+            OUTSIDE, f"{label(keys)}: {problem}", Where(str(file), line_of_key(place, str(keys[0]))), hint
+        )
+    return diagnostics
 
 
 def _container(place: Path) -> Path:
@@ -197,12 +210,12 @@ def _container(place: Path) -> Path:
 @contextmanager
 def _recorded_environment(environment: Mapping[str, str]) -> Iterator[None]:
     """Set the environment variables that describe the world to their recorded values."""
-    kept = {name: os.environ.get(name) for name in ENVIRONMENT_VARIABLES if name in environment}
+    original = {name: os.environ.get(name) for name in ENVIRONMENT_VARIABLES if name in environment}
     try:
-        os.environ.update({name: environment[name] for name in kept})
+        os.environ.update({name: environment[name] for name in original})
         yield
     finally:
-        for name, value in kept.items():
+        for name, value in original.items():
             if value is None:
                 os.environ.pop(name, None)
             else:
@@ -227,12 +240,12 @@ def make_golden(place: Path, verdict: Verdict, reason: str, *, other_renderer: b
         before, now = golden.fingerprint.get(RENDERER), run.fingerprint.get(RENDERER)
         if before and now and before != now:
             raise InputError(
-                f"SK-GOLDEN-007 {place} is not blessed: its pictures come from {before}, the new pictures from {now}; "
-                "on other machines the pictures would differ\n    help: bless the run on a machine with the first "
-                "renderer (CI), or add --bless-other-renderer",
                 "SK-GOLDEN-007",
+                f"{place} is not blessed: its pictures come from {before}, the new pictures from {now}; "
+                "on other machines the pictures would differ",
+                help="bless the run on a machine with the first renderer (CI), or add --bless-other-renderer",
             )
-    words = [one.words for one in verdict.comparison.differences]
+    words = [difference.words for difference in verdict.comparison.differences]
     more = len(words) - _MAX_DIFFERENCES
     changed = [*words[:_MAX_DIFFERENCES], *([f"and {more} more"] if more > 0 else [])]
     history: list[JsonMapping] = read_history(place)
@@ -246,6 +259,56 @@ def refuse_failed(run: RunRecord, place: Path) -> None:
         InputError: SK-GOLDEN-007 the run failed.
     """
     if run.error is not None:
-        raise InputError(
-            f"SK-GOLDEN-007 {place}: the run failed and cannot become golden: {run.error}", "SK-GOLDEN-007"
-        )
+        raise InputError("SK-GOLDEN-007", f"{place}: the run failed and cannot become golden: {run.error}")
+
+
+_SIZE: Final = (800, 500)  # [px]
+_JPEG_QUALITY: Final = 88
+_ROOM: Final = 20.0  # size of a room that is shown whole, in sizes of the robots
+
+
+def draw_worlds(golden: RunRecord, run: RunRecord) -> tuple[tuple[tuple[str, bytes], ...], str]:
+    """Draw both worlds at the beginning of their runs.
+
+    Args:
+        golden: record of the golden run; its values are set in the world of the new run.
+        run: record of the new run.
+
+    Returns:
+        Name and JPEG file of each picture, and a note that explains missing pictures; one of both is empty.
+    """
+    edits = [edit for change in world_changes(golden, run) for edit in change.edits if edit.kind != "scenario"]
+    if not edits:
+        return (), "the worlds of both runs are equal"
+    if run.scenario.plugins:
+        return (), "no pictures of the worlds: the plugins of the run were created in Python"
+    scenario = replace(run.scenario, duration=0.0, until="", timeout=None, wall_timeout=None, checks=())
+    values = {edit.path: edit.golden for edit in edits}
+    pictures = []
+    try:
+        with open_scenario(scenario) as sim:
+            picture, camera = _draw(sim, None)
+            pictures.append(("run", picture))
+        with open_scenario(
+            scenario, change_world=lambda world: patch_world(world, run.leaves, values, order=golden.leaves)
+        ) as sim:
+            pictures.append(("golden", _draw(sim, camera)[0]))
+    except RenderError as error:
+        return (), f"no pictures of the worlds: {error}"
+    except SimkitError as error:
+        return (), f"no pictures of the worlds: the golden world cannot be built again ({str(error).splitlines()[0]})"
+    except Exception as error:  # noqa: BLE001 - golden values come from a file and may cause any error
+        return (), f"no pictures of the worlds: the golden world cannot be built again ({type(error).__name__})"
+    return tuple(reversed(pictures)), ""
+
+
+def _draw(sim: Simulation, camera: Camera | None) -> tuple[bytes, Camera]:
+    """Return a picture as a JPEG file, and its camera."""
+    import cv2
+
+    look = Look(*_SIZE)
+    subject = find_subject(sim, [], _ROOM)
+    camera = choose_camera(sim, render_view, subject, look) if camera is None else camera
+    colours = draw_frame(sim, render_view, camera, look, Marks(), subject)
+    _, data = cv2.imencode(".jpg", colours[:, :, ::-1], [cv2.IMWRITE_JPEG_QUALITY, _JPEG_QUALITY])
+    return data.tobytes(), camera

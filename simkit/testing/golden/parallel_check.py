@@ -105,8 +105,8 @@ def _check_in_parallel(folders: list[Path], options: CheckOptions, jobs: int) ->
     with ProcessPoolExecutor(jobs, context, _end_with_parent) as pool, _progress(folders) as task:
         try:
             with _without_interrupts(), _safe_path():
-                found = pool.map(_check_in_process, folders, [options] * len(folders))
-            for result in found:
+                checks = pool.map(_check_in_process, folders, [options] * len(folders))
+            for result in checks:
                 results.append(result)
                 task.advance()
         except BaseException:  # for Ctrl-C too; otherwise, the pool would wait for all checks

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import TYPE_CHECKING, Final, cast
 
 import pytest
 
@@ -122,20 +122,20 @@ class SensorRegression:
             pytest.fail.Exception: The run differs from the golden run, or there is no golden run yet.
             InputError: The world or an argument is invalid.
         """
-        from simkit.testing.run_record.run_recorder import run_record
+        from simkit.testing.run_record.run_recorder import record_run
 
         scenario, sim = self._scenario(what)
         named = {"duration": duration, "seed": seed, "topics": _topic_patterns(topics), "skip": _topic_patterns(skip)}
-        given = {key: value for key, value in {**named, **options}.items() if value is not None}
-        scenario = _with_arguments(scenario, given, is_open=sim is not None, allow_code=allow_code)
+        arguments = {key: value for key, value in {**named, **options}.items() if value is not None}
+        scenario = _with_arguments(scenario, arguments, is_open=sim is not None, allow_code=allow_code)
         scenario = _with_tolerances(scenario, tolerances)
         if sim is not None or scenario.plugins:
             scenario = replace(scenario, test=self._place.short_test)
         place = self._place_for(name)
         self._require_golden(place)
         start = time.perf_counter()
-        record = run_record(scenario, sim=sim)
-        if sim is None:
+        record = record_run(scenario, sim=sim)
+        if record.simulation is not None and sim is None:
             self._keep(record.simulation, scenario.title)
         return self._compare_or_write(place, record, time.perf_counter() - start, again=not scenario.test)
 
@@ -186,14 +186,14 @@ class SensorRegression:
         folder = safe_name(self._place.name) + ("" if name is None else f"+{safe_name(name)}")
         if folder in self._used:
             raise InputError(
-                f"SK-GOLDEN-020 this test already has a golden run {folder!r}\n"
-                '    help: give each run of the test its own name: sensor_regression(…, name="second")',
                 "SK-GOLDEN-020",
+                f"this test already has a golden run {folder!r}",
+                help='give each run of the test its own name: sensor_regression(…, name="second")',
             )
         self._used.add(folder)
         return self._place.folder / folder
 
-    def _scenario(self, what: Any) -> tuple[RunSpec, Simulation | None]:
+    def _scenario(self, what: RunSpec | Simulation | str | os.PathLike[str]) -> tuple[RunSpec, Simulation | None]:
         """Return the scenario to run, and the simulation if it is already loaded."""
         if isinstance(what, RunSpec):
             beside = self._place.beside if what.folder == Path() and what.file is None else what.folder
@@ -208,9 +208,8 @@ class SensorRegression:
             return RunSpec(text, folder=self._place.beside if beside.exists() else Path.cwd()), None
         if not hasattr(what, "mj_model"):
             raise InputError(
-                f"SK-GOLDEN-021 sensor_regression: found {type(what).__name__}, expected a world, a scenario or a "
-                "simulation",
                 "SK-GOLDEN-021",
+                f"sensor_regression: found {type(what).__name__}, expected a world, a scenario or a simulation",
             )
         loaded = what.run_spec
         world = loaded.world if loaded is not None else str(what.world.where.file if what.world.where else "")
@@ -237,7 +236,7 @@ class SensorRegression:
             for result in record.checks:
                 if not result.passed:
                     problem = f"{place}: a check failed, so the run cannot become golden: {result.check.title}"
-                    raise InputError(f"SK-GOLDEN-007 {problem}: {result.message}", "SK-GOLDEN-007")
+                    raise InputError("SK-GOLDEN-007", f"{problem}: {result.message}")
         if writes and not is_golden(place):
             write_golden(place, record, reason=self._place.reason or "")
             self._place.done.append(f"written: {_short_path(place)}")
@@ -289,21 +288,20 @@ def safe_name(text: str) -> str:
 
 def _with_arguments(scenario: RunSpec, arguments: JsonObject, *, is_open: bool, allow_code: bool) -> RunSpec:
     """Return a scenario whose fields are replaced by a test's arguments."""
-    own = {
+    scenario_fields = {
         key: arguments.pop(key)
         for key in ("duration", "seed", "topics", "skip", *_SCENARIO_ARGUMENTS)
         if key in arguments
     }
-    if is_open and (arguments or {"seed", *_SCENARIO_ARGUMENTS} & own.keys()):
-        wrong = ", ".join(sorted([*arguments, *({"seed", *_SCENARIO_ARGUMENTS} & own.keys())]))
+    if is_open and (arguments or {"seed", *_SCENARIO_ARGUMENTS} & scenario_fields.keys()):
+        wrong = ", ".join(sorted([*arguments, *({"seed", *_SCENARIO_ARGUMENTS} & scenario_fields.keys())]))
         raise InputError(
-            f"SK-GOLDEN-021 sensor_regression: {wrong}: not possible for a simulation that is already loaded",
-            "SK-GOLDEN-021",
+            "SK-GOLDEN-021", f"sensor_regression: {wrong}: not possible for a simulation that is already loaded"
         )
-    for key, value in own.items():
+    for key, value in scenario_fields.items():
         if isinstance(getattr(scenario, key), tuple):
-            own[key] = (value,) if isinstance(value, str) else tuple(value)
-    return replace(add_options(scenario, cast(LoadOptions, arguments), allow_code), **own)
+            scenario_fields[key] = (value,) if isinstance(value, str) else tuple(value)
+    return replace(add_options(scenario, cast(LoadOptions, arguments), allow_code), **scenario_fields)
 
 
 def _topic_patterns(patterns: str | Sequence[str] | None) -> tuple[str, ...] | None:
@@ -315,21 +313,21 @@ def _topic_patterns(patterns: str | Sequence[str] | None) -> tuple[str, ...] | N
 
 def _with_tolerances(scenario: RunSpec, tolerances: Mapping[str, object] | Sequence[Tolerance]) -> RunSpec:
     """Return a scenario in which a test's tolerances have priority; numeric tolerances apply on every machine."""
-    own = _parse_tolerances(tolerances)
-    if any(getattr(t, name) is not None for t in own if not t.statistics for name in _NUMBERS):
+    parsed = _parse_tolerances(tolerances)
+    if any(getattr(t, name) is not None for t in parsed if not t.statistics for name in _NUMBERS):
         scenario = replace(scenario, bits=False, state=False, model=False)
-    return replace(scenario, tolerances=(*own, *scenario.tolerances))
+    return replace(scenario, tolerances=(*parsed, *scenario.tolerances))
 
 
 def _parse_tolerances(tolerances: JsonMapping | Sequence[Tolerance]) -> tuple[Tolerance, ...]:
     """Parse tolerances in the form of a scenario file; accept `Tolerance` objects too."""
     if not isinstance(tolerances, Mapping):
         return tuple(tolerances)
-    found = []
+    parsed = []
     for pattern, value in tolerances.items():
         fields: JsonMapping
         if isinstance(value, Tolerance):
-            found.append(replace(value, pattern=absolute_topic(pattern)))
+            parsed.append(replace(value, pattern=absolute_topic(pattern)))
             continue
         if isinstance(value, str) and value in TOLERANCE_MODES:
             fields = {value: True}
@@ -339,8 +337,8 @@ def _parse_tolerances(tolerances: JsonMapping | Sequence[Tolerance]) -> tuple[To
             fields = {"absolute": float(value)}
         else:
             raise _tolerance_error(pattern, value)
-        found.append(Tolerance(absolute_topic(pattern), **fields))
-    return tuple(found)
+        parsed.append(Tolerance(absolute_topic(pattern), **fields))
+    return tuple(parsed)
 
 
 def _is_valid_tolerance(name: object, value: object) -> bool:
@@ -353,9 +351,9 @@ def _is_valid_tolerance(name: object, value: object) -> bool:
 def _tolerance_error(pattern: str, value: object) -> InputError:
     names = ", ".join(name for name in Tolerance.__dataclass_fields__ if name not in ("pattern", "where"))
     return InputError(
-        f"SK-GOLDEN-021 sensor_regression: tolerances[{pattern!r}]: found {value!r:.80}, expected a number >= 0, "
-        f"one of {', '.join(TOLERANCE_MODES)}, or a mapping of {names}",
         "SK-GOLDEN-021",
+        f"sensor_regression: tolerances[{pattern!r}]: found {value!r:.80}, expected a number >= 0, "
+        f"one of {', '.join(TOLERANCE_MODES)}, or a mapping of {names}",
     )
 
 

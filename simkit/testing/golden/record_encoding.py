@@ -7,11 +7,11 @@ import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, fields, replace
 from pathlib import Path
-from typing import Any, Final, cast
+from typing import Final, TypeVar, cast
 
 import numpy as np
 
-from simkit.code_requests import CodeRequest, folder_request
+from simkit.code_requests import CodeRequest, folder_request, node_requests
 from simkit.diagnostic_record import NOWHERE, Where
 from simkit.run_fields import LOAD_FIELDS, RunField
 from simkit.run_files import FileName
@@ -47,30 +47,32 @@ def encode_scenario(scenario: RunSpec, folder: Path) -> dict[str, object]:
         path = name.used_path(scenario.folder)
         return name.text if path is None else relative_path(path, folder)
 
-    found: dict[str, object] = {"world": relative_world(scenario, folder)}
+    encoded: dict[str, object] = {"world": relative_world(scenario, folder)}
     if is_long_text(scenario.world):
         text = scenario.world.encode("utf-8", "surrogatepass")
-        found["world"] = {"sha256": hashlib.sha256(text).hexdigest(), "bytes": len(text)}
+        encoded["world"] = {"sha256": hashlib.sha256(text).hexdigest(), "bytes": len(text)}
     moved, options = scenario.with_files(place), {}
-    for name, described in sorted(run_fields().items(), key=lambda one: one[1].kind.has_files):
+    for name, described in sorted(run_fields().items(), key=lambda named: named[1].kind.has_files):
         value = moved.value_of(described)
         if described.is_load_option and name in moved.options:
             options[name] = _plain_value(described.kind.plain(value))
         elif described.is_stored and not described.is_load_option and value != _unstored_value(described):
-            found[name] = _plain_value(value)
+            encoded[name] = _plain_value(described.kind.plain(value))
     if scenario.commands:
-        found["commands"] = [{k: _plain_value(v) for k, v in one.items() if k != "where"} for one in scenario.commands]
+        encoded["commands"] = [
+            {k: _plain_value(v) for k, v in item.items() if k != "where"} for item in scenario.commands
+        ]
     if scenario.tolerances:
-        found["tolerances"] = [_non_default_fields(one, Tolerance("")) for one in scenario.tolerances]
+        encoded["tolerances"] = [_non_default_fields(item, Tolerance("")) for item in scenario.tolerances]
     if scenario.checks:
-        found["checks"] = [_non_default_fields(one, Check("goal")) | {"kind": one.kind} for one in scenario.checks]
+        encoded["checks"] = [_non_default_fields(item, Check("goal")) | {"kind": item.kind} for item in scenario.checks]
     if scenario.plugins:
-        found["plugins"] = [_class_name(one) for one in scenario.plugins]
+        encoded["plugins"] = [_class_name(item) for item in scenario.plugins]
     if options:
-        found["options"] = dict(sorted(options.items()))
+        encoded["options"] = dict(sorted(options.items()))
     if scenario.file is not None:
-        found["file"] = relative_path(scenario.file, folder)
-    return found
+        encoded["file"] = relative_path(scenario.file, folder)
+    return encoded
 
 
 def _unstored_value(described: RunField) -> object:
@@ -95,26 +97,27 @@ def decode_scenario(plain: JsonMapping, folder: Path, where: Callable[[str], Whe
         path = name.path_in(folder)
         return name.text if path is None or name.role == "bag" else str(path)
 
-    given: JsonObject = {"model_world": EMPTY_SPACE}
+    arguments: JsonObject = {"model_world": EMPTY_SPACE}
     reader = _StoredValues(plain)
     for name, described in run_fields().items():
         if name in plain and described.is_stored and not described.is_load_option:
-            given[name] = described.kind.read(reader, name, described.default)
-    given["commands"] = tuple({**one, "where": "commands"} for one in plain.get("commands", ()))
-    given["tolerances"] = tuple(Tolerance(**_known_fields(one, Tolerance)) for one in plain.get("tolerances", ()))
-    checks = (_known_fields(one, Check) for one in plain.get("checks", ()))
-    given["checks"] = tuple(Check(**{**one, "models": tuple(one.get("models", ()))}) for one in checks)
-    given["plugins"] = tuple(map(str, plain.get("plugins", ())))
-    given["options"] = {str(name): one for name, one in plain.get("options", {}).items() if name in LOAD_FIELDS}
+            arguments[name] = described.kind.read(reader, name, described.default)
+    arguments["commands"] = tuple({**item, "where": "commands"} for item in plain.get("commands", ()))
+    arguments["tolerances"] = tuple(Tolerance(**_known_fields(item, Tolerance)) for item in plain.get("tolerances", ()))
+    checks = (_known_fields(item, Check) for item in plain.get("checks", ()))
+    arguments["checks"] = tuple(Check(**{**item, "models": tuple(item.get("models", ()))}) for item in checks)
+    arguments["plugins"] = tuple(map(str, plain.get("plugins", ())))
+    arguments["options"] = {str(name): item for name, item in plain.get("options", {}).items() if name in LOAD_FIELDS}
     file = folder / str(plain["file"]) if plain.get("file") else None
     world = "" if isinstance(plain["world"], Mapping) else str(plain["world"])
-    found = RunSpec(world, folder=folder, file=file, **given).with_files(place)
-    options = dict(found.options)
+    spec = RunSpec(world, folder=folder, file=file, **arguments).with_files(place)
+    options = dict(spec.options)
     folders = map(str, cast(Iterable[object], options.pop("plugin_paths", ())))
-    requests = [folder_request(os.path.relpath(one, folder), Path(one), where("plugin_paths")) for one in folders]
+    requests = [folder_request(os.path.relpath(item, folder), Path(item), where("plugin_paths")) for item in folders]
+    requests += node_requests(spec.nodes, folder, lambda _: where("nodes"))
     if file is not None and file.suffix.lower() == ".py":  # reading the file runs it
         requests.append(CodeRequest(f"the golden run names the scenario {file.name!r:.200}", file, where("file")))
-    return replace(found, options=cast(LoadOptions, options), code_requests=tuple(requests))
+    return replace(spec, options=cast(LoadOptions, options), code_requests=tuple(requests))
 
 
 def is_long_text(world: str) -> bool:
@@ -137,13 +140,16 @@ def relative_path(path: Path, folder: Path) -> str:
         return path.resolve().as_posix()
 
 
+T = TypeVar("T")
+
+
 class _StoredValues:
     """Reader of the values of `golden.json`; it raises TypeError for a value of a wrong type."""
 
     def __init__(self, fields: JsonMapping) -> None:
         self._fields = fields
 
-    def _value(self, key: str, *kinds: type) -> Any:
+    def _value(self, key: str, *kinds: type[T]) -> T:
         value = self._fields[key]
         if not isinstance(value, kinds):
             raise TypeError(f"{key} has a value of a wrong type")
@@ -156,10 +162,10 @@ class _StoredValues:
         return bool(self._value(key, bool, int))
 
     def whole(self, key: str, default: int, least: int) -> int:
-        return cast(int, self._value(key, int))
+        return self._value(key, int)
 
     def number(self, key: str, default: float | None, *, least: float, above: float) -> float | None:
-        return cast("float | None", self._value(key, float, int, type(None)))
+        return self._value(key, float, int, type(None))
 
     def texts(self, key: str) -> tuple[str, ...]:
         return tuple(map(str, self._value(key, list, tuple)))
@@ -171,19 +177,28 @@ class _StoredValues:
         value = self._value(key, dict, list)
         return value if isinstance(value, dict) else tuple(map(str, value))
 
+    def mapping(self, key: str) -> JsonObject:
+        value: JsonObject = self._value(key, dict)
+        return value
 
-def _plain_value(value: Any) -> object:
+    def entries(self, key: str) -> tuple[str | JsonMapping, ...]:
+        return tuple(item if isinstance(item, dict) else str(item) for item in self._value(key, list))
+
+
+def _plain_value(value: object) -> object:
     if isinstance(value, Mapping):
-        return {str(key): _plain_value(one) for key, one in value.items()}
-    if isinstance(value, (list, tuple)) or hasattr(value, "tolist"):
-        return [_plain_value(one) for one in value] if not hasattr(value, "tolist") else value.tolist()
+        return {str(key): _plain_value(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    if isinstance(value, list | tuple):
+        return [_plain_value(item) for item in value]
     return value if isinstance(value, (bool, int, float, str)) or value is None else str(value)
 
 
-def _non_default_fields(value: Any, default: Any) -> dict[str, object]:
+def _non_default_fields(value: Check | Tolerance, default: Check | Tolerance) -> dict[str, object]:
     """Return the fields that differ from the default, without source positions."""
     usual = asdict(default)
-    return {name: _plain_value(one) for name, one in asdict(value).items() if name != "where" and one != usual[name]}
+    return {name: _plain_value(item) for name, item in asdict(value).items() if name != "where" and item != usual[name]}
 
 
 def _known_fields(plain: Mapping[str, object], kind: type[Check | Tolerance]) -> JsonObject:
@@ -192,8 +207,8 @@ def _known_fields(plain: Mapping[str, object], kind: type[Check | Tolerance]) ->
 
 
 def _class_name(plugin: object) -> str:
-    one = plugin[1] if isinstance(plugin, tuple) and len(plugin) == 2 else plugin
-    kind = one if isinstance(one, type) or hasattr(one, "__file__") else type(one)
+    target = plugin[1] if isinstance(plugin, tuple) and len(plugin) == 2 else plugin
+    kind = target if isinstance(target, type) or hasattr(target, "__file__") else type(target)
     return str(getattr(kind, "__qualname__", getattr(kind, "__name__", kind)))
 
 
@@ -251,7 +266,7 @@ def decode_record(stored: JsonMapping, data: bytes, scenario: RunSpec) -> RunRec
     return RunRecord(
         scenario,
         {str(k): str(v) for k, v in stored["fingerprint"].items()},
-        {str(topic): _unpack_stream(unpacker, str(topic), one) for topic, one in inner["streams"].items()},
+        {str(topic): _unpack_stream(unpacker, str(topic), packed) for topic, packed in inner["streams"].items()},
         _unpack_states(unpacker, inner["states"]),
         _validate_values(inner["leaves"]),
         {},
@@ -274,18 +289,18 @@ def _pack_stream(packer: Packer, stream: Stream, scenario: RunSpec) -> dict[str,
         if column.lengths is not None:
             entry["lengths"] = packer.add(column.lengths)
         columns[path] = entry
-    found: dict[str, object] = {
+    packed: dict[str, object] = {
         "type": stream.type_name,
         "times": packer.add(stream.times_ns),
         "columns": columns,
         "words": {path: pack_words(packer, texts) for path, texts in stream.words.items()},
-        "statistics": {path: _pack_statistics(packer, one) for path, one in stream.statistics.items()},
+        "statistics": {path: _pack_statistics(packer, statistics) for path, statistics in stream.statistics.items()},
         "chunks": list(stream.chunks),
         "digest": stream.digest,
     }
     if stream.pictures is not None:
         pictures = stream.pictures
-        found["pictures"] = {
+        packed["pictures"] = {
             "small": packer.add(pictures.small, _DEPTH_STEP if pictures.small.dtype.kind == "f" else 0.0),
             "shape": list(pictures.shape),
             "encoding": pictures.encoding,
@@ -293,7 +308,7 @@ def _pack_stream(packer: Packer, stream: Stream, scenario: RunSpec) -> dict[str,
             "kept": None if pictures.kept is None else packer.add(pictures.kept),
             "hashes": None if pictures.hashes is None else packer.add(pictures.hashes),
         }
-    return found
+    return packed
 
 
 def _unpack_stream(unpacker: Unpacker, topic: str, stored: JsonMapping) -> Stream:
@@ -301,19 +316,19 @@ def _unpack_stream(unpacker: Unpacker, topic: str, stored: JsonMapping) -> Strea
     if times.ndim != 1 or times.dtype != np.int64:
         raise PackingError("the time stamps have a wrong type")
     stream, count = Stream(topic, str(stored["type"]), times), len(times)
-    for path, one in stored["columns"].items():
-        lengths = unpacker.array(one["lengths"]) if "lengths" in one else None
-        column = Column(unpacker.array(one["values"]), lengths, float(one["step"]))
+    for path, packed in stored["columns"].items():
+        lengths = unpacker.array(packed["lengths"]) if "lengths" in packed else None
+        column = Column(unpacker.array(packed["values"]), lengths, float(packed["step"]))
         rows = len(column.values) if lengths is None else len(lengths)
         if rows != count or (
             lengths is not None and (lengths.min(initial=0) < 0 or lengths.sum() != len(column.values))
         ):
             raise PackingError(f"{topic}.{path} has values of {rows} messages, but the topic has {count}")
         stream.columns[str(path)] = column
-    stream.words = {str(path): unpack_words(unpacker, one, count) for path, one in stored["words"].items()}
+    stream.words = {str(path): unpack_words(unpacker, packed, count) for path, packed in stored["words"].items()}
     stream.statistics = {
-        str(path): NoiseStatistics(int(one["count"]), *(unpacker.array(one[name]) for name in _STATISTICS))
-        for path, one in stored["statistics"].items()
+        str(path): NoiseStatistics(int(packed["count"]), *(unpacker.array(packed[name]) for name in _STATISTICS))
+        for path, packed in stored["statistics"].items()
     }
     stream.chunks, stream.digest = [str(chunk) for chunk in stored["chunks"]], str(stored["digest"])
     if "pictures" in stored:
@@ -323,19 +338,25 @@ def _unpack_stream(unpacker: Unpacker, topic: str, stored: JsonMapping) -> Strea
 
 def _unpack_pictures(unpacker: Unpacker, stored: JsonMapping, count: int) -> Pictures:
     small, tiles = unpacker.array(stored["small"]), unpacker.array(stored["tiles"])
-    kept, hashes = (None if stored[name] is None else unpacker.array(stored[name]) for name in ("kept", "hashes"))
-    expected = count if kept is None else len(kept)
+    message_numbers, hashes = (
+        None if stored[name] is None else unpacker.array(stored[name]) for name in ("kept", "hashes")
+    )
+    expected = count if message_numbers is None else len(message_numbers)
     if small.ndim != 4 or tiles.ndim != 3 or len(small) != expected or len(tiles) != expected:
         raise PackingError("the pictures have a wrong shape")
-    if kept is not None and len(kept) and (kept.min() < 0 or kept.max() >= count):
+    if (
+        message_numbers is not None
+        and len(message_numbers)
+        and (message_numbers.min() < 0 or message_numbers.max() >= count)
+    ):
         raise PackingError("the pictures refer to messages that do not exist")
-    height, width = (int(one) for one in stored["shape"])
-    return Pictures(small, (height, width), str(stored["encoding"]), tiles, kept, hashes)
+    height, width = (int(size) for size in stored["shape"])
+    return Pictures(small, (height, width), str(stored["encoding"]), tiles, message_numbers, hashes)
 
 
 def _pack_statistics(packer: Packer, statistics: NoiseStatistics) -> dict[str, object]:
-    found: dict[str, object] = {"count": int(statistics.count)}
-    return found | {name: packer.add(np.asarray(getattr(statistics, name), np.float64)) for name in _STATISTICS}
+    packed: dict[str, object] = {"count": int(statistics.count)}
+    return packed | {name: packer.add(np.asarray(getattr(statistics, name), np.float64)) for name in _STATISTICS}
 
 
 # ---------------------------------------------------------------------- states and model
@@ -343,22 +364,22 @@ def _pack_statistics(packer: Packer, statistics: NoiseStatistics) -> dict[str, o
 
 def _pack_states(packer: Packer, states: States) -> dict[str, object]:
     arrays = ("marks", "inputs", "ticks", "values", "input_values")
-    found: dict[str, object] = {name: packer.add(getattr(states, name)) for name in arrays}
+    packed: dict[str, object] = {name: packer.add(getattr(states, name)) for name in arrays}
     texts = {"names": states.names, "input_names": states.input_names, "timestep": states.timestep}
-    return found | texts | {"digest": states.digest, "named_digest": states.named_digest}
+    return packed | texts | {"digest": states.digest, "named_digest": states.named_digest}
 
 
 def _unpack_states(unpacker: Unpacker, stored: JsonMapping) -> States:
     marks, inputs, ticks = (unpacker.array(stored[name]) for name in ("marks", "inputs", "ticks"))
-    values, given = unpacker.array(stored["values"]), unpacker.array(stored["input_values"])
+    values, input_values = unpacker.array(stored["values"]), unpacker.array(stored["input_values"])
     names, given_names = [str(n) for n in stored["names"]], [str(n) for n in stored["input_names"]]
     timestep = float(stored["timestep"])
     if marks.ndim != 1 or inputs.shape != marks.shape or not 0 < timestep < 1e6:
         raise PackingError("the state hashes have a wrong shape")
-    if values.shape != (len(ticks), len(names)) or given.shape != (len(ticks), len(given_names)):
+    if values.shape != (len(ticks), len(names)) or input_values.shape != (len(ticks), len(given_names)):
         raise PackingError("the states have a wrong shape")
     return States(
-        timestep, marks, inputs, ticks, names, values, given_names, given,
+        timestep, marks, inputs, ticks, names, values, given_names, input_values,
         str(stored["digest"]), str(stored["named_digest"]),
     )  # fmt: skip
 
@@ -376,9 +397,9 @@ def _pack_fields(packer: Packer, fields: Mapping[str, Array]) -> dict[str, objec
 
 def _unpack_fields(unpacker: Unpacker, stored: JsonMapping) -> ModelFields:
     tables: dict[str, tuple[list[str], dict[str, Array]]] = {}
-    for kind, one in stored.items():
-        names = [str(name) for name in one["names"]]
-        table = {str(name): unpacker.array(number) for name, number in one["table"].items()}
+    for kind, packed in stored.items():
+        names = [str(name) for name in packed["names"]]
+        table = {str(name): unpacker.array(number) for name, number in packed["table"].items()}
         if any(len(array) != len(names) for array in table.values()):
             raise PackingError(f"the fields of {kind} have a wrong length")
         tables[str(kind)] = (names, table)

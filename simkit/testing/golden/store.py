@@ -90,8 +90,8 @@ def write_golden(
             _remove_old_data(place, name)
     except OSError as error:
         _remove_unfinished(place, name)
-        message = f"SK-GOLDEN-005 cannot write {place}: {error.strerror or error}"
-        raise InputError(message, "SK-GOLDEN-005") from None
+        message = f"cannot write {place}: {error.strerror or error}"
+        raise InputError("SK-GOLDEN-005", message) from None
 
 
 def read_golden(folder: str | os.PathLike[str]) -> RunRecord:
@@ -139,9 +139,9 @@ def read_main(folder: Path) -> JsonObject:
         text = read_input(path, _MAX_TEXT_BYTES, inside=folder)
     except (FileNotFoundError, NotADirectoryError):
         raise InputError(
-            f"SK-GOLDEN-002 {folder}: there is no golden run (no {MAIN_FILE})\n"
-            "    help: record a golden run with: simkit golden record WORLD --out DIR",
             "SK-GOLDEN-002",
+            f"{folder}: there is no golden run (no {MAIN_FILE})",
+            help="record a golden run with: simkit golden record WORLD --out DIR",
         ) from None
     except OSError as error:
         raise _damaged_error(path, f"cannot be read: {error.strerror or error}") from None
@@ -153,9 +153,9 @@ def read_main(folder: Path) -> JsonObject:
         raise _damaged_error(path, "is not the file of a golden run")
     if main["format"] > FORMAT:
         raise InputError(
-            f"SK-GOLDEN-004 {path} has format {main['format']}; this version of simkit reads formats up to {FORMAT}\n"
-            f"    help: {install_command(option='--upgrade')}",
             "SK-GOLDEN-004",
+            f"{path} has format {main['format']}; this version of simkit reads formats up to {FORMAT}",
+            help=install_command(option="--upgrade"),
         )
     if main["format"] < 1 or not isinstance(main.get("scenario"), dict):
         raise _damaged_error(path, "is not the file of a golden run")
@@ -171,8 +171,8 @@ def _where(folder: Path, key: str) -> Where:
 
 def read_history(folder: str | os.PathLike[str]) -> list[JsonMapping]:
     """Return the history of a golden run, oldest entry first."""
-    found = read_main(golden_folder(folder)).get("history", [])
-    return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []
+    history = read_main(golden_folder(folder)).get("history", [])
+    return [entry for entry in history if isinstance(entry, dict)] if isinstance(history, list) else []
 
 
 def line_of_key(folder: Path, key: str) -> int | None:
@@ -183,8 +183,8 @@ def line_of_key(folder: Path, key: str) -> int | None:
 
 def golden_folder(path: str | os.PathLike[str]) -> Path:
     """Return the folder of a golden run, given the folder or its `golden.json`."""
-    found = Path(path)
-    return found.parent if found.name == MAIN_FILE else found
+    folder = Path(path)
+    return folder.parent if folder.name == MAIN_FILE else folder
 
 
 def is_golden(path: str | os.PathLike[str]) -> bool:
@@ -201,15 +201,15 @@ def find_goldens(path: str | os.PathLike[str]) -> list[Path]:
     top = golden_folder(path)
     if (top / MAIN_FILE).is_file():
         return [top]
-    found = []
+    folders = []
     for folder, names, files in os.walk(top):
         names.sort()
         if MAIN_FILE in files:
-            found.append(Path(folder))
+            folders.append(Path(folder))
             names.clear()
-    if not found:
+    if not folders:
         read_main(top)
-    return found
+    return folders
 
 
 def _read_data(place: Path, main: JsonMapping) -> tuple[str, str]:
@@ -221,7 +221,7 @@ def _read_data(place: Path, main: JsonMapping) -> tuple[str, str]:
 
 
 def _damaged_error(path: Path, what: str) -> InputError:
-    return InputError(f"SK-GOLDEN-003 {path} {what}", "SK-GOLDEN-003")
+    return InputError("SK-GOLDEN-003", f"{path} {what}")
 
 
 def _write_atomically(folder: Path, name: str, data: bytes) -> None:

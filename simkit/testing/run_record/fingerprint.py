@@ -9,16 +9,19 @@ import os
 import platform
 import struct
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from functools import cache
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, Literal
+
+import numpy
 
 from simkit.input_file import TEXT_LIMIT, read_input
-from simkit.packs import is_shipped, shipped_folders
+from simkit.loaders.meshes.mesh_part import MeshFileError
+from simkit.packs import is_shipped, is_shipped_file, shipped_folders
 from simkit.params import Params
 from simkit.testing.run_record.world_values import file_hash, plugin_value_files, values_of_files
 from simkit.version import __version__
@@ -28,15 +31,13 @@ if TYPE_CHECKING:
 
 
 RENDERER: Final = "renderer"
-"""Key of the renderer, which has an effect only on runs with pictures."""
 RAY_TRACER: Final = "ray tracer"
-"""Key of Embree and its instructions. Where a ray meets the edge of two triangles, either may be the nearest."""
 PROCESSOR_FEATURES: Final = "processor features"
-"""Key of the instructions by which NumPy and BLAS choose their code; simkit uses no function that depends on them."""
-_INFORMATION_ONLY: Final = ("simkit code", "python", "libc", PROCESSOR_FEATURES)
-"""Keys that help to find a cause, but should not change any bit of a run."""
 _LEVEL_3: Final = ("AVX2", "FMA3")  # what MuJoCo's and the C library's code for x86-64-v3 needs
 _EMBREE_INSTRUCTIONS: Final = {"AVX512_SKX": "avx512", "AVX2": "avx2", "AVX": "avx", "SSE42": "sse4.2"}
+
+Effect = Literal["run", "pictures", "rays", "none"]
+"""Bits that an entry may change: of every run, of pictures, of readings of rays; or none, it helps to find a cause."""
 
 
 def fingerprint(drawn: Simulation | None = None) -> dict[str, str]:
@@ -48,12 +49,12 @@ def fingerprint(drawn: Simulation | None = None) -> dict[str, str]:
     Returns:
         Name -> value; `renderer` only on request.
     """
-    found = dict(_machine_fingerprint())
+    values = dict(_machine_fingerprint())
     if drawn is not None:
         from simkit.sensors.cameras.renderer_choice import describe_renderer
 
-        found[RENDERER] = describe_renderer(drawn)
-    return found
+        values[RENDERER] = describe_renderer(drawn)
+    return values
 
 
 def fingerprint_differences(
@@ -67,32 +68,26 @@ def fingerprint_differences(
         pictures: Compare the renderer too.
         rays: Compare the ray tracer too.
     """
-    left_out = {*_INFORMATION_ONLY, *(() if pictures else (RENDERER,)), *(() if rays else (RAY_TRACER,))}
-    names = [n for n in dict.fromkeys((*a, *b)) if n not in left_out]
-    return {n: (a.get(n, ""), b.get(n, "")) for n in names if a.get(n, "") != b.get(n, "")}
+    is_compared: dict[Effect, bool] = {"run": True, "pictures": pictures, "rays": rays, "none": False}
+    names = [name for name in dict.fromkeys((*a, *b)) if is_compared[_effect(name)]]
+    return {name: (a.get(name, ""), b.get(name, "")) for name in names if a.get(name, "") != b.get(name, "")}
+
+
+def _effect(name: str) -> Effect:
+    """Return the effect of an entry; an entry of another version of simkit may change every run."""
+    return "pictures" if name == RENDERER else _ENTRIES[name][1] if name in _ENTRIES else "run"
 
 
 @cache
-def _machine_fingerprint() -> dict[str, str]:
-    import mujoco
-    import numpy
+def _machine_fingerprint() -> Mapping[str, str]:
+    """Return the entries without the renderer."""
+    return {name: read() for name, (read, _) in _ENTRIES.items()}
 
-    return {
-        "simkit": __version__,
-        "simkit code": code_hash(),
-        "mujoco": mujoco.__version__,
-        "numpy": numpy.__version__,
-        "opencv": _version("opencv-python-headless"),
-        "trimesh": _version("trimesh"),
-        "python": platform.python_version(),
-        "processor": platform.machine(),
-        "processor level": _processor_level(),
-        PROCESSOR_FEATURES: _processor_features(),
-        "system": platform.system(),
-        "math library": _math_library(),
-        "libc": " ".join(platform.libc_ver()).strip(),
-        RAY_TRACER: _ray_tracer(),
-    }
+
+def _mujoco_version() -> str:
+    import mujoco
+
+    return str(mujoco.__version__)
 
 
 def _version(package: str) -> str:
@@ -105,10 +100,10 @@ def _version(package: str) -> str:
 def _features() -> Mapping[str, bool]:
     """Return the processor features that NumPy found: name -> whether the processor has it."""
     try:
-        found: Mapping[str, bool] = import_module("numpy._core._multiarray_umath").__cpu_features__
+        features: Mapping[str, bool] = import_module("numpy._core._multiarray_umath").__cpu_features__
     except (ImportError, AttributeError):  # some NumPy versions do not have this table
         return {}
-    return found
+    return features
 
 
 def _processor_level() -> str:
@@ -150,12 +145,12 @@ def _math_library() -> str:
 
 def _ray_tracer() -> str:
     """Return the version of Embree's binding and the instructions that Embree chooses on this processor."""
-    found = _version("embreex")
-    if not found:
+    embree_version = _version("embreex")
+    if not embree_version:
         return ""
     features = _features()
     chosen = next((name for feature, name in _EMBREE_INSTRUCTIONS.items() if features.get(feature)), "")
-    return f"embree {found} {chosen}".strip()
+    return f"embree {embree_version} {chosen}".strip()
 
 
 @cache
@@ -169,26 +164,47 @@ def code_hash() -> str:
     return digest.hexdigest()[:12]
 
 
+_ENTRIES: Final[Mapping[str, tuple[Callable[[], str], Effect]]] = {
+    "simkit": (lambda: __version__, "run"),
+    "simkit code": (code_hash, "none"),
+    "mujoco": (_mujoco_version, "run"),
+    "numpy": (lambda: numpy.__version__, "run"),
+    "opencv": (lambda: _version("opencv-python-headless"), "run"),
+    "trimesh": (lambda: _version("trimesh"), "run"),
+    "python": (platform.python_version, "none"),
+    "processor": (platform.machine, "run"),
+    "processor level": (_processor_level, "run"),
+    # NumPy and BLAS choose their code by these instructions; simkit uses no function that depends on them
+    PROCESSOR_FEATURES: (_processor_features, "none"),
+    "system": (platform.system, "run"),
+    "math library": (_math_library, "run"),
+    "libc": (lambda: " ".join(platform.libc_ver()).strip(), "none"),
+    # where a ray meets the edge of two triangles, either may be the nearest
+    RAY_TRACER: (_ray_tracer, "rays"),
+}
+"""Entries of a fingerprint, beside the renderer: function that reads the value, and effect of the entry."""
+
+
 _MAX_MODULES: Final = 100
 _FILE_NAMING_SUFFIXES: Final = frozenset((".obj", ".dae", ".gltf", ".glb"))  # mesh formats that refer to further files
 
 
 def source_hashes(sim: Simulation) -> dict[str, str]:
-    """Return the SHA-256 of meshes, pictures and code of external plugins, by file name.
+    """Return the SHA-256 of meshes, pictures and the code of external plugins and nodes, by file name.
 
     A file name includes parent folders if two files have the same name.
     """
     of_plugins = plugin_value_files(sim)
     are_leaves = values_of_files(of_plugins)[2]
     paths = dict.fromkeys(
-        [*_files_of_scene(sim.world), *_plugin_code_files(sim), *(p for p in of_plugins if p not in are_leaves)]
+        [*_files_of_scene(sim.world), *_code_files(sim), *(p for p in of_plugins if p not in are_leaves)]
     )
-    found = {}
+    hashes = {}
     for path, name in _short_names(list(paths)).items():
         digest = file_hash(path)[0]
         if digest:
-            found[name] = digest
-    return dict(sorted(found.items()))
+            hashes[name] = digest
+    return dict(sorted(hashes.items()))
 
 
 def _files_of_scene(value: object) -> Iterator[Path]:
@@ -214,8 +230,7 @@ def _files_of_mesh(mesh: Path) -> Iterator[Path]:
     """Iterate over the materials, pictures and buffers that a mesh refers to."""
     if mesh.suffix.lower() not in _FILE_NAMING_SUFFIXES:
         return
-    from simkit.compiler.meshes.mesh_part import MeshFileError
-    from simkit.compiler.meshes.mesh_reader import convert_file
+    from simkit.loaders.meshes.mesh_reader import convert_file
 
     try:
         yield from (Path(path) for path, known in convert_file(mesh).companions.items() if known is not None)
@@ -223,20 +238,23 @@ def _files_of_mesh(mesh: Path) -> Iterator[Path]:
         return  # loading has already reported the error
 
 
-def _plugin_code_files(sim: Simulation) -> Iterator[Path]:
-    """Iterate over the code files of plugins and sensors that are not part of simkit."""
+def _code_files(sim: Simulation) -> Iterator[Path]:
+    """Iterate over the code files of nodes, and of plugins and sensors that are not part of simkit."""
     for part in (*sim.engine.structure.all_plugins(), *sim.engine.structure.all_sensors()):
         for kind in type(part).__mro__:
             file = getattr(sys.modules.get(kind.__module__), "__file__", None)
             if file and not is_shipped(kind) and not _is_standard_library(kind.__module__):
                 yield from imported_files(Path(file).resolve())
+    for program in sim.nodes:
+        if program.file is not None and not is_shipped_file(str(program.file)):
+            yield from imported_files(program.file)
 
 
 def imported_files(path: Path) -> list[Path]:
     """Return a code file and the files in its folder that it imports, directly or indirectly."""
-    found = [path]
-    for file in found:  # the loop appends the imported files to this list
-        if len(found) > _MAX_MODULES:
+    files = [path]
+    for file in files:  # the loop appends the imported files to this list
+        if len(files) > _MAX_MODULES:
             break
         try:
             tree = ast.parse(read_input(file, TEXT_LIMIT))
@@ -247,10 +265,10 @@ def imported_files(path: Path) -> list[Path]:
             names += [node.module] if isinstance(node, ast.ImportFrom) and node.module else []
             for name in names:
                 beside = file.parent.joinpath(*name.split("."))
-                for one in (beside.with_suffix(".py"), beside / "__init__.py"):
-                    if one not in found and one.is_file():
-                        found.append(one)
-    return found
+                for candidate in (beside.with_suffix(".py"), beside / "__init__.py"):
+                    if candidate not in files and candidate.is_file():
+                        files.append(candidate)
+    return files
 
 
 def _is_standard_library(module: str) -> bool:

@@ -1,23 +1,194 @@
-"""Recorders for the messages of one topic: all fields, small pictures, thinned point clouds, or noise statistics."""
+"""Recorders for the messages of one topic: all fields, small pictures, thinned point clouds, or noise statistics.
+
+The fields become columns of numbers and texts, one for each field.
+"""
 
 from __future__ import annotations
 
 import zlib
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Final, Literal
+from collections.abc import Callable, Sequence
+from functools import cache
+from itertools import pairwise
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
 from zlib import crc32
 
 import numpy as np
 import numpy.typing as npt
 
+from simkit import msgs
 from simkit.msgs import Message
 from simkit.run_spec import RunSpec
-from simkit.testing.run_record.message_columns import MessageRows, join_arrays, message_fields
 from simkit.testing.run_record.noise_statistics import noise_statistics
-from simkit.testing.run_record.record import Array, Pictures, Stream
+from simkit.testing.run_record.record import Array, Column, Pictures, Stream
 
 if TYPE_CHECKING:
+    from simkit.msgs.definition_parser import FieldNode
     from simkit.runtime import Simulation
+    from simkit.runtime.engine.entity_structure import AttachedSensor
+
+
+_STAMPS: Final = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
+_BASE, _NAME = 1, 2  # kinds of fields in the type store of rosbags; other kinds are lists
+_NS: Final = 1_000_000_000
+
+
+class MessageFields(NamedTuple):
+    """Fields of a message type as flat paths; a time is one field.
+
+    Attributes:
+        numbers, texts, stamps: Paths of single values; numbers with their type.
+        arrays: Paths of number lists with their type.
+        lists: Paths of text lists.
+        parts: Paths of message lists with their type.
+    """
+
+    numbers: dict[str, str]
+    texts: list[str]
+    stamps: list[str]
+    arrays: dict[str, str]
+    lists: list[str]
+    parts: dict[str, str]
+
+
+@cache
+def message_fields(type_name: str) -> MessageFields:
+    """Return the fields of a message type."""
+    described = MessageFields({}, [], [], {}, [], {})
+    _add_fields(described, type_name, "")
+    return described
+
+
+def _add_fields(described: MessageFields, type_name: str, prefix: str) -> None:
+    definition: Sequence[tuple[str, FieldNode]] = msgs.type_store().fielddefs[msgs.full_name(type_name)][1]
+    for field, (kind, of) in definition:
+        path = prefix + field
+        is_list = int(kind) not in (_BASE, _NAME)
+        inner_kind, inner = of[0] if is_list else (kind, of)
+        if int(inner_kind) == _NAME:
+            if is_list:
+                described.parts[path] = str(inner)
+            elif inner in _STAMPS:
+                described.stamps.append(path)
+            else:
+                _add_fields(described, str(inner), path + ".")
+        elif str(inner[0]) in ("string", "wstring"):
+            (described.lists if is_list else described.texts).append(path)
+        else:
+            (described.arrays if is_list else described.numbers)[path] = _dtype(str(inner[0]))
+
+
+def _dtype(base: str) -> str:
+    return {"byte": "uint8", "octet": "uint8", "char": "uint8"}.get(base, base)
+
+
+class MessageRows:
+    """Collector of the fields of messages.
+
+    Args:
+        type_name: Type of all messages.
+        skip: Paths that are not collected.
+    """
+
+    def __init__(self, type_name: str, skip: frozenset[str] = frozenset()) -> None:
+        self._fields = message_fields(type_name)
+        fields = self._fields
+        self._numbers = [path for path in fields.numbers if path not in skip]
+        single = [*self._numbers, *fields.texts, *(f"{p}.{q}" for p in fields.stamps for q in ("sec", "nanosec"))]
+        self._single = _getter(single)
+        self._rows: list[tuple[object, ...]] = []
+        self._arrays = {path: attrgetter(path) for path in fields.arrays if path not in skip}
+        self._lists = {path: attrgetter(path) for path in fields.lists if path not in skip}
+        self._kept: dict[str, list[Any]] = {path: [] for path in (*self._arrays, *self._lists)}
+        self._parts = {
+            path: (attrgetter(path), MessageRows(kind, _nested_path(skip, path)))
+            for path, kind in fields.parts.items()
+            if path not in skip
+        }
+        self._counts: dict[str, list[int]] = {path: [] for path in self._parts}
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def take(self, message: object) -> None:
+        """Add a message; the values of the message are copied."""
+        self._rows.append(self._single(message))
+        for path, get in self._arrays.items():
+            self._kept[path].append(np.array(get(message)))
+        for path, get in self._lists.items():
+            self._kept[path].append([str(text) for text in get(message)])
+        for path, (get, rows) in self._parts.items():
+            items = get(message)
+            self._counts[path].append(len(items))
+            for item in items:
+                rows.take(item)
+
+    def columns(self) -> tuple[dict[str, Column], dict[str, list[str]]]:
+        """Return all numbers as columns and all texts as lists, by path of the field."""
+        fields = self._fields
+        columns: dict[str, Column] = {}
+        words: dict[str, list[str]] = {}
+        turned = zip(*self._rows, strict=True)
+        for path in self._numbers:
+            columns[path] = Column(np.array(next(turned, ()), dtype=fields.numbers[path]))
+        for path in fields.texts:
+            words[path] = [str(text) for text in next(turned, ())]
+        for path in fields.stamps:
+            sec, nanosec = (np.array(next(turned, ()), dtype=np.int64) for _ in range(2))
+            columns[path] = Column(sec * _NS + nanosec)
+        for path in self._arrays:
+            columns[path] = join_arrays([np.atleast_1d(a) for a in self._kept[path]], fields.arrays[path])
+        for path in self._lists:
+            words[path] = [", ".join(texts) for texts in self._kept[path]]
+        for path, (_, rows) in self._parts.items():
+            _add_nested_fields(columns, words, path, rows, self._counts[path])
+        return columns, words
+
+
+def join_arrays(arrays: list[Array], dtype: str) -> Column:
+    """Join the arrays of all messages: as a table if all have the same length, else one after another."""
+    lengths = np.array([len(a) for a in arrays], dtype=np.int64)
+    if not len(arrays):
+        return Column(np.zeros((0, 0), dtype=dtype))
+    if (lengths == lengths[0]).all():
+        return Column(np.stack(arrays).astype(dtype, copy=False))
+    return Column(np.concatenate(arrays).astype(dtype, copy=False), lengths)
+
+
+def _add_nested_fields(
+    columns: dict[str, Column], words: dict[str, list[str]], path: str, rows: MessageRows, counts: list[int]
+) -> None:
+    """Add the fields of nested messages; all values of one outer message become one entry."""
+    inner, texts = rows.columns()
+    starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+    is_even = len(set(counts)) == 1 and counts[0] > 0
+    for name, column in inner.items():
+        if column.lengths is None and is_even and column.values.ndim == 1:
+            columns[f"{path}.{name}"] = Column(column.values.reshape(len(counts), counts[0]))
+            continue
+        width = column.lengths
+        if width is None:
+            each = int(np.prod(column.values.shape[1:], dtype=np.int64)) if column.values.ndim > 1 else 1
+            width = np.full(len(rows), each, dtype=np.int64)
+        ends = np.concatenate([[0], np.cumsum(width)])
+        lengths = ends[starts[1:]] - ends[starts[:-1]]
+        columns[f"{path}.{name}"] = Column(column.values.reshape(-1), lengths)
+    for name, values in texts.items():
+        words[f"{path}.{name}"] = [", ".join(values[start:stop]) for start, stop in pairwise(starts)]
+
+
+def _nested_path(skip: frozenset[str], path: str) -> frozenset[str]:
+    return frozenset(p.removeprefix(path + ".") for p in skip if p.startswith(path + "."))
+
+
+def _getter(paths: list[str]) -> Callable[[object], tuple[object, ...]]:
+    """Return a function that returns the values at all paths as a tuple."""
+    if not paths:
+        return lambda _: ()
+    if len(paths) == 1:
+        get_value = attrgetter(paths[0])
+        return lambda message: (get_value(message),)
+    return attrgetter(*paths)
 
 
 TILE: Final = 32
@@ -32,12 +203,12 @@ def tile_hashes(image: Array, tile: int = TILE) -> npt.NDArray[np.uint32]:
         tile: Side length of a tile [px].
     """
     rows, columns = -(-image.shape[0] // tile), -(-image.shape[1] // tile)
-    found = np.empty((rows, columns), np.uint32)
+    hashes = np.empty((rows, columns), np.uint32)
     for row in range(rows):
         for column in range(columns):
             part = image[row * tile : (row + 1) * tile, column * tile : (column + 1) * tile]
-            found[row, column] = zlib.crc32(np.ascontiguousarray(part).tobytes())
-    return found
+            hashes[row, column] = zlib.crc32(np.ascontiguousarray(part).tobytes())
+    return hashes
 
 
 def shrink(image: Array, longest: int) -> Array:
@@ -168,13 +339,13 @@ class _ImageRecorder(MessageRecorder):
         super().fill(stream)
         if self._shape is None or not self._small or self._is_odd:
             return
-        kept = np.arange(0, len(self._hashes), self._every)
+        message_numbers = np.arange(0, len(self._hashes), self._every)
         stream.pictures = Pictures(
             np.stack(self._small),
             self._shape,
             self._encoding,
             np.stack(self._tiles).astype(np.uint32),
-            None if self._every == 1 else kept,
+            None if self._every == 1 else message_numbers,
             np.array(self._hashes, np.uint32),
         )
 
@@ -205,7 +376,7 @@ class _CloudRecorder(MessageRecorder):
                 stream.columns[f"points.{name}"] = join_arrays(arrays, str(arrays[0].dtype))
 
 
-def pixels_of_image(message: Message) -> Any:
+def pixels_of_image(message: Message) -> Array | None:
     """Return the pixels of an Image message, shape (height, width, channels); None for an unknown encoding."""
     kind = _CHANNELS.get(str(message.encoding))
     if kind is None:
@@ -221,7 +392,7 @@ def pixels_of_image(message: Message) -> Any:
     return pixels.astype(dtype, copy=False)
 
 
-def points_of_cloud(message: Message) -> Any:
+def points_of_cloud(message: Message) -> Array:
     """Return the points of a PointCloud2 message as a structured array."""
     order: Literal[">", "<"] = ">" if message.is_bigendian else "<"
     kinds: list[object] = []
@@ -249,7 +420,7 @@ class _NoiseRecorder(MessageRecorder):
         paths: Fields to replace by statistics.
     """
 
-    def __init__(self, sensor: Any, type_name: str, paths: Sequence[str]) -> None:
+    def __init__(self, sensor: AttachedSensor, type_name: str, paths: Sequence[str]) -> None:
         super().__init__(type_name)
         self._sensor, self._paths = sensor, paths
         self._read, self._true = MessageRows(type_name), MessageRows(type_name)

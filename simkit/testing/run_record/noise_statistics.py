@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any, Final, Literal
+from typing import Final, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -125,15 +125,15 @@ def statistic_differences(
         if (golden.count < _MIN_SAMPLES) != (run.count < _MIN_SAMPLES):
             return [StatisticDifference("count", 0, float(golden.count), float(run.count), 0.0)]
         return []
-    found = []
+    differences = []
     for component in range(golden.mean.size):
         of_deviation = _deviation_difference(golden, run, component, relative)
         of_mean = _mean_difference(golden, run, component, absolute)
-        found += [of_mean, of_deviation]
+        differences += [of_mean, of_deviation]
         if of_deviation is None:  # a different mean or deviation also changes the distribution
-            found.append(None if of_mean else _distribution_difference(golden, run, component, absolute))
-            found.append(_allan_difference(golden, run, component, relative))
-    return [deviance for deviance in found if deviance is not None]
+            differences.append(None if of_mean else _distribution_difference(golden, run, component, absolute))
+            differences.append(_allan_difference(golden, run, component, relative))
+    return [deviance for deviance in differences if deviance is not None]
 
 
 def detectable_ratio(count: float, kurtosis: float = 3.0) -> float:
@@ -266,15 +266,15 @@ def _allan(values: Floats, period: float) -> tuple[Floats, Floats]:
     """
     count = len(values)
     sums = np.concatenate([np.zeros((1, values.shape[1])), np.cumsum(values - values.mean(axis=0), axis=0)])
-    taus, found = [], []
+    taus, deviations = [], []
     width = 1
     while count // width > _ALLAN_LEAST:
         means = (sums[width:] - sums[:-width]) / width
         steps = means[width:] - means[:-width]
         taus.append(width * period)
-        found.append(np.sqrt(0.5 * (steps**2).mean(axis=0)))
+        deviations.append(np.sqrt(0.5 * (steps**2).mean(axis=0)))
         width *= 2
-    table = np.array(found).T if found else np.zeros((values.shape[1], 0))
+    table = np.array(deviations).T if deviations else np.zeros((values.shape[1], 0))
     return np.array(taus), table
 
 
@@ -292,7 +292,7 @@ def _independent_samples(centred: Floats) -> float:
     total = float(matmul(centred, centred))
     if count < _MIN_SAMPLES or total <= 0.0:
         return float(count)
-    length: Any = next_fast_len(2 * count)
+    length = int(next_fast_len(2 * count))
     spectrum = rfft(centred, length)
     correlation = irfft(np.abs(spectrum) ** 2, length)[: count // 2] / total
     pairs = correlation[: correlation.size // 2 * 2].reshape(-1, 2).sum(axis=1)

@@ -13,6 +13,7 @@ from simkit.run_spec import JsonMapping, RunSpec
 from simkit.testing.run_record.noise_statistics import NoiseStatistics
 
 if TYPE_CHECKING:
+    from simkit.runtime import Simulation
     from simkit.testing.conditions.checks import CheckResult
 
 Array = npt.NDArray[Any]
@@ -75,9 +76,9 @@ class Pictures:
 
     def first(self, count: int) -> Pictures:
         """Return the pictures of the first messages."""
-        found = self.at(self.messages[self.messages < count])
+        pictures = self.at(self.messages[self.messages < count])
         hashes = None if self.hashes is None else self.hashes[:count]
-        return replace(found, kept=None if self.kept is None else found.kept, hashes=hashes)
+        return replace(pictures, kept=None if self.kept is None else pictures.kept, hashes=hashes)
 
 
 @dataclass
@@ -170,7 +171,7 @@ class RunRecord:
     sources: Mapping[str, str] = field(default_factory=dict)
     diagnostics: Mapping[str, int] = field(default_factory=dict)
     end: str = "duration"
-    simulation: Any = None
+    simulation: Simulation | None = None
     checks: tuple[CheckResult, ...] = ()
     error: Exception | None = None
     environment: Mapping[str, str] = field(default_factory=dict)

@@ -10,12 +10,12 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from simkit import msgs
-from simkit.errors import PluginError, SimulationDiverged, SubscriberError
+from simkit.errors import NodeError, PluginError, SimulationDiverged, SubscriberError
 from simkit.msgs import Message
 from simkit.recording.bags.bag_contents import matches_topic
 from simkit.recording.message_taps import MessageQueue, TopicTaps
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 _CONTACTS: Final = "ros_gz_interfaces/msg/Contacts"
-_PARTS: Final[dict[str, tuple[str, Callable[[Any], Any]]]] = {
+_PARTS: Final[dict[str, tuple[str, Callable[[Message], tuple[str, ...]]]]] = {
     "tf2_msgs/msg/TFMessage": ("transforms", attrgetter("child_frame_id", "header.frame_id")),
     _CONTACTS: ("contacts", attrgetter("collision1.name", "collision2.name")),
     "gazebo_msgs/msg/ContactsState": ("states", attrgetter("collision1_name", "collision2_name")),
@@ -63,8 +63,10 @@ def sort_message(message: Message, type_name: str) -> object:
     if type_name in _PARTS:
         field, key = _PARTS[type_name]
         parts = getattr(message, field)
-        if type_name == _CONTACTS and any(one.collision1.id or one.collision2.id for one in parts):
-            return sort_message(replace(message, contacts=[_without_entity_numbers(one) for one in parts]), type_name)
+        if type_name == _CONTACTS and any(contact.collision1.id or contact.collision2.id for contact in parts):
+            return sort_message(
+                replace(message, contacts=[_without_entity_numbers(contact) for contact in parts]), type_name
+            )
         if type_name in _POINTS:
             parts = [_sort_points(part, _POINTS[type_name]) for part in parts]
         ordered = sorted(parts, key=key)
@@ -81,7 +83,7 @@ def sort_message(message: Message, type_name: str) -> object:
     return message
 
 
-def _sort_points(part: Any, fields: tuple[str, ...]) -> object:
+def _sort_points(part: Message, fields: tuple[str, ...]) -> object:
     """Return a contact with sorted points, because the engine's order depends on the order of models in the file."""
     columns = {field: getattr(part, field) for field in fields}
     places = columns[fields[0]]
@@ -89,7 +91,7 @@ def _sort_points(part: Any, fields: tuple[str, ...]) -> object:
     order = sorted(range(len(keys)), key=keys.__getitem__)
     if order == list(range(len(keys))):
         return part
-    moved: dict[str, Any] = {
+    moved: dict[str, object] = {
         field: column[order] if isinstance(column, np.ndarray) else [column[i] for i in order]
         for field, column in columns.items()
         if len(column) == len(keys)
@@ -117,7 +119,7 @@ ENVIRONMENT_VARIABLES: Final = ("TURTLEBOT3_MODEL",)
 _HASH_LETTERS: Final = 16  # length of the hash of one second in hexadecimal digits
 
 
-def run_record(scenario: RunSpec, *, sim: Simulation | None = None) -> RunRecord:
+def record_run(scenario: RunSpec, *, sim: Simulation | None = None) -> RunRecord:
     """Run a scenario to its end and record its outputs.
 
     The record's `simulation` stays open. The caller must close it.
@@ -139,7 +141,7 @@ def run_record(scenario: RunSpec, *, sim: Simulation | None = None) -> RunRecord
                 try:
                     ended = run_scenario(scenario, opened)
                     end, results = ended.reason, ended.results
-                except (SimulationDiverged, PluginError, SubscriberError) as error:
+                except (SimulationDiverged, PluginError, SubscriberError, NodeError) as error:
                     end, failed = str(error), error
                 record = capture.record(end)
         except BaseException:
@@ -284,3 +286,7 @@ def _environment(sim: Simulation) -> dict[str, str]:
     """Return the environment variables that select the world, such as the TurtleBot3 model."""
     is_relevant = any("turtlebot3" in model.name for model in sim.world.models)
     return {name: os.environ.get(name, "") for name in ENVIRONMENT_VARIABLES if is_relevant}
+
+
+run_record = record_run
+"""Name of version 0.1."""

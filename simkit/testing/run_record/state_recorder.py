@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, Final
+from typing import Final
 from zlib import crc32
 
 import mujoco
@@ -34,7 +34,7 @@ class StateRecorder:
         self._sim, self._ticks = sim, max(1, ticks)
         self._marks, self._inputs = bytearray(), bytearray()
         self._kept: list[tuple[int, dict[str, float], dict[str, float]]] = []
-        self._data: Any = None
+        self._data: mujoco.MjData
         self._edition = -1
         self._is_active = True
         self._every, self._input_mark = 1, 0
@@ -53,12 +53,12 @@ class StateRecorder:
         """Return the recorded states, including the present one."""
         self._keep()
         names = _union(state for _, state, _ in self._kept)
-        inputs = _union(given for _, _, given in self._kept)
+        inputs = _union(input_values for _, _, input_values in self._kept)
         marks = np.frombuffer(bytes(self._marks), np.uint8)
         last = self._kept[-1][1]
-        whole = hashlib.sha256(marks.tobytes())
+        digest = hashlib.sha256(marks.tobytes())
         for name in sorted(last):
-            whole.update(f"{name}={last[name]!r};".encode())
+            digest.update(f"{name}={last[name]!r};".encode())
         return States(
             timestep=self._sim.timestep,
             marks=marks,
@@ -67,9 +67,9 @@ class StateRecorder:
             names=names,
             values=_state_table([state for _, state, _ in self._kept], names),
             input_names=inputs,
-            input_values=_state_table([given for _, _, given in self._kept], inputs),
+            input_values=_state_table([input_values for _, _, input_values in self._kept], inputs),
             digest=state_hash(self._sim),
-            named_digest=whole.hexdigest(),
+            named_digest=digest.hexdigest(),
         )
 
     # ------------------------------------------------------------------ every tick
@@ -93,16 +93,16 @@ class StateRecorder:
             self._keep()
 
     def _hash_inputs(self, physics: Physics) -> int:
-        found = crc32(self._ctrl.take(self._controls).data)
+        checksum = crc32(self._ctrl.take(self._controls).data)
         applied, pushed = self._applied, self._pushed
         if physics.shows_applied:  # forces for one step are already cleared; use their stored values
             applied, pushed = physics.last_applied + applied, physics.last_pushed + pushed
         if crc32(applied.data) != self._no_force:
-            found = crc32(applied.take(self._dofs).data, found)
+            checksum = crc32(applied.take(self._dofs).data, checksum)
         if crc32(pushed.data) != self._no_push:
-            found = crc32(pushed[self._bodies].data, found)
-        found ^= found >> 16
-        return (found ^ (found >> 8)) & 0xFF
+            checksum = crc32(pushed[self._bodies].data, checksum)
+        checksum ^= checksum >> 16
+        return (checksum ^ (checksum >> 8)) & 0xFF
 
     # ------------------------------------------------------------------ names
 
@@ -123,8 +123,8 @@ class StateRecorder:
         self._listens = model.nbody <= _MAX_WATCHED_BODIES
         self._edition, self._input_mark = -1, 0
         width = model.nq + model.nv + model.nu + 1
-        kept = int(np.clip(_MAX_VALUES // width, _MIN_STATES, _STATES_KEPT))
-        self._every = max(1, -(-self._ticks // kept))
+        state_count = int(np.clip(_MAX_VALUES // width, _MIN_STATES, _STATES_KEPT))
+        self._every = max(1, -(-self._ticks // state_count))
 
     def _keep(self) -> None:
         """Store the complete state."""
@@ -148,11 +148,11 @@ class StateQuantities:
         self.velocities = [""] * model.nv
         free, ball = int(mujoco.mjtJoint.mjJNT_FREE), int(mujoco.mjtJoint.mjJNT_BALL)
         for joint, name in enumerate(joints):
-            kind, whole = int(model.jnt_type[joint]), self.bodies[int(model.jnt_bodyid[joint])]
+            kind, body_name = int(model.jnt_type[joint]), self.bodies[int(model.jnt_bodyid[joint])]
             place, speed = int(model.jnt_qposadr[joint]), int(model.jnt_dofadr[joint])
             if kind == free:
-                self.positions[place : place + 7] = [f"{whole} {part}" for part in _FREE_POSITION]
-                self.velocities[speed : speed + 6] = [f"{whole} {part}" for part in _FREE_VELOCITY]
+                self.positions[place : place + 7] = [f"{body_name} {part}" for part in _FREE_POSITION]
+                self.velocities[speed : speed + 6] = [f"{body_name} {part}" for part in _FREE_VELOCITY]
             elif kind == ball:
                 self.positions[place : place + 4] = [f"{name} orientation {part}" for part in "wxyz"]
                 self.velocities[speed : speed + 3] = [f"{name} velocity {part}" for part in "xyz"]
@@ -177,13 +177,13 @@ class StateQuantities:
         state.update(zip(self.activations, data.act.tolist(), strict=True))
         for name, position, turn in zip(self.mocaps, data.mocap_pos.tolist(), data.mocap_quat.tolist(), strict=True):
             state.update((f"{name} {part}", v) for part, v in zip(_FREE_POSITION, [*position, *turn], strict=True))
-        given = {f"control {name}": value for name, value in zip(self.controls, data.ctrl.tolist(), strict=True)}
+        inputs = {f"control {name}": value for name, value in zip(self.controls, data.ctrl.tolist(), strict=True)}
         applied, pushed = physics.applied_forces()
         for at in np.flatnonzero(applied):
-            given[self.forces[int(at)]] = float(applied[at])
+            inputs[self.forces[int(at)]] = float(applied[at])
         for body, part in zip(*np.nonzero(pushed), strict=True):
-            given[f"{_WRENCH[int(part)]} on {self.bodies[int(body)]}"] = float(pushed[body, part])
-        return state, given
+            inputs[f"{_WRENCH[int(part)]} on {self.bodies[int(body)]}"] = float(pushed[body, part])
+        return state, inputs
 
 
 _FREE_POSITION: Final = ("position x", "position y", "position z", *(f"orientation {part}" for part in "wxyz"))
@@ -283,12 +283,12 @@ def fields_of_model(sim: Simulation) -> ModelFields:
 
 
 def _options(options: object) -> dict[str, Array]:
-    found = {}
+    numbers = {}
     for name in dir(options):
         value = None if name.startswith("_") else getattr(options, name)
         if isinstance(value, (int, float, np.ndarray)) and not isinstance(value, bool):
-            found[name] = np.array([value], dtype=np.float64)
-    return found
+            numbers[name] = np.array([value], dtype=np.float64)
+    return numbers
 
 
 def _names(model: mujoco.MjModel, kind: mujoco.mjtObj, size: int) -> list[str]:

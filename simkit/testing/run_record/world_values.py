@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import fields, is_dataclass
 from functools import cache
 from pathlib import Path
@@ -93,20 +93,20 @@ def element_keys(elements: Iterable[Params]) -> list[str]:
     The key is the element's name. If several elements have the same name, the key adds the attribute `name` or a number
     from 1.
     """
-    found = list(elements)
+    children = list(elements)
     equal: dict[str, list[Params]] = {}
-    for one in found:
-        equal.setdefault(one.name, []).append(one)
+    for child in children:
+        equal.setdefault(child.name, []).append(child)
     keys = {}
     for name, several in equal.items():
-        names = [one.attributes.get("name", "") for one in several]
+        names = [child.attributes.get("name", "") for child in several]
         named = all(names) and len(set(names)) == len(names)
-        for number, one in enumerate(several, 1):
+        for number, child in enumerate(several, 1):
             if named:
-                keys[id(one)] = f"{name}[{escaped_key(one.attributes['name'])}]"
+                keys[id(child)] = f"{name}[{escaped_key(child.attributes['name'])}]"
             else:
-                keys[id(one)] = name if len(several) == 1 else f"{name}[{number}]"
-    return [keys[id(one)] for one in found]
+                keys[id(child)] = name if len(several) == 1 else f"{name}[{number}]"
+    return [keys[id(child)] for child in children]
 
 
 class _WorldWalk:
@@ -146,7 +146,7 @@ class _WorldWalk:
         elif isinstance(value, (tuple, list, frozenset)):
             self._items(value, path, place)
 
-    def _items(self, items: Any, path: str, place: str) -> None:
+    def _items(self, items: Collection[object], path: str, place: str) -> None:
         if isinstance(items, frozenset):
             items = sorted(items, key=str)
         if all(_is_scalar(item) for item in items):
@@ -183,18 +183,18 @@ def shape_class_name(value: object) -> str:
 
 
 @cache
-def _field_names(kind: Any) -> tuple[str, ...]:
+def _field_names(kind: type) -> tuple[str, ...]:
     return tuple(field.name for field in fields(kind))
 
 
 def _is_scalar(item: object) -> bool:
     return isinstance(item, (bool, int, float, str)) or (
-        isinstance(item, (tuple, list)) and all(_is_scalar(one) for one in item)
+        isinstance(item, (tuple, list)) and all(_is_scalar(element) for element in item)
     )
 
 
 def _scalar(item: object) -> object:
-    return [_scalar(one) for one in item] if isinstance(item, (tuple, list)) else item
+    return [_scalar(element) for element in item] if isinstance(item, (tuple, list)) else item
 
 
 def escaped_key(key: str) -> str:
@@ -268,10 +268,10 @@ def values_of_files(paths: Iterable[Path]) -> tuple[dict[str, object], dict[str,
             continue
         taken = any(key.startswith(f"files[{path.name}]") for key in leaves)
         name = f"{path.parent.name}/{path.name}" if taken else path.name
-        found: dict[str, tuple[object, int]] = {}
-        if _flatten_document(root, f"files[{escaped_key(name)}]", found, 0):
-            leaves.update({key: value for key, (value, _) in found.items()})
-            places.update({key: f"{path}:{line}" for key, (_, line) in found.items()})
+        document: dict[str, tuple[object, int]] = {}
+        if _flatten_document(root, f"files[{escaped_key(name)}]", document, 0):
+            leaves.update({key: value for key, (value, _) in document.items()})
+            places.update({key: f"{path}:{line}" for key, (_, line) in document.items()})
             read.add(path)
     return leaves, places, read
 
@@ -288,24 +288,24 @@ def _parse_document(path: Path) -> object:
         return None
 
 
-def _flatten_document(node: Any, path: str, found: dict[str, tuple[object, int]], depth: int) -> bool:
+def _flatten_document(node: Any, path: str, values: dict[str, tuple[object, int]], depth: int) -> bool:
     """Add the values of a document; return False if the document is too large or contains itself."""
-    if depth > _MAX_YAML_DEPTH or len(found) > _MAX_FILE_VALUES:
+    if depth > _MAX_YAML_DEPTH or len(values) > _MAX_FILE_VALUES:
         return False
     line = node.start_mark.line + 1
     if node.id == "mapping":
         for key, value in node.value:
             name = str(key.value) if key.id == "scalar" else "?"
             step = f".{name}" if _PLAIN_YAML_VALUE.fullmatch(name) else f".of[{escaped_key(name)}]"
-            if not _flatten_document(value, path + step, found, depth + 1):
+            if not _flatten_document(value, path + step, values, depth + 1):
                 return False
         return True
     if node.id == "sequence":
         if all(item.id == "scalar" for item in node.value):
-            found[path] = ([_yaml_scalar(item) for item in node.value], line)
+            values[path] = ([_yaml_scalar(item) for item in node.value], line)
             return True
-        return all(_flatten_document(item, f"{path}.item[{n}]", found, depth + 1) for n, item in enumerate(node.value))
-    found[path] = (_yaml_scalar(node), line)
+        return all(_flatten_document(item, f"{path}.item[{n}]", values, depth + 1) for n, item in enumerate(node.value))
+    values[path] = (_yaml_scalar(node), line)
     return True
 
 

@@ -11,6 +11,7 @@ from dataclasses import replace
 from typing import cast
 
 from simkit.code_requests import CodeRequest, code_refusal
+from simkit.facade import pack_module
 from simkit.run_spec import FilePath, LoadOptions, RunSpec
 
 
@@ -25,13 +26,23 @@ def permit_code(spec: RunSpec, allow_code: bool = False, plugin_paths: Sequence[
     Raises:
         LoadError: SK-SCEN-008 the file asks for other code.
     """
+    if spec.launch:
+        return _launched_run(spec, allow_code, plugin_paths)
     if not spec.code_requests:
         return spec
     check_requests(spec.code_requests, allow_code, plugin_paths)
     options = dict(spec.options)
-    if folders := [one.path for one in spec.code_requests if one.is_folder and one.path is not None]:
+    if folders := [request.path for request in spec.code_requests if request.is_folder and request.path is not None]:
         options["plugin_paths"] = (*spec.options.get("plugin_paths", ()), *folders)
     return replace(spec, options=cast(LoadOptions, options), code_requests=())
+
+
+def _launched_run(spec: RunSpec, allow_code: bool, plugin_paths: Sequence[FilePath]) -> RunSpec:
+    """Return a specification with what its launch file starts, if the user allows its code and that of its nodes."""
+    check_requests(spec.code_requests, allow_code, plugin_paths)
+    launched: RunSpec = pack_module("simkit.launch").launched_run(replace(spec, code_requests=()))
+    requests = (*(each for each in spec.code_requests if each.is_folder), *launched.code_requests)
+    return permit_code(replace(launched, code_requests=requests), allow_code, plugin_paths)
 
 
 def check_requests(
@@ -53,19 +64,19 @@ def add_options(spec: RunSpec, options: LoadOptions, allow_code: bool = False) -
     Raises:
         LoadError: SK-SCEN-008 the file asks for code that the user does not allow.
     """
-    given = without_permissions(spec, options)
-    found = permit_code(spec, allow_code, options.get("plugin_paths", ()))
-    merged = {**found.options, **given}
-    if "plugin_paths" in given:
-        merged["plugin_paths"] = (*given["plugin_paths"], *found.options.get("plugin_paths", ()))
-    return replace(found, options=cast(LoadOptions, merged))
+    added = without_permissions(spec, options)
+    permitted = permit_code(spec, allow_code, options.get("plugin_paths", ()))
+    merged = {**permitted.options, **added}
+    if "plugin_paths" in added:
+        merged["plugin_paths"] = (*added["plugin_paths"], *permitted.options.get("plugin_paths", ()))
+    return replace(permitted, options=cast(LoadOptions, merged))
 
 
 def without_permissions(spec: RunSpec, options: LoadOptions) -> LoadOptions:
     """Return load options without the plugin folders that only allow requests of a file."""
     folders = options.get("plugin_paths", ())
-    added = [one for one in folders if not any(request.is_within([one]) for request in spec.code_requests)]
+    added = [folder for folder in folders if not any(request.is_within([folder]) for request in spec.code_requests)]
     if len(added) == len(folders):
         return options
-    found = {name: value for name, value in options.items() if name != "plugin_paths"}
-    return cast(LoadOptions, {**found, "plugin_paths": tuple(added)} if added else found)
+    others = {name: value for name, value in options.items() if name != "plugin_paths"}
+    return cast(LoadOptions, {**others, "plugin_paths": tuple(added)} if added else others)

@@ -108,9 +108,9 @@ class ReadableFiles:
 
     def refused(self, spec: RunSpec) -> Iterator[tuple[tuple[object, ...], Refusal]]:
         """Yield the keys and the refusal of each file of a specification that its description may not name."""
-        for keys, found in self._refusals(spec):
-            if found is not None:
-                yield keys, found
+        for keys, refusal in self._refusals(spec):
+            if refusal is not None:
+                yield keys, refusal
 
     def check(self, spec: RunSpec) -> None:
         """Raise an error if a specification names a file that its description may not name.
@@ -118,16 +118,16 @@ class ReadableFiles:
         Raises:
             InputError: SK-URI-003, with a line for each file.
         """
-        lines = [f"{OUTSIDE} {label(keys)}: {text}\n    help: {hint}" for keys, (text, hint) in self.refused(spec)]
+        lines = [f"{label(keys)}: {text}\n    help: {hint}" for keys, (text, hint) in self.refused(spec)]
         if lines:
-            raise InputError("\n".join(lines), OUTSIDE)
+            raise InputError(OUTSIDE, f"\n{OUTSIDE} ".join(lines))
 
     # ------------------------------------------------------------------ parts of a specification
 
     def _refusals(self, spec: RunSpec) -> Iterator[tuple[tuple[object, ...], Refusal | None]]:
         yield ("world",), self.source_refusal(spec.world, spec.folder)
         for name in spec.files():
-            if name.keys[0] != "plugin_paths":  # their code needs a permission of its own
+            if name.keys[0] != "plugin_paths" and name.role != "program":  # code needs a permission of its own
                 yield name.keys, self._refusal_of(name, spec.folder)
 
     def _refusal_of(self, name: FileName, folder: Path) -> Refusal | None:

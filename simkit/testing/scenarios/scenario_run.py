@@ -9,8 +9,11 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Literal
 
 from simkit import progress
+from simkit.diagnostics import name_hint
 from simkit.errors import InputError
 from simkit.recording.command_script import Commands, commands_of, read_script, steady_velocity
+from simkit.run_files import FileName
+from simkit.run_nodes import label_of, latency_of, node_arguments
 from simkit.run_spec import RunSpec
 from simkit.testing.scenarios.code_permission import permit_code
 
@@ -21,10 +24,7 @@ if TYPE_CHECKING:
 
 
 _SLICE_SECONDS = 0.25  # simulated time between two checks of the wall clock [s]
-_PAUSED = (
-    "SK-SCEN-009 the world was paused at t = {time:g} s, and nothing in the scenario resumes it\n"
-    "    help: remove the call that pauses the world, or resume the world in the same step"
-)
+_RESUME = "remove the call that pauses the world, or resume the world in the same step"
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,52 @@ def open_scenario(scenario: RunSpec, *, allow_code: bool = False, **more: Any) -
     from simkit.build import load
 
     scenario = permit_code(scenario, allow_code, more.get("plugin_paths", ()))
-    return load(scenario.source, **{**scenario.load_arguments(), **more})
+    sim = load(scenario.source, **{**scenario.load_arguments(), **more})
+    try:
+        add_nodes(scenario, sim)
+    except BaseException:
+        sim.close()
+        raise
+    return sim
+
+
+def add_nodes(spec: RunSpec, sim: Simulation) -> None:
+    """Add the nodes of a run to the simulation of its world; they start with the next step.
+
+    Raises:
+        InputError: SK-CLI-018 an invalid latency, or one for a node that the run does not have; or a program does not
+            exist, or the pack that runs programs is not installed.
+    """
+    latency_by_node = _latencies(spec)
+    if spec.ros_parameters:
+        sim.set_ros_parameters(spec.ros_parameters)
+    for number, node in enumerate(spec.nodes):
+        arguments = node_arguments(node)
+        name = FileName(arguments.pop("program"), "program", ("nodes", number))
+        if "cwd" in arguments:
+            folder = FileName(arguments["cwd"], "folder", ("nodes", number))
+            arguments["cwd"] = folder.used_path(spec.folder) or folder.text
+        latency = latency_by_node.get(label_of(node), latency_by_node.get("", 0.0))
+        sim.add_node(
+            str(name.used_path(spec.folder) or name.text),
+            **{"latency": latency, **arguments},
+            discovery=spec.node_discovery,
+            limit=spec.node_limit,
+            restart=spec.node_restart,
+        )
+
+
+def _latencies(spec: RunSpec) -> dict[str, float | tuple[float, float]]:
+    """Return the latencies [s] of `node_latency` by node; the name is empty for all other nodes."""
+    labels = [label_of(node) for node in spec.nodes]
+    latencies: dict[str, float | tuple[float, float]] = {}
+    for text in spec.node_latency:
+        label, equals, time_text = text.rpartition("=")
+        if equals and label not in labels:
+            hint = name_hint(label, labels)
+            raise InputError("SK-CLI-018", f"node latency {text!r:.100}: the run has no node {label!r}", help=hint)
+        latencies[label] = latency_of(time_text)
+    return latencies
 
 
 def run_scenario(
@@ -90,6 +135,7 @@ def run_scenario(
             allowed, or SK-SCEN-009 the world was paused before the end.
         SimulationDiverged: The state became NaN or infinite.
         PluginError: A plugin raised an exception.
+        NodeError: A node raised an exception; the run went on to its end.
     """
     from simkit.testing.conditions import Watch
 
@@ -106,15 +152,16 @@ def run_scenario(
         end = sim.engine.steps + sim.engine.clock.ticks(scenario.longest)
         slice_ = max(1, sim.engine.clock.ticks(slice_seconds))
         reason = "timeout" if scenario.until else "duration"
-        while sim.engine.steps < end and not watch.ended:
+        while sim.engine.steps < end and not watch.ended and not sim.ended_by:
             commands.send_due()
             stop = min(sim.tick + slice_, sim.tick + end - sim.engine.steps)
             if commands.next_tick is not None:
                 stop = min(stop, max(commands.next_tick, sim.tick + 1))
             before = sim.engine.steps
             sim.control.pausing.advance(stop - sim.tick)
-            if sim.engine.steps == before and not watch.ended:
-                raise InputError(_PAUSED.format(time=sim.time), "SK-SCEN-009")
+            if sim.engine.steps == before and not watch.ended and not sim.ended_by:
+                text = f"the world was paused at t = {sim.time:g} s, and nothing in the scenario resumes it"
+                raise InputError("SK-SCEN-009", text, help=_RESUME)
             task.done = (sim.engine.steps - begun) * sim.timestep
             if on_slice is not None:
                 on_slice()
@@ -123,6 +170,7 @@ def run_scenario(
                 break
         if watch.ended:
             reason = "until"
+        sim.check_nodes()
         return ScenarioResult(reason, watch.results(reason))
 
 
@@ -139,10 +187,10 @@ def resolve_commands(spec: RunSpec, topics: Mapping[str, str]) -> RunSpec:
     if spec.velocity is None and spec.script is None:
         return spec
 
-    found = [] if spec.velocity is None else [steady_velocity(spec.velocity, topics)]
+    requested = [] if spec.velocity is None else [steady_velocity(spec.velocity, topics)]
     if spec.script is not None:
-        found += read_script(spec.script, topics)
-    commands = (*spec.commands, *(command.plain() for command in found))
+        requested += read_script(spec.script, None if spec.nodes else topics)
+    commands = (*spec.commands, *(command.plain() for command in requested))
     return replace(spec, commands=commands, velocity=None, script=None)
 
 
@@ -159,7 +207,9 @@ class ScenarioCommands:
 
     def __init__(self, scenario: RunSpec, sim: Simulation) -> None:
         topics = sim.communication.bus.topics()
-        self._commands = Commands(sim, commands_of(resolve_commands(scenario, topics).commands, topics))
+        self._commands = Commands(
+            sim, commands_of(resolve_commands(scenario, topics).commands, None if sim.nodes else topics)
+        )
         self._played: Playback | None = None
         if scenario.played_bag is not None:
             from simkit.recording.bags.playback import Playback

@@ -67,7 +67,7 @@ class Document:
                 if isinstance(key, bool):
                     hint = f"YAML reads an unquoted on, off, yes or no as true or false; {hint}"
                 self.error("SK-SCEN-002", f"{what} has no key {str(key)!r}", *keys, key, hint=hint)
-        return {key: one for key, one in value.items() if key in allowed}
+        return {key: item for key, item in value.items() if key in allowed}
 
     def text(self) -> str | None:
         try:
@@ -117,7 +117,7 @@ def _lines_by_path(node: Any, keys: tuple[object, ...]) -> Iterator[tuple[tuple[
 def is_scalar_text(value: object) -> bool:
     """Check whether `yaml_value_text` can convert a YAML value."""
     if isinstance(value, list):
-        return all(is_scalar_text(one) and not isinstance(one, list) for one in value)
+        return all(is_scalar_text(item) and not isinstance(item, list) for item in value)
     return isinstance(value, (str, int, float))
 
 
@@ -158,25 +158,40 @@ class ValueReader:
 
     def word(self, key: str, default: str, allowed: Sequence[str]) -> str:
         """Return a text that is one of several words."""
-        found = self.text(key, default)
-        if found not in allowed:
-            self._wrong(found, f"{', '.join(allowed[:-1])} or {allowed[-1]}", key)
+        word = self.text(key, default)
+        if word not in allowed:
+            self._wrong(word, f"{', '.join(allowed[:-1])} or {allowed[-1]}", key)
             return default
-        return found
+        return word
 
     def named(self, key: str) -> dict[str, str] | tuple[str, ...]:
         """Return the texts of a mapping, or of a list."""
         return self._strings(key) if isinstance(self._fields.get(key), dict) else self.texts(key)
 
+    def mapping(self, key: str) -> dict[str, Any]:
+        """Return a mapping."""
+        return self._mapping(key)
+
+    def entries(self, key: str) -> tuple[str | Mapping[str, Any], ...]:
+        """Return the texts and mappings of a list; one of them may stand alone."""
+        value = self._fields.get(key, ())
+        listed = [value] if isinstance(value, (str, dict)) else value
+        if isinstance(listed, (list, tuple)) and all(
+            item.strip() if isinstance(item, str) else isinstance(item, dict) for item in listed
+        ):
+            return tuple(listed)
+        self._wrong(value, "a list of strings and mappings", key)
+        return ()
+
     def _strings(self, key: str) -> dict[str, str]:
         """Return the values of a mapping as strings; report an error for values that cannot be converted."""
-        found = {}
+        texts = {}
         for name, value in self._mapping(key).items():
             if is_scalar_text(value):
-                found[name] = yaml_value_text(value)
+                texts[name] = yaml_value_text(value)
             else:
                 self._wrong(value, "a number, a string, true or false, or a list of these", key, name)
-        return found
+        return texts
 
     def flag(self, key: str, default: bool) -> bool:
         value = self._fields.get(key, default)
@@ -218,14 +233,14 @@ class ValueReader:
     def texts(self, key: str) -> tuple[str, ...]:
         value = self._fields.get(key, ())
         listed = [value] if isinstance(value, str) else value
-        if isinstance(listed, (list, tuple)) and all(isinstance(one, str) and one.strip() for one in listed):
+        if isinstance(listed, (list, tuple)) and all(isinstance(text, str) and text.strip() for text in listed):
             return tuple(listed)
         self._wrong(value, "a string or a list of strings", key)
         return ()
 
     def _mapping(self, key: str) -> dict[str, object]:
         value = self._fields.get(key, {})
-        if isinstance(value, dict) and all(isinstance(one, str) for one in value):
+        if isinstance(value, dict) and all(isinstance(name, str) for name in value):
             return value
         self._wrong(value, "a mapping with string keys", key)
         return {}

@@ -9,7 +9,6 @@ import mujoco
 import numpy as np
 import pytest
 import trimesh
-from mesh_makers import L_SHAPE, TETRAHEDRON, TETRAHEDRON_FACES
 
 from simkit.compiler.meshes import convex_decomposition as mesh_collision
 from simkit.compiler.meshes.convex_decomposition import convex_bodies
@@ -17,6 +16,7 @@ from simkit.compiler.meshes.convex_pieces import filled_ratio, mesh_volume
 from simkit.compiler.shape_geometry import polyline_triangles
 from simkit.pose import Pose
 from simkit.scene import Mesh, Polyline, Sphere
+from tests.loaders.meshes.mesh_makers import L_SHAPE, TETRAHEDRON, TETRAHEDRON_FACES
 
 THICK = 0.4
 NEEDS_COACD = pytest.mark.skipif(
@@ -197,9 +197,9 @@ def test_a_sliver_among_good_triangles_changes_nothing(make, compiled, tmp_path)
 
 @pytest.mark.parametrize("scale", [(-1.0, 1.0, 1.0), (-1.0, -2.0, 1.0), (-1.0, -1.0, -1.0), (0.5, 3.0, -2.0)])
 def test_a_mirrored_mesh_keeps_its_outside_and_its_volume(tmp_path, scale):
-    from simkit.compiler.meshes.mesh_part import join_parts
-    from simkit.compiler.meshes.mesh_reader import load_mesh
     from simkit.diagnostics import NOWHERE, Diagnostics
+    from simkit.loaders.meshes.mesh_part import join_parts
+    from simkit.loaders.meshes.mesh_reader import load_mesh
 
     trimesh.Trimesh(TETRAHEDRON, TETRAHEDRON_FACES, process=False).export(tmp_path / "t.stl")
     vertices, faces = join_parts(load_mesh(Mesh(tmp_path / "t.stl", "t.stl", scale), Diagnostics(), NOWHERE))

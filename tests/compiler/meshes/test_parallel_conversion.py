@@ -51,6 +51,7 @@ def test_the_processes_fill_the_cache_and_the_world_has_the_same_bits(
     assert all(np.array_equal(x, y) for other in compiled[1:] for x, y in zip(compiled[0], other, strict=True))
 
 
+@pytest.mark.slow
 def test_the_processes_write_meshes_and_collision_bodies(world: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with simkit.load(world) as sim:
         cache = world.parent / "new"

@@ -109,6 +109,7 @@ def test_no_spelling_at_all_of_a_private_file_is_opened_or_printed(tmp_path: Pat
 
 
 @pytest.mark.skipif(shutil.which("strace") is None, reason="needs strace")
+@pytest.mark.slow
 def test_no_library_opens_a_private_file_by_itself(tmp_path: Path) -> None:
     """MuJoCo and the decoders of images are written in C and C++; the hook of Python does not see what they open."""
     project = make_project(tmp_path)

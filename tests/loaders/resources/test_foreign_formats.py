@@ -58,7 +58,7 @@ def test_an_error_about_another_format_names_this_format(tmp_path: Path, content
     [
         ("<COLLADA/>", "a mesh (COLLADA); name it in the <uri> of a <mesh>"),
         ("<world name='w'/>", "a world without the <sdf> around it; put <sdf version='1.9'> around it"),
-        ("<launch/>", "a ROS launch file; load the world or robot that the launch file names"),
+        ("<launch/>", "a ROS launch file; run it with `simkit launch FILE`"),
         ("<robto/>", "did you mean 'robot'?"),
     ],
 )

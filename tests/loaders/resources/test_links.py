@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 
 import simkit
+from packs.fuel.tests.fuel_server import run, served
 from simkit.diagnostics import Diagnostics
 from simkit.loaders.resources.model_list import spawnable_models
 from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.writers.vendored_folder import vendor
-from tests.writers.fuel.fuel_server import run, served
 
 WORLD = '<sdf version="1.9"><world name="w">{}</world></sdf>'
 MODEL = '<sdf version="1.9"><model name="{}"><link name="l"/></model></sdf>'
@@ -256,6 +256,7 @@ def test_a_vendored_mjcf_file_has_no_file_of_another_folder_with_the_name_of_a_p
     assert "hidden" not in everything_in(tmp_path / "out")
 
 
+@pytest.mark.needs_packs
 def test_a_value_of_a_yaml_file_of_the_user_is_not_sent_to_a_server(
     write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -31,3 +31,19 @@ def test_a_uri_that_is_not_found_is_an_error_with_the_uri(uri: str, code: str) -
     with simkit.load("empty") as sim, pytest.raises(simkit.LoadError, match="nothing|modle") as caught:
         sim.spawn(uri)
     assert [problem.code for problem in caught.value.diagnostics if problem.severity == "error"] == [code]
+
+
+def test_a_scheme_with_a_typing_error_is_read_as_the_closest_one(tmp_path: Path) -> None:
+    (tmp_path / "box").mkdir()
+    (tmp_path / "box" / "model.sdf").write_text(BOX, encoding="utf-8")
+    for include in ("models://box", "modle://ground_plane"):
+        world = f"<sdf version='1.9'><world name='w'><include><uri>{include}</uri></include></world></sdf>"
+        with simkit.load(world, resource_paths=[tmp_path]) as sim:
+            assert [d.code for d in sim.diagnostics if d.severity == "warning"] == ["SK-URI-004"]
+            assert list(sim.models) == [include.partition("://")[2]]
+
+
+def test_a_mesh_with_an_unknown_scheme_is_left_out() -> None:
+    mesh = "<visual name='v'><geometry><mesh><uri>zip://box.dae</uri></mesh></geometry></visual>"
+    with simkit.load(BOX.replace('<link name="l"/>', f"<link name='l'>{mesh}</link>")) as sim:
+        assert [d.code for d in sim.diagnostics if d.severity == "warning"] == ["SK-URI-004"]

@@ -58,3 +58,19 @@ def test_bytes_after_a_zero_byte_are_ignored_with_a_warning():
     assert [c.attribute("name") for c in root.children] == ["a"]
     assert [(d.code, d.severity) for d in found] == [("SK-XML-004", "warning")]
     assert parse_text(b'<robot name="r">\0<link name="a"/></robot>', Diagnostics()) is None
+
+
+@pytest.mark.parametrize("text", ["Salt & pepper", "a&b", "<![CDATA[a & b]]> & c", "&amp; & &#38;"])
+def test_a_plain_ampersand_is_accepted_with_a_warning(text: str) -> None:
+    diagnostics = Diagnostics()
+    root = parse_text(f"<d>{text}</d>", diagnostics)
+    assert root is not None
+    assert "&" in root.value
+    assert "&amp;" not in root.value
+    assert [(d.severity, d.code) for d in diagnostics] == [("warning", "SK-XML-004")]
+
+
+def test_an_entity_that_is_not_declared_is_an_error() -> None:
+    diagnostics = Diagnostics()
+    assert parse_text("<d>&pepper;</d>", diagnostics) is None
+    assert [(d.severity, d.code) for d in diagnostics] == [("error", "SK-XML-001")]

@@ -24,7 +24,7 @@ def collision(shape: str, pose: str = "0 0 0 0 0 0", name: str = "c", density: s
 
 def mass_of(text: str):
     """Return the inertial of the first link, read with the mesh reader of `simkit.compiler`, and the diagnostics."""
-    from simkit.compiler.meshes.mesh_reader import load_mesh
+    from simkit.loaders.meshes.mesh_reader import load_mesh
 
     diagnostics = Diagnostics()
     scene = load_scene(text, resolver=Resolver(), diagnostics=diagnostics, mesh_reader=load_mesh)

@@ -441,3 +441,9 @@ def test_a_variable_of_every_ros_installation_has_a_value_on_a_machine_without_r
     path.write_text(path.read_text().replace("ROS_VERSION", "ROS_MODEL"))
     (error,) = with_code(simkit.check(path), "SK-XACRO-001")
     assert "ROS_MODEL is not set" in error.message
+
+
+def test_an_argument_that_only_a_substitution_uses_is_known() -> None:
+    text = "<robot name='r' xmlns:xacro='x'><link name='$(arg side)_arm'/></robot>"
+    found = simkit.describe(text, xacro_args={"side": "left"})["diagnostics"]
+    assert "SK-XACRO-004" not in [d["code"] for d in found]

@@ -13,7 +13,7 @@ from simkit import msgs
 from simkit.params import Params
 from simkit.plugins.classic.diff_drive import GazeboRosDiffDrive, read_options
 from simkit.plugins.drives.odometry import DeadReckoning, WheelOdometry, command_of, planar_covariance
-from simkit.plugins.drives.speed_limits import SpeedLimiter, SpeedLimiterArrays, SpeedLimitOptions, speed_limits
+from simkit.plugins.drives.speed_limits import SpeedLimiter, SpeedLimitOptions, limit_each, speed_limits
 
 WHEELS = {"left_joint": "l", "right_joint": "r"}
 
@@ -276,12 +276,11 @@ def test_limits_of_arrays_have_the_bits_of_single_limits() -> None:
         SpeedLimiter(acceleration=(-3.0, 2.0)),
         SpeedLimiter(),
     ]
-    arrays = SpeedLimiterArrays(limiters)
     last, before_last = np.zeros((20, 3)), np.zeros((20, 3))
     for k in range(300):
         if k % 60 == 0:
             target = random.uniform(-1.0, 1.0, (20, 3)) * (random.random((20, 3)) < 0.8)
-        speeds = arrays.limit(target, last, before_last, step)
+        speeds = np.stack(limit_each(limiters, target.T, last.T, before_last.T, step), axis=1)
         single = [
             [limiters[j].limit(*(float(v[i, j]) for v in (target, last, before_last)), step) for j in range(3)]
             for i in range(20)

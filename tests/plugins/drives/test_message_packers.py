@@ -9,8 +9,14 @@ import pytest
 
 from simkit import msgs
 from simkit.msgs.cdr_template import PACKERS
-from simkit.plugins.drives.odometry import BodyTwist, planar_covariance, planar_pose
-from simkit.plugins.drives.odometry_messages import odometry_message, planar_odometry, planar_transform, transforms
+from simkit.plugins.drives.odometry import planar_covariance, planar_pose
+from simkit.plugins.drives.odometry_messages import (
+    BodyTwist,
+    odometry_message,
+    planar_odometry,
+    planar_transform,
+    transforms,
+)
 from simkit.plugins.joint_states import joint_state_message
 from simkit.pose import Pose
 from simkit.runtime.communication.subscription import LazyMessage

@@ -185,6 +185,7 @@ def test_the_sensors_plugin_belongs_on_a_thermal_camera() -> None:
     assert [d.code for d in caught.value.diagnostics if d.severity == "error"] == ["SK-PLUGIN-003"]
 
 
+@pytest.mark.needs_packs
 def test_the_sensors_plugin_sets_range_and_resolution() -> None:
     content = "<min_temp>253.15</min_temp><max_temp>673.15</max_temp><resolution>3.0</resolution>"
     plugin = thermal(content, "gz::sim::systems::ThermalSensor", "gz-sim-thermal-sensor-system")

@@ -158,6 +158,7 @@ def test_an_invalid_pose_of_a_state_has_its_code_and_is_ignored_if_it_is_not_set
             assert result_of(sim, "/set_entity_state", {**request, "set_pose": False}) == OK
 
 
+@pytest.mark.needs_packs
 def test_a_robot_a_person_and_objects_have_their_published_categories() -> None:
     person = """<actor name="person"><pose>0 3 0 0 0 0</pose><skin><filename>walk.dae</filename></skin></actor>"""
     robot = f'<model name="robot"><pose>0 -5 1 0 0 0</pose>{BOX_LINK}{PLUGIN}</model>'

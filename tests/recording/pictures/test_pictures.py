@@ -7,11 +7,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 import simkit
 from simkit.errors import RenderError
+from simkit.pose import Pose
+from simkit.recording import run_picture
 from simkit.recording.pictures.camera import MARGIN, Camera, frame_points, line_of_sight
-from simkit.recording.pictures.overlay import Marks, draw_overlay, length_text, scale_length
+from simkit.recording.pictures.frames import Look, choose_camera
+from simkit.recording.pictures.overlay import Colours, Marks, draw_overlay, length_text, scale_length
 from simkit.recording.pictures.subject import find_subject
 from simkit.recording.run_picture import DrivenPath, save_picture
 from simkit.runtime.engine.snapshot import state_hash
@@ -58,6 +62,139 @@ def test_a_world_without_robots_is_framed_without_its_floor() -> None:
     with simkit.load(world(("floor", "0 0 0", "60 60 0.1", True), ("wall", "3 0 1", "0.1 4 2", True))) as sim:
         points = find_subject(sim, []).points
     np.testing.assert_allclose(np.ptp(points, axis=0), (0.1, 4, 2), atol=1e-9)
+
+
+GROUND = ("ground", "0 0 -0.05", "4 4 0.1", True)
+
+
+def test_a_model_far_away_from_all_others_does_not_decide_the_frame() -> None:
+    room = [GROUND, ("wall", "1 0 0.5", "0.1 1 1", True), ("robot", "0 0 0.5", "1 1 1", False)]
+    with simkit.load(world(*room)) as sim:
+        usual = find_subject(sim, [])
+    for stray in (("book", "0 0 343582", "0.2 0.2 0.2", False), ("sign", "-9e4 0 0", "1 1 1", True)):
+        with simkit.load(world(*room, stray)) as sim:
+            subject = find_subject(sim, [])
+        np.testing.assert_array_equal(subject.points, usual.points)
+        assert subject.left_out == (stray[0],)
+    assert usual.left_out == ()
+
+
+def test_a_model_that_fell_out_of_the_world_is_not_framed_and_neither_is_its_path() -> None:
+    with simkit.load(world(GROUND, ("robot", "0 0 0.5", "1 1 1", False), ("cone", "1 1 0.5", "1 1 1", False))) as sim:
+        usual = find_subject(sim, [])
+        sim.model("cone").set_pose(Pose((1.0, 1.0, -490.0)))
+        path = np.array(((1.0, 1.0, 0.5), (1.0, 1.0, -490.0)))
+        subject = find_subject(sim, [("cone", path), ("robot", np.zeros((1, 3)))])
+    assert subject.left_out == ("cone",)
+    assert len(subject.robots) == len(usual.robots) - 8
+    assert len(subject.traces) == 1 and subject.points[:, 2].min() >= -0.1
+
+
+def test_the_path_of_a_fallen_model_without_shapes_is_not_framed() -> None:
+    cone = """<model name="cone"><pose>0 0 -490 0 0 0</pose><link name="l"/></model>"""
+    text = world(GROUND, ("wall", "1 0 0.5", "0.1 1 1", True)).replace("<gravity>", cone + "<gravity>")
+    with simkit.load(text) as sim:
+        subject = find_subject(sim, [("cone", np.array(((0.0, 0.0, 0.5), (0.0, 0.0, -490.0))))])
+    assert subject.left_out == ("cone",) and not len(subject.traces)
+
+
+def test_the_path_of_a_model_without_shapes_does_not_hide_the_room() -> None:
+    with simkit.load(world(("wall", "3 0 1", "0.1 4 2", True))) as sim:
+        points = find_subject(sim, [("ghost", np.array(((0.0, 0.0, 0.0), (0.0, 0.0, -0.2))))]).points
+    np.testing.assert_allclose(np.ptp(points, axis=0), (3.05, 4, 2.2), atol=1e-9)
+
+
+def test_a_flying_robot_is_not_left_out() -> None:
+    models = [GROUND, ("post", "1 1 0.5", "0.1 0.1 1", True), ("wall", "1 0 0.5", "0.1 1 1", True)]
+    with simkit.load(world(*models, ("drone", "0 0 120", "0.5 0.5 0.1", False))) as sim:
+        subject = find_subject(sim, [])
+    assert subject.left_out == () and subject.robots[:, 2].min() > 119.0
+
+
+HOUSE = [
+    ("floor", "0 0 -0.05", "6 6 0.1", True),
+    ("north", "0 3 1", "6 0.1 2", True),
+    ("south", "0 -3 1", "6 0.1 2", True),
+    ("east", "3 0 1", "0.1 6 2", True),
+    ("west", "-3 0 1", "0.1 6 2", True),
+]
+ROOF = ("roof", "0 0 2.05", "6.4 6.4 0.1", True)
+
+
+def drawn_ceiling(*models: tuple[str, str, str, bool]) -> float:
+    """Return the height above which a picture of a world of boxes is opened [m]."""
+    with simkit.load(world(*models)) as sim:
+        try:
+            return choose_camera(sim, render_view, find_subject(sim, []), Look(quality="fast")).ceiling
+        except RenderError as error:
+            pytest.skip(f"{error}; apt install libegl1 libopengl0 libgl1-mesa-dri")
+
+
+def test_a_roof_over_the_robots_is_not_drawn_and_the_same_house_without_a_roof_is_drawn_whole() -> None:
+    robots = [("one", "-2 -2 0.2", "0.4 0.4 0.4", False), ("two", "2 2 0.2", "0.4 0.4 0.4", False)]
+    assert drawn_ceiling(*HOUSE, *robots, ROOF) == pytest.approx(0.45)
+    assert drawn_ceiling(*HOUSE, *robots) == math.inf
+
+
+def test_a_roof_over_a_room_without_robots_is_not_drawn() -> None:
+    shelves = [(f"shelf{n}", f"{n - 2} {n % 3 - 1} 0.2", "0.3 0.3 0.4", True) for n in range(5)]
+    assert drawn_ceiling(*HOUSE, *shelves, ROOF) == pytest.approx(1.0, abs=0.1)
+    assert drawn_ceiling(*HOUSE, *shelves) == math.inf
+
+
+def test_a_house_of_one_mesh_is_cut_in_a_view_from_above(tmp_path: Path) -> None:
+    hollow = trimesh.util.concatenate(
+        [
+            trimesh.creation.box(size, trimesh.transformations.translation_matrix([float(v) for v in place.split()]))
+            for _, place, text, _ in [*HOUSE[1:], ROOF]
+            for size in [[float(v) for v in text.split()]]
+        ]
+    )
+    hollow.export(tmp_path / "house.stl")
+    mesh = f"""<model name="house"><static>true</static><link name="l"><visual name="v"><geometry><mesh>
+      <uri>{tmp_path}/house.stl</uri></mesh></geometry></visual></link></model>"""
+    text = world(("one", "-2 -2 0.2", "0.4 0.4 0.4", False), ("two", "2 2 0.2", "0.4 0.4 0.4", False))
+    with simkit.load(text.replace("<gravity>", mesh + "<gravity>"), resource_paths=[tmp_path]) as sim:
+        try:
+            camera = choose_camera(sim, render_view, find_subject(sim, []), Look(quality="fast"))
+        except RenderError as error:
+            pytest.skip(f"{error}; apt install libegl1 libopengl0 libgl1-mesa-dri")
+    assert camera.ceiling == pytest.approx(0.45)
+    np.testing.assert_allclose(camera.eye[:2], camera.target[:2], atol=0.05)
+
+
+def test_the_title_of_a_picture_names_what_is_left_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    titles = []
+
+    def keep_title(*arguments: object) -> Colours:
+        marks = arguments[4]
+        assert isinstance(marks, Marks)
+        titles.append(marks.title)
+        return np.zeros((8, 8, 3), np.uint8)
+
+    monkeypatch.setattr(run_picture, "draw_frame", keep_title)
+    room = [("wall", "1 0 0.5", "0.1 1 1", True), ("robot", "0 0 0.5", "1 1 1", False)]
+    with simkit.load(world(GROUND, *room, ("book", "0 0 343582", "0.2 0.2 0.2", False))) as sim:
+        save_picture(sim, tmp_path / "out.png", lambda sim, width, height, **_: np.zeros((height, width, 3), np.uint8))
+    assert titles == ["w · t = 0.00 s · outside of the picture: book"]
+
+
+def test_a_link_whose_visual_meshes_are_missing_shows_its_collisions() -> None:
+    visual = "<visual name='v'><geometry><mesh><uri>file://missing.dae</uri></mesh></geometry></visual>"
+    text = world(("robot", "0 0 0.5", "1 1 1", False))
+    arm = f"""<link name="arm"><pose>0 0 1 0 0 0</pose>{visual}<collision name="c"><geometry><box>
+      <size>1 1 1</size></box></geometry></collision></link>"""
+    bare = arm.replace(visual, "").replace("arm", "bumper")
+    for link, is_drawn in ((arm, True), (bare, False)):
+        with simkit.load(text.replace("</model>", link + "</model>")) as sim:
+            try:
+                distances = np.full((60, 80), np.inf, np.float32)
+                render_view(
+                    sim, 80, 60, eye=np.array((0.0, -6.0, 1.5)), target=np.array((0.0, 0.0, 1.5)), distances=distances
+                )
+            except RenderError as error:
+                pytest.skip(f"{error}; apt install libegl1 libopengl0 libgl1-mesa-dri")
+            assert np.isfinite(distances[30, 40]) == is_drawn
 
 
 def test_a_scale_bar_has_a_round_length_that_fits() -> None:

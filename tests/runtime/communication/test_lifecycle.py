@@ -11,7 +11,7 @@ import pytest
 import simkit
 from simkit.errors import PluginError, ServiceError, SubscriberError
 from simkit.lifecycle import LifecycleNode
-from simkit.testing.bundles import keep, replay, write_bundle
+from simkit_verification.testing.bundles import keep, replay, write_bundle
 
 YARD = '<sdf version="1.9"><world name="yard"><model name="ball"><link name="l"/></model></world></sdf>'
 

@@ -307,3 +307,27 @@ def test_a_plugin_class_may_define_a_group_hook_which_a_derived_class_does_not_u
         sim.step(4)
     assert [p.count for p in plugins] == [4] * 5 + [8] * 5 + [4]
     assert Counter.runs == 4
+
+
+# ---------------------------------------------------------------------- an observer
+
+
+def test_an_observer_makes_each_call_of_a_plugin_and_changes_no_bit():
+    """A group of drives is called one by one; a callback that was opened before the observer came is observed, too."""
+    calls = []
+
+    def observe(plugin, hook, call):
+        calls.append((plugin.scoped, hook))
+        return call()
+
+    observed, plain = run(world(), change=lambda sim: sim.engine.faults.observe(observe)), run(world())
+    assert observed == plain
+    assert {(f"robot_{i}", "before_step") for i in range(COUNT)} <= set(calls)
+    with simkit.load(world()) as sim:
+        sim.engine.faults.observe(observe)
+        calls.clear()
+        command_robots(sim)
+        sim.step(1)
+        assert any("callback" in hook for _, hook in calls)
+        with pytest.raises(ValueError, match="observer already"):
+            sim.engine.faults.observe(observe)

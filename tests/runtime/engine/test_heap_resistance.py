@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import simkit
-from simkit.testing.bundles.bundle_staging import model_hash
+from simkit_verification.testing.bundles.bundle_staging import model_hash
 
 RADIUS = 0.03
 PLANE = "<plane><normal>0 0 1</normal><size>100 100</size></plane>"

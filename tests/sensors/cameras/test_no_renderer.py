@@ -213,6 +213,7 @@ plot w.sdf /world/w/model/m/link/l/sensor/c/image.width --duration 0.02 -o a.svg
 """
 
 
+@pytest.mark.needs_packs
 def test_every_command_that_asks_for_images_ends_before_the_run(tmp_path: Path) -> None:
     (tmp_path / "w.sdf").write_text(WORLD)
     done = run(

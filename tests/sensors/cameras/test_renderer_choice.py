@@ -17,7 +17,7 @@ from sensor_worlds import box, sensor, world
 import simkit
 from simkit.run_spec import RunSpec
 from simkit.sensors.cameras.renderer_choice import chosen_renderer
-from simkit.testing.run_record.run_recorder import run_record
+from simkit.testing.run_record.run_recorder import record_run
 
 ROOT = Path(__file__).resolve().parents[3]
 CAMERA = "<camera><image><width>32</width><height>24</height></image></camera>"
@@ -138,6 +138,8 @@ def test_a_command_that_requests_opengl_without_it_fails(words: str, tmp_path: P
     assert "Traceback" not in done.stderr and not (tmp_path / "g").exists()
 
 
+@pytest.mark.needs_packs
+@pytest.mark.slow
 def test_every_command_that_draws_works_without_opengl(tmp_path: Path) -> None:
     (tmp_path / "w.sdf").write_text(cameras())
     image = "/world/w/model/m/link/l/sensor/c0/image"
@@ -185,7 +187,7 @@ def test_an_unknown_name_lists_the_allowed_ones(tmp_path: Path) -> None:
 
 def test_a_record_names_the_renderer_that_was_used_and_its_scenario_the_requested_one(tmp_path: Path) -> None:
     (tmp_path / "w.sdf").write_text(cameras())
-    record = run_record(RunSpec("w.sdf", duration=0.05, folder=tmp_path, options={"renderer": "software"}))
+    record = record_run(RunSpec("w.sdf", duration=0.05, folder=tmp_path, options={"renderer": "software"}))
     assert record.simulation is not None
     record.simulation.close()
     assert record.fingerprint["renderer"].startswith("software (simkit, OpenCV ")
@@ -193,6 +195,7 @@ def test_a_record_names_the_renderer_that_was_used_and_its_scenario_the_requeste
 
 
 @NEEDS_GL
+@pytest.mark.slow
 def test_a_golden_run_in_software_passes_with_and_without_opengl(tmp_path: Path) -> None:
     (tmp_path / "w.sdf").write_text(cameras())
     (tmp_path / "s.yaml").write_text("world: w.sdf\nduration: 0.05\nrenderer: software\n")
@@ -203,6 +206,8 @@ def test_a_golden_run_in_software_passes_with_and_without_opengl(tmp_path: Path)
         assert found["passed"] and found["tier"] == "exact" and not found["machine"], done.stdout
 
 
+@pytest.mark.needs_packs
+@pytest.mark.slow
 def test_a_bundle_after_a_fallback_requests_software(tmp_path: Path) -> None:
     (tmp_path / "w.sdf").write_text(cameras())
     image = "/world/w/model/m/link/l/sensor/c0/image"

@@ -13,6 +13,8 @@ import simkit
 from simkit import msgs
 from simkit.pose import Pose
 
+pytestmark = pytest.mark.needs_packs
+
 WARM = """<plugin filename="gz-sim-thermal-system" name="gz::sim::systems::Thermal">
   <temperature>350</temperature></plugin>"""
 LAMP = """<light name="lamp" type="point"><pose>1 0 2 0 0 0</pose><diffuse>1 0.5 0 1</diffuse></light>"""

@@ -222,7 +222,7 @@ def test_the_engine_and_embree_agree_on_moving_meshes(own_folder: pathlib.Path) 
         sim.run(0.02)
         device = sim.sensor("m::l::s")
         by_embree = device.measure_now().ranges.copy()
-        device._fan._targets.needs_engine = True  # the engine alone casts all rays
+        device.fan.targets.needs_engine = True  # the engine alone casts all rays
         assert 0.2 < np.isfinite(by_embree).mean() < 1.0
         np.testing.assert_allclose(device.measure_now().ranges, by_embree, atol=1e-6)
 

@@ -77,7 +77,7 @@ def test_all_methods_of_casting_agree(shapes: dict[str, str], moving: bool, star
         for grid in (FEW, MANY):
             fan, other = cast(sim, fan_of(grid), start=start), fan_of(grid, use_embree=False)
             other.bind(sim.mj_model, sim.engine.names, 0, ())
-            other._targets.needs_engine = True  # the engine alone casts all rays
+            other.targets.needs_engine = True  # the engine alone casts all rays
             other.cast(sim.mj_model, sim.engine.physics.fresh(), np.array((0.1, 0.2, 0.1)), TURN, start)
             assert 0.2 < np.isfinite(fan.distances).mean() < 1.0
             np.testing.assert_allclose(fan.distances, other.distances, atol=AGREE)
@@ -218,9 +218,9 @@ def test_an_arm_is_seen_when_it_is_raised_into_the_fan() -> None:
         lidar = sim.sensor("robot::head::s")
         sim.run(0.02)
         assert lidar.latest.ranges[1] == math.inf
-        shapes = lidar._fan._targets.shapes_by_engine
-        looked_at = lidar._fan._targets.geoms[
-            shapes.reachable_movers(lidar._fan._carrier, lidar._fan.body, lidar._offset, 0, 0)
+        shapes = lidar.fan.targets.shapes_by_engine
+        looked_at = lidar.fan.targets.geoms[
+            shapes.reachable_movers(lidar.fan.carrier, lidar.fan.body, lidar._offset, 0, 0)
         ]
         assert len(looked_at) == 1  # the arm; neither the base nor the head itself
         sim.joint("robot::shoulder").set_position(math.pi / 2 - 1e-9)

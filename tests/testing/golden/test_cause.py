@@ -17,7 +17,7 @@ from simkit.testing.golden.cause import explain
 from simkit.testing.golden.compare.difference import Explanation
 from simkit.testing.golden.compare.runs import compare
 from simkit.testing.run_record.record import RunRecord
-from simkit.testing.run_record.run_recorder import run_record
+from simkit.testing.run_record.run_recorder import record_run
 
 WORLD = """<sdf version="1.12"><world name="w">
   <physics name="p" type="x"><max_step_size>0.002</max_step_size></physics>
@@ -59,7 +59,7 @@ def scenario(folder: Path, text: str, **more: Any) -> RunSpec:
 
 
 def recorded(what: RunSpec) -> RunRecord:
-    record = run_record(what)
+    record = record_run(what)
     record.simulation.close()
     record.simulation = None
     return record

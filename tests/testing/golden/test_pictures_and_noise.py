@@ -13,7 +13,7 @@ from simkit.run_spec import RunSpec, Tolerance
 from simkit.testing.golden.store import read_golden, write_golden
 from simkit.testing.run_record.message_recorder import message_recorder_for, pixels_of_image, points_of_cloud
 from simkit.testing.run_record.record import Stream
-from simkit.testing.run_record.run_recorder import run_record
+from simkit.testing.run_record.run_recorder import record_run
 
 
 def picture(number: int) -> object:
@@ -65,7 +65,7 @@ def test_statistics_replace_samples(tmp_path: Path) -> None:
         str(ball(tmp_path)), duration=3.0, topics=("*imu*",),
         tolerances=(Tolerance("*imu.linear_acceleration.x", statistics=True),),
     )  # fmt: skip
-    record = run_record(scenario)
+    record = record_run(scenario)
     record.simulation.close()
     (stream,) = record.streams.values()
     assert "linear_acceleration.x" not in stream.columns and "linear_acceleration.y" in stream.columns

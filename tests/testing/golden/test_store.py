@@ -22,13 +22,13 @@ from simkit.testing.golden.array_packing import Packer, PackingError, Unpacker
 from simkit.testing.golden.record_encoding import decode_scenario, encode_scenario
 from simkit.testing.golden.store import find_goldens, read_golden, read_history, write_golden
 from simkit.testing.run_record.record import RunRecord
-from simkit.testing.run_record.run_recorder import run_record
+from simkit.testing.run_record.run_recorder import record_run
 from simkit.testing.scenarios.code_permission import permit_code
 
 
 @pytest.fixture(scope="module")
 def record(tmp_path_factory: pytest.TempPathFactory) -> RunRecord:
-    found = run_record(RunSpec(str(ball(tmp_path_factory.mktemp("ball"))), duration=0.5))
+    found = record_run(RunSpec(str(ball(tmp_path_factory.mktemp("ball"))), duration=0.5))
     found.simulation.close()
     return found
 
@@ -59,7 +59,7 @@ def test_a_golden_run_is_read_as_it_was_written(tmp_path: Path, record: RunRecor
 
 
 def test_recording_twice_gives_the_same_bytes(tmp_path: Path, record: RunRecord) -> None:
-    again = run_record(record.scenario)
+    again = record_run(record.scenario)
     again.simulation.close()
     again.fingerprint = record.fingerprint
     for name, one in (("a", record), ("b", again)):

@@ -8,8 +8,16 @@ import pytest
 
 from simkit.msgs.field_units import unit_of
 from simkit.run_spec import RunSpec, Tolerance
-from simkit.testing.golden.compare.tolerances import allowed_text, default_tolerance, storage_step, tolerance_of
-from simkit.testing.golden.compare.units import item_name, period_of, quantity_text, time_text
+from simkit.testing.golden.compare.tolerances import (
+    allowed_text,
+    default_tolerance,
+    item_name,
+    period_of,
+    quantity_text,
+    storage_step,
+    time_text,
+    tolerance_of,
+)
 
 FIELDS = [
     ("sensor_msgs/msg/LaserScan", "ranges", "m", "rays"),

@@ -14,14 +14,14 @@ from simkit.errors import InputError
 from simkit.run_spec import RunSpec
 from simkit.runtime.engine.snapshot import state_hash
 from simkit.testing.run_record.record import RunRecord
-from simkit.testing.run_record.run_recorder import run_record
+from simkit.testing.run_record.run_recorder import record_run
 from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
 
 @pytest.fixture(scope="module")
 def record(tmp_path_factory: pytest.TempPathFactory) -> RunRecord:
     scenario = RunSpec(str(ball(tmp_path_factory.mktemp("ball"))), duration=1.0)
-    found = run_record(scenario)
+    found = record_run(scenario)
     found.simulation.close()
     return found
 
@@ -70,7 +70,7 @@ def test_every_tick_has_a_mark_and_some_ticks_have_a_state(record: RunRecord) ->
 def test_a_force_changes_the_inputs_from_its_tick_on(tmp_path: Path) -> None:
     def inputs(push: bool) -> np.ndarray:
         scenario = RunSpec(str(ball(tmp_path)), duration=0.1, plugins=(_Pusher(push),))
-        found = run_record(scenario)
+        found = record_run(scenario)
         found.simulation.close()
         return found.states.inputs
 
@@ -97,7 +97,7 @@ def test_the_order_of_models_in_a_file_has_no_effect_on_a_record(tmp_path: Path,
     wall = text[start:stop]
     text = text.replace(wall, "").replace('<model name="floor">', wall + '<model name="floor">')
     (tmp_path / "other.sdf").write_text(text)
-    other = run_record(RunSpec(str(tmp_path / "other.sdf"), duration=1.0))
+    other = record_run(RunSpec(str(tmp_path / "other.sdf"), duration=1.0))
     other.simulation.close()
     assert other.leaves == record.leaves
     assert other.states.named_digest == record.states.named_digest
@@ -111,7 +111,7 @@ def test_patterns_choose_topics(tmp_path: Path) -> None:
         (RunSpec(path, duration=0.1, topics=("*imu*",)), 1),
         (RunSpec(path, duration=0.1, skip=("*imu*", "/tf*")), 2),
     ):
-        found = run_record(scenario)
+        found = record_run(scenario)
         found.simulation.close()
         assert len(found.streams) == wanted, list(found.streams)
 
@@ -125,7 +125,7 @@ def test_the_record_of_a_failed_run_has_the_error(tmp_path: Path) -> None:
             if self.sim.tick == 20:
                 raise ValueError("the wheel fell off")
 
-    found = run_record(RunSpec(str(ball(tmp_path)), duration=0.1, plugins=(Faulty(),)))
+    found = record_run(RunSpec(str(ball(tmp_path)), duration=0.1, plugins=(Faulty(),)))
     found.simulation.close()
     assert "the wheel fell off" in found.end
     assert isinstance(found.error, simkit.PluginError)
@@ -134,4 +134,4 @@ def test_the_record_of_a_failed_run_has_the_error(tmp_path: Path) -> None:
 
 def test_a_missing_world_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(InputError):
-        run_record(RunSpec(str(tmp_path / "none.sdf")))
+        record_run(RunSpec(str(tmp_path / "none.sdf")))

@@ -12,7 +12,7 @@ from simkit.cli import app
 from simkit.run_spec import RunSpec
 from simkit.testing.golden.compare.runs import compare
 from simkit.testing.run_record.record import RunRecord
-from simkit.testing.run_record.run_recorder import run_record
+from simkit.testing.run_record.run_recorder import record_run
 
 ARM = """<mujoco><worldbody><body name="arm"><joint name="j" axis="0 1 0"/><geom name="g" type="box" size=".1 .1 .1"/>
 </body></worldbody><actuator><motor name="m" joint="j" gear="{gear}"/></actuator></mujoco>"""
@@ -33,7 +33,7 @@ f 2/1 3/1 4/1
 
 
 def taken(world: Path) -> RunRecord:
-    found = run_record(RunSpec(str(world), duration=0.01))
+    found = record_run(RunSpec(str(world), duration=0.01))
     found.simulation.close()
     return found
 

@@ -23,14 +23,14 @@ import typer
 import simkit
 from simkit.cli import app
 from simkit.code_requests import CODE_REFUSED
-from simkit.testing.certify import certify
 from simkit.testing.golden.check import check_golden
 from simkit.testing.golden.store import read_golden
 from simkit.testing.scenarios.code_permission import permit_code
-from simkit.testing.scenarios.exercise import read_exercise
-from simkit.testing.scenarios.grading import grade
 from simkit.testing.scenarios.scenario_file import read_scenario
 from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
+from simkit_verification.testing.certify import certify
+from simkit_verification.testing.grading.exercise import read_exercise
+from simkit_verification.testing.grading.exercise_grading import grade
 
 FINDS = Path(__file__).resolve().parents[4] / "shared" / "finds" / "scenario_runs_code"
 MARKER = "code_ran"
@@ -124,6 +124,9 @@ GOLDEN: dict[str, dict[str, Any]] = {
     "golden check of a golden run of a scenario in Python": {"file": "../code/evil.py"},
 }
 
+SLOW = {"certify", "grade without a hand-in", "grade with the exercise's own plugin", "sweep with a function"}
+"""Commands that other tests here cover in part, and that start several processes."""
+
 
 def command_line(folder: Path, name: str) -> tuple[str, ...]:
     """Return a command line that reads a description of a run with code."""
@@ -133,7 +136,10 @@ def command_line(folder: Path, name: str) -> tuple[str, ...]:
     return ("golden", "check", "g", "--no-causes")
 
 
-@pytest.mark.parametrize("name", [*COMMANDS, *GOLDEN])
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ()) for name in (*COMMANDS, *GOLDEN)],
+)
 def test_a_command_refuses_code_until_an_option_allows_it(stranger: Path, name: str) -> None:
     words = command_line(stranger, name)
     marker = stranger / "code" / MARKER
@@ -179,11 +185,12 @@ def test_every_command_with_a_scenario_has_the_option() -> None:
 
     def walk(command: Any, words: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], Any]]:
         command = getattr(command, "real", command)
-        inner = getattr(command, "commands", None)
-        if inner is None:
+        if not hasattr(command, "commands"):
             yield words, command
-        for name in inner or ():
-            yield from walk(inner[name], (*words, name))
+            return
+        context = typer.Context(command)
+        for name in command.list_commands(context):
+            yield from walk(command.get_command(context, name), (*words, name))
 
     seen = set()
     for words, command in walk(typer.main.get_command(app), ()):
@@ -250,6 +257,7 @@ PYTHON: dict[str, Callable[[bool], object]] = {
 
 
 @pytest.mark.parametrize("name", PYTHON)
+@pytest.mark.slow
 def test_a_function_refuses_code_until_an_argument_allows_it(stranger: Path, name: str) -> None:
     golden_of(stranger, "g", **GOLDEN["golden check of a golden run with a folder"])
     marker = stranger / "code" / MARKER
@@ -284,6 +292,7 @@ def test_a_request_survives_copies_and_processes(stranger: Path) -> None:
         assert request.load_arguments()["plugin_paths"] == (Path("code"),)
 
 
+@pytest.mark.slow
 def test_the_fixture_refuses_code_until_an_argument_allows_it(stranger: Path) -> None:
     (stranger / "test_it.py").write_text(
         "def test_refused(sensor_regression):\n    sensor_regression('s.yaml')\n"

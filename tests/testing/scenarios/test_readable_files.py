@@ -1,4 +1,4 @@
-"""Scenarios, sweeps, exercises and golden runs read from a file name files only in their own folders and the user's."""
+"""Scenarios, exercises and golden runs read from a file name files only in their own folders and the user's."""
 
 from __future__ import annotations
 
@@ -11,13 +11,11 @@ from typer.testing import CliRunner
 
 from simkit import LoadError, RunSpec, hidden_text
 from simkit.cli import app
-from simkit.errors import InputError
-from simkit.experiments.sweeps.sweep_file import read_sweep
 from simkit.testing.golden.check import check_golden
-from simkit.testing.scenarios.exercise import read_exercise
 from simkit.testing.scenarios.readable_files import ReadableFiles
 from simkit.testing.scenarios.scenario_file import read_scenario
 from simkit.testing.scenarios.scenario_run import open_scenario
+from simkit_verification.testing.grading.exercise import read_exercise
 
 BOX = """<sdf version="1.9"><model name="box"><static>true</static><link name="l"><collision name="c"><geometry><box>
 <size>1 1 1</size></box></geometry></collision></link></model></sdf>"""
@@ -150,35 +148,6 @@ def test_the_runs_of_an_exercise_spawn_no_model_from_elsewhere(stranger: Path) -
     assert read_exercise(file, [stranger.parent / "private"]).folders == (stranger.parent / "private",)
     assert simkit("grade", file)[0] == 2
     assert simkit("grade", file, "--resource-path", stranger.parent / "private")[0] == 0
-
-
-def test_a_sweep_reads_no_list_and_spawns_no_model_from_elsewhere(stranger: Path) -> None:
-    file, private = stranger / "s.yaml", stranger.parent / "private"
-    file.write_text("world: ball.sdf\nparameters: ../private/list.csv\n")
-    with pytest.raises(LoadError) as caught:
-        read_sweep(file)
-    assert refused(caught.value) == [("SK-URI-003", 2, "parameters")]
-    file.write_text(
-        f"world: ball.sdf\nduration: 0.1\nspawn: '{{m}}:0,0,0:other'\nparameters: {{m: [{private}/box.sdf]}}\n"
-        "metrics: {a: time}\n"
-    )
-    spec = read_sweep(file)
-    with pytest.raises(InputError, match=r"SK-URI-003 spawn\.0: .* is outside the folders of this file"):
-        spec.row_spec(spec.design.row(0))
-    code, said = simkit("sweep", file, "-o", stranger / "out", "--jobs", 1)
-    assert code == 2 and "SK-URI-003" in said
-    assert simkit("sweep", file, "-o", stranger / "out", "--jobs", 1, "--resource-path", private)[0] == 0
-
-
-def test_the_results_of_a_sweep_name_no_file_elsewhere(stranger: Path) -> None:
-    private = stranger.parent / "private"
-    (private / "s.yaml").write_text("world: ball.sdf\nduration: 0.1\nsecret: 1\n")
-    (stranger / "r" / "rows").mkdir(parents=True)
-    description = {"format": 1, "count": 1, "block": 1, "file": str(private / "s.yaml"), "fingerprint": ""}
-    (stranger / "r" / "sweep.json").write_text(json.dumps(description))
-    code, said = simkit("sweep", "replay", stranger / "r", 0)
-    assert code == 2 and "SK-URI-003" in said and "--file SWEEP.yaml" in said and "secret" not in said
-    assert "secret" in simkit("sweep", "replay", stranger / "r", 0, "--resource-path", private)[1]
 
 
 # ---------------------------------------------------------------------- golden runs

@@ -71,8 +71,8 @@ def test_all_keys_of_a_scenario_are_read(tmp_path):
 
 
 def test_package_paths_can_be_a_list_whose_folders_keep_their_place_in_golden_runs_and_certificates(tmp_path):
-    from simkit.testing.certify.certification import with_absolute_paths
     from simkit.testing.golden.record_encoding import decode_scenario, encode_scenario
+    from simkit_verification.testing.certify.certification import with_absolute_paths
 
     found = scenario(tmp_path, "world: ball.sdf\npackage_paths: [../ws, arm=robot]\n", folders=[tmp_path.parent])
     expected = [f"arm={tmp_path / 'robot'}", tmp_path / ".." / "ws"]

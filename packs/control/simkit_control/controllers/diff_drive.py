@@ -8,14 +8,13 @@ from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
-from simkit import msgs
+from simkit import Pose, msgs
+from simkit.extend import Cylinder, Sphere
 from simkit.float_sum import float_sum
 from simkit.linear_algebra import norm
-from simkit.plugins.drives.odometry import COMMAND_TYPES, BodyTwist, DeadReckoning, command_of
-from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, odometry_message, transforms
+from simkit.plugins.drives.odometry import COMMAND_TYPES, DeadReckoning, base_motion, command_of
+from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, BodyTwist, odometry_message, transforms
 from simkit.plugins.one_time_warnings import OneTimeWarnings
-from simkit.pose import Pose
-from simkit.scene import Cylinder, Sphere
 from simkit_control.plugins.ros2_control.controller import Controller
 from simkit_control.plugins.ros2_control.diff_drive_options import DriveOptions
 
@@ -56,7 +55,8 @@ class RollingMeanOdometry:
         if elapsed < _SHORTEST_PERIOD:
             return False
         self.reckoning.advance(left, right, separation)
-        self._speeds.append(((left + right) / 2 / elapsed, (right - left) / separation / elapsed))
+        ahead, _, turn = base_motion(left, right, separation)
+        self._speeds.append((ahead / elapsed, turn / elapsed))
         return True
 
     def follow(self, ahead: float, turn: float, elapsed: float) -> None:

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, ClassVar, Final
 import numpy as np
 
 from simkit import msgs
-from simkit.msgs.message_types import Message
+from simkit.msgs import Message
+from simkit.plugins.joints.joint_trajectory import SECOND
 from simkit_control.plugins.ros2_control.controller import Controller
 from simkit_control.plugins.ros2_control.joint_pids import JointPids
-from simkit_control.plugins.ros2_control.trajectory import SECOND
 
 if TYPE_CHECKING:
-    from simkit.runtime.communication.action_server import GoalHandle
+    from simkit.extend import GoalHandle
 
 COMMAND: Final = "control_msgs/action/GripperCommand"
 PARALLEL: Final = "control_msgs/action/ParallelGripperCommand"

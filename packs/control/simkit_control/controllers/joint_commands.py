@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, ClassVar, Final
 
 import numpy as np
 
-from simkit import msgs
-from simkit.params import Params
+from simkit import Params, msgs
+from simkit.extend import Vector
 from simkit.plugins.one_time_warnings import are_usable
 from simkit.plugins.ros_parameter_block import read_names
-from simkit.pose import Vector
 from simkit_control.plugins.ros2_control.controller import Controller
 from simkit_control.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION, VELOCITY
 from simkit_control.plugins.ros2_control.joint_pids import JointPids
+from simkit_control.plugins.ros2_control.stiff_loops import StiffLoops
 
 if TYPE_CHECKING:
     from simkit.msgs import JointControllerState
@@ -178,13 +178,16 @@ class _LoopController(Controller):
                 message = f"No p gain specified for joint {joint!r}, so it would not move"
                 self.params.error("SK-PARAM-001", message, "pid: {p: 100.0, i: 0.0, d: 10.0}")
         self._pids = JointPids(gains, joints)
+        self._stiff_loops: StiffLoops | None = None
+        if self.output == EFFORT and self.measured == POSITION:
+            self._stiff_loops = StiffLoops(self, joints, self._pids)
         self._target = np.full(len(joints), np.nan)
         self._last: Vector | None = None
         self._publisher = None
         hardware = self.hardware.joints
-        found = [hardware[joint] for joint in joints if joint in hardware]
-        self._position_limits = np.array([(j.lower, j.upper) for j in found]).reshape(-1, 2).T
-        self._continuous = np.array([j.is_continuous for j in found], bool)
+        hardware_joints = [hardware[joint] for joint in joints if joint in hardware]
+        self._position_limits = np.array([(j.lower, j.upper) for j in hardware_joints]).reshape(-1, 2).T
+        self._continuous = np.array([j.is_continuous for j in hardware_joints], bool)
 
     def command_interfaces(self) -> Sequence[str]:
         return [f"{joint}/{self.output}" for joint in self._joints]
@@ -205,8 +208,10 @@ class _LoopController(Controller):
         if len(values) == len(self._joints) and are_usable(*values.tolist()):
             self._target = values
             return
-        found = f"a command of {len(values)} numbers" if len(values) != len(self._joints) else f"{values.tolist()}"
-        message = f"controller {self.name!r}: found {found}; expected {len(self._joints)} finite numbers"
+        description = (
+            f"a command of {len(values)} numbers" if len(values) != len(self._joints) else f"{values.tolist()}"
+        )
+        message = f"controller {self.name!r}: found {description}; expected {len(self._joints)} finite numbers"
         self.sim.engine.reports.warning("SK-CONTROL-016", f"{message}; the command is ignored", self.params.where)
 
     def update(self, now_ns: int, period: float) -> None:
@@ -220,8 +225,10 @@ class _LoopController(Controller):
             error = target - velocity
         rate = (error - self._last) / period if self._last is not None and period > 0.0 else np.zeros_like(error)
         self._last = error
+        if self._stiff_loops:  # the damping that the engine computes has no difference quotient
+            rate = np.where(self._stiff_loops.kd > 0.0, -velocity, rate)
         command = self._pids.update(error, rate, period)
-        self.commands.values = command
+        self.commands.values = self._stiff_loops.effort(command, position, velocity) if self._stiff_loops else command
         if self._publisher is not None and self._publisher.wanted:
             process = position if self.measured == POSITION else velocity
             self._publisher.publish(self._state_message(now_ns, period, target, process, velocity, error, command))

@@ -13,8 +13,8 @@ from simkit_control.plugins.ros2_control.controller import Controller
 from simkit_control.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION, VELOCITY
 
 if TYPE_CHECKING:
+    from simkit.extend import Vector
     from simkit.msgs import DynamicJointState
-    from simkit.pose import Vector
 
 JOINT_STATE: Final = "sensor_msgs/msg/JointState"
 DYNAMIC: Final = "control_msgs/msg/DynamicJointState"
@@ -87,8 +87,8 @@ class JointStateBroadcaster(Controller):
     def _dynamic_message(self, now_ns: int, values: Vector) -> DynamicJointState:
         interface_value = msgs.type_of("control_msgs/msg/InterfaceValue")
         values_by_owner = [
-            interface_value([interface for _, interface in found], np.array([values[k] for k, _ in found]))
-            for found in self._by_owner.values()
+            interface_value([interface for _, interface in interfaces], np.array([values[k] for k, _ in interfaces]))
+            for interfaces in self._by_owner.values()
         ]
         dynamic: type[DynamicJointState] = msgs.type_of(DYNAMIC)
         return dynamic(msgs.header(now_ns, self._frame), list(self._by_owner), values_by_owner)

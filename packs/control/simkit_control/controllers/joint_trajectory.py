@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, ClassVar, Final
 import numpy as np
 
 from simkit import msgs
-from simkit.pose import Vector
+from simkit.extend import Vector
+from simkit.plugins.joints.joint_trajectory import SECOND
 from simkit_control.plugins.ros2_control.controller import Controller
 from simkit_control.plugins.ros2_control.hardware_interfaces import POSITION
 from simkit_control.plugins.ros2_control.joint_group import TRAJECTORY, JointGroup, TrajectoryMessages
 from simkit_control.plugins.ros2_control.joint_pids import JointPids
+from simkit_control.plugins.ros2_control.stiff_loops import StiffLoops
 from simkit_control.plugins.ros2_control.trajectory import (
-    SECOND,
     Setpoint,
     Spline,
     TrajectoryPoint,
@@ -27,8 +28,8 @@ from simkit_control.plugins.ros2_control.trajectory_goals import TrajectoryRules
 from simkit_control.plugins.ros2_control.trajectory_options import LiveTolerances, StopRule, read_pids, read_timeout
 
 if TYPE_CHECKING:
+    from simkit.extend import GoalHandle
     from simkit.msgs import JointTrajectory, QueryTrajectoryState_Request, SpeedScalingFactor
-    from simkit.runtime.communication.action_server import GoalHandle
     from simkit.runtime.communication.publisher import Publisher
 
 FOLLOW: Final = "control_msgs/action/FollowJointTrajectory"
@@ -86,6 +87,9 @@ class JointTrajectoryController(Controller):
         self._timeout = read_timeout(params, self._constraints.tolerances().goal_time)
         self._stop_rule = StopRule(params, joints)
         self._pids = self._read_gains()
+        self._stiff_loops: StiffLoops | None = None
+        if self._pids is not None and self._group.has_effort:
+            self._stiff_loops = StiffLoops(self, self._group.commanded_joints, self._pids)
         self._period_ns = 0
         scaling = params.block("speed_scaling")
         self._scaling = scaling.number("initial_scaling_factor", 1.0, minimum=0.0, maximum=_FASTEST)
@@ -317,6 +321,9 @@ class JointTrajectoryController(Controller):
         self._is_first = False
         if not violates_path and not is_late:
             values = self._group.command(command, errors, period, self._pids)
+            if self._stiff_loops:
+                position, velocity = state[:2, self._group.commanded_indices]
+                values = self._stiff_loops.effort(values, position, velocity)
             self.commands.values = np.append(values, self._scaling) if self._scaling_command else values
             self._command = command
         if goal is not None and (now >= self._next_feedback):
@@ -396,5 +403,5 @@ class JointTrajectoryController(Controller):
         if since > self._spline.end and not self._is_holding:
             return {"success": False, "message": "Requested sample time precedes the current trajectory end time."}
         position, velocity, acceleration = self._spline.at(since).motion
-        found = {"position": position, "velocity": velocity, "acceleration": acceleration}
-        return {"success": True, "name": list(self._group.joints), **found}
+        reply = {"position": position, "velocity": velocity, "acceleration": acceleration}
+        return {"success": True, "name": list(self._group.joints), **reply}

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from simkit import Params
+from simkit.extend import Cylinder, Sphere
 from simkit.float_sum import float_sum
-from simkit.params import Params
 from simkit.plugins.drives.odometry import Motion
-from simkit.scene import Cylinder, Sphere
 from simkit_control.plugins.ros2_control.reference_drive import ReferenceDrive, read_size
 
 _PLACES = ("front_left", "front_right", "rear_right", "rear_left")
@@ -76,11 +76,11 @@ class MecanumDrive(ReferenceDrive):
 
         With `use_realigned_roller_joints` the radius is that of the rollers.
         """
-        found = [joint for name in self._joints if (joint := self.hardware.joints.get(name)) is not None]
-        if len(found) < len(_PLACES):
+        wheels = [joint for name in self._joints if (joint := self.hardware.joints.get(name)) is not None]
+        if len(wheels) < len(_PLACES):
             return 1.0, 1.0  # the missing interfaces are reported as errors
         radii, arms = [], []
-        for joint in found:
+        for joint in wheels:
             scene = joint.handle.scene
             place = (self.sim.link(scene.parent_link).scene.pose_world.inverse() @ scene.pose_world).position
             arms.append(abs(float(place[0])) + abs(float(place[1])))

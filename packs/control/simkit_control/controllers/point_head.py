@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING, ClassVar, Final
 
 import numpy as np
 
-from simkit import msgs
+from simkit import Pose, msgs
 from simkit.errors import InputError
+from simkit.extend import Vector
 from simkit.linear_algebra import norm
 from simkit.msgs.goal_status import GoalStatus
+from simkit.plugins.joints.joint_trajectory import SECOND
 from simkit.plugins.ros_parameter_block import read_names
-from simkit.pose import Pose, Vector
 from simkit_control.plugins.ros2_control.controller import Controller
 from simkit_control.plugins.ros2_control.head_pointing import HeadJoints, frame_link, frame_pose, is_moved_by_joint
-from simkit_control.plugins.ros2_control.trajectory import SECOND
 
 if TYPE_CHECKING:
+    from simkit.extend import GoalHandle
     from simkit.msgs import PointHead_Goal, PointStamped
-    from simkit.runtime.communication.action_server import GoalHandle
 
 POINT_HEAD: Final = "control_msgs/action/PointHead"
 _FEEDBACK_NS: Final = SECOND // 20
@@ -137,13 +137,13 @@ class PointHeadAction(Controller):
     def _odometry_frames(self) -> dict[str, Pose]:
         """Return the world poses of odometry frames, such as `odom`, computed from the odometry of the base."""
         manager = getattr(self.plugin, "manager", None)
-        found: dict[str, Pose] = {}
+        poses: dict[str, Pose] = {}
         for loaded in getattr(manager, "controllers", {}).values():
             frames = getattr(loaded.controller, "odometry_frame", None)
             if frames is not None:
                 odom, base, pose = frames
-                found[odom] = frame_pose(self.sim, self.plugin.scoped, base) @ pose.inverse()
-        return found
+                poses[odom] = frame_pose(self.sim, self.plugin.scoped, base) @ pose.inverse()
+        return poses
 
     def _head_joints(self, pointing: tuple[str, Vector]) -> HeadJoints:
         """Return the current axes, angles and limits of the neck's joints, with the pointing frame."""

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from simkit.params import Params
+from simkit import Params
 from simkit.plugins.drives.odometry import COMMAND_TYPES
 from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, transforms
 from simkit.plugins.ros_parameter_block import read_numbers
@@ -20,7 +20,9 @@ from simkit_control.plugins.ros2_control.diff_drive_options import RateLimits
 from simkit_control.plugins.ros2_control.robot_controller import RobotController
 
 if TYPE_CHECKING:
-    from simkit.runtime.communication.action_server import GoalHandle
+    from simkit.extend import GoalHandle
+    from simkit.msgs import Twist, TwistStamped
+    from simkit_control.plugins.ros2_control.diff_drive_options import DriveOptions
 
 
 class FollowJointTrajectory(RobotController, PositionJointTrajectoryController):
@@ -230,7 +232,7 @@ class DiffDriveBase(RobotController, DiffDriveController):
         super().configure()
         self._options.linear, self._options.angular = limits
 
-    def _open_topics(self, options: Any) -> None:
+    def _open_topics(self, options: DriveOptions) -> None:
         for topic in ("~/command", "cmd_vel"):
             self.listen(topic, COMMAND_TYPES, self._on_command)
         self._odom = self.advertise("odom", ODOMETRY)
@@ -239,7 +241,7 @@ class DiffDriveBase(RobotController, DiffDriveController):
             self._tf.present = lambda: transforms(self.sim.time_ns, self.odometry_frame)
         self._limited = None
 
-    def _on_command(self, message: Any) -> None:
+    def _on_command(self, message: Twist | TwistStamped) -> None:
         if not self._accepts_commands:
             self.manager.request_start(self.name)
         super()._on_command(message)

@@ -7,8 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from simkit import msgs
-from simkit.params import Params
+from simkit import Params, msgs
 from simkit.plugins.ros_parameter_block import read_numbers
 from simkit_control.plugins.ros2_control.controller import Controller
 from simkit_control.plugins.ros2_control.hardware_sensors import SENSOR_INTERFACES

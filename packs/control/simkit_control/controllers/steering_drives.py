@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import ClassVar
 
+from simkit import Params
 from simkit.float_sum import float_sum
-from simkit.params import Params
 from simkit.plugins.drives.odometry import Motion
 from simkit_control.plugins.ros2_control.reference_drive import ReferenceDrive, read_joints, read_size
 
@@ -91,11 +91,11 @@ class SteeringDrive(ReferenceDrive):
         if len(angles) == 1:
             return angles[0]
         base, half = self._wheelbase, self._steering_track / 2
-        found = []
+        wheel_angles = []
         for sign, angle in zip((-1.0, 1.0), angles, strict=True):  # right, left
             across, along = math.sin(angle), math.cos(angle)
-            found.append(math.atan2(base * across, base * along + sign * half * across))
-        return float_sum(found) / 2
+            wheel_angles.append(math.atan2(base * across, base * along + sign * half * across))
+        return float_sum(wheel_angles) / 2
 
     def _traction_factors(self, steer: float) -> list[float]:
         """Return the ratio of the speed of each driven wheel to the speed of the middle of its axle."""

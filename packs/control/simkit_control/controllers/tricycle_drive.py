@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from simkit.params import Params
+from simkit import Params
 from simkit.plugins.drives.odometry import Motion
 from simkit_control.plugins.ros2_control.diff_drive_options import read_bound
 from simkit_control.plugins.ros2_control.reference_drive import ReferenceDrive, read_size

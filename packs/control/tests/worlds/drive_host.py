@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 import simkit
-from simkit.diagnostics import Diagnostics
-from simkit.params import Params
+from simkit import Params
+from simkit.extend import Diagnostics
 from simkit_control.controllers.diff_drive import DiffDriveController
 from simkit_control.plugins.ros2_control.hardware import Hardware
 from simkit_control.plugins.ros2_control.hardware_interfaces import InterfaceTable

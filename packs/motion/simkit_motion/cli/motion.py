@@ -12,17 +12,15 @@ from typing import TYPE_CHECKING, Annotated, cast
 import typer
 from typer import Argument, Option
 
-from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
-from simkit.cli.run_pictures import check_renderer
+from simkit.cli.run_options import NONE_GIVEN
 from simkit.cli.terminal import completion, options
-from simkit.cli.terminal.options import argument, option
-from simkit.cli.terminal.output import print_diagnostics, report_errors, stdout_console
-from simkit.diagnostics import Diagnostics
+from simkit.cli.terminal.output import print_diagnostics, stdout_console
 from simkit.errors import InputError
+from simkit.extend import Diagnostics, GivenOptions, argument, option, report_errors, with_run_options
 from simkit.run_fields import LoadArguments
 
 if TYPE_CHECKING:
-    from simkit.runtime import Model, Simulation
+    from simkit import Model, Simulation
     from simkit_motion.plugins.play_motion.motion import Motion
 
 motion = typer.Typer(help="List and play the named motions of a robot.", no_args_is_help=True)
@@ -49,22 +47,22 @@ def list_motions(
 ) -> None:
     """List motions: name, duration, points, joints and description."""
     if Path(file).suffix.lower() in (".yaml", ".yml"):
-        found = _read_motions([Path(file), *motions])
+        motion_list = _read_motions([Path(file), *motions])
     else:
         from simkit_motion.plugins.play_motion.motion_session import choose_player, motion_players
 
         with _open_world(file, None, motions, given.load_arguments(), verbose=False) as sim:
-            found = list(choose_player(motion_players(sim), model).motions.values())
+            motion_list = list(choose_player(motion_players(sim), model).motions.values())
     if json_:
-        shown = [{**m.as_message(), "duration": m.duration, "file": m.where.file} for m in found]
+        shown = [{**m.as_message(), "duration": m.duration, "file": m.where.file} for m in motion_list]
         stdout_console().file.write(json.dumps(shown, indent=2) + "\n")
         return
     rows = [
         (m.key, f"{m.duration:g} s", f"{len(m.times)} point{'s' * (len(m.times) > 1)}", _joint_ranges(m.joints))
-        for m in found
+        for m in motion_list
     ]
     widths = [max((len(row[k]) for row in rows), default=0) for k in range(4)]
-    for entry, row in zip(found, rows, strict=True):
+    for entry, row in zip(motion_list, rows, strict=True):
         columns = "  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True))
         stdout_console().print(f"{columns}  {entry.description}".rstrip())
 
@@ -106,6 +104,7 @@ def play(
     """Play motions: at a safe speed to the first point, then with the timing of the motion file."""
     from simkit.recording import run_picture as pictures
     from simkit.recording.bags import recorder, writer
+    from simkit.sensors.cameras.renderer_choice import check_available
     from simkit_motion.plugins.play_motion.motion_session import choose_player, motion_players, play_motions
 
     if picture is not None:
@@ -116,7 +115,7 @@ def play(
     with ExitStack() as stack:
         sim = stack.enter_context(_open_world(world, robot, motions, given.load_arguments(), verbose=verbose))
         if picture is not None:
-            check_renderer(sim)
+            check_available(sim)
         if record is not None:
             stack.enter_context(recorder.Recorder(sim, record, overwrite=force))
         for played in play_motions(sim, choose_player(motion_players(sim), model), names, skip_planning=skip_planning):
@@ -140,7 +139,7 @@ def _open_world(
     verbose: bool,
 ) -> Simulation:
     """Load the world with its robot, ready to play the motions of all files."""
-    from simkit.build import load
+    from simkit import load
     from simkit_motion.plugins.play_motion.motion_session import controlled_models, empty_world_with, motion_players
     from simkit_motion.plugins.play_motion.play_motion_plugin import PlayMotion
 
@@ -160,8 +159,8 @@ def _open_world(
         sim.close()
         if len(hosts) != 1 or spawned is not None:
             detail = f"found {len(hosts)}" if spawned is None else "add the robot to the world file instead of --robot"
-            message = f"SK-MOTION-010 --motions needs exactly one robot with a controller manager; {detail}"
-            raise InputError(message, "SK-MOTION-010")
+            message = f"--motions needs exactly one robot with a controller manager; {detail}"
+            raise InputError("SK-MOTION-010", message)
         player_plugin = PlayMotion(motions=[str(path.resolve()) for path in motions])
         sim = load(text, **cast(LoadArguments, {**arguments, "plugins": [(hosts[0], player_plugin)]}))
     print_diagnostics(sim.diagnostics, verbose=verbose)
@@ -174,12 +173,12 @@ def _read_motions(paths: Sequence[Path]) -> list[Motion]:
 
     _check_files(paths)
     problems = Diagnostics()
-    found: dict[str, Motion] = {}
+    by_key: dict[str, Motion] = {}
     for path in paths:
-        found.update(read_motions(path, problems).motions)
+        by_key.update(read_motions(path, problems).motions)
     problems.raise_if_errors()
     print_diagnostics(problems, verbose=False)
-    return list(found.values())
+    return list(by_key.values())
 
 
 def _check_files(paths: Sequence[Path]) -> None:
@@ -189,7 +188,7 @@ def _check_files(paths: Sequence[Path]) -> None:
     broken = Diagnostics()
     for path in paths:
         if not path.is_file():
-            raise InputError(f"SK-MOTION-001 motion file {path} does not exist", "SK-MOTION-001")
+            raise InputError("SK-MOTION-001", f"motion file {path} does not exist")
         read_motions(path, broken)
     broken.raise_if_errors()
 
@@ -200,8 +199,8 @@ def _spawn_robot(sim: Simulation, robot: str) -> Model:
 
     existing = [scoped for scoped in motion_players(sim) if scoped == Path(robot).stem]
     if existing:
-        message = f"SK-MOTION-010 the world already has a robot {existing[0]!r}; leave out --robot"
-        raise InputError(message, "SK-MOTION-010")
+        message = f"the world already has a robot {existing[0]!r}; leave out --robot"
+        raise InputError("SK-MOTION-010", message)
     return sim.spawn(robot)
 
 
@@ -226,8 +225,8 @@ def _joint_ranges(names: Sequence[str]) -> str:
 
 
 def _draw(sim: Simulation, path: Path) -> None:
+    from simkit import render_view
     from simkit.recording.run_picture import save_picture
-    from simkit.sensors.cameras.overview_image import render_view
 
     save_picture(sim, path, render_view)
     stdout_console().print(f"picture {path}")

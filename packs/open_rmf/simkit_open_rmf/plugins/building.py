@@ -4,13 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from simkit import msgs
-from simkit.params import Params
-from simkit.plugins.base import NEVER, Plugin
-from simkit.plugins.endpoints import listens, publishes
-from simkit.plugins.options import OptionsOf
-from simkit.plugins.publish_on_demand import publish_while_subscribed
-from simkit.scene import SceneModel
+from simkit import Params, Plugin, msgs
+from simkit.extend import NEVER, OptionsOf, SceneModel, listens, publish_while_subscribed, publishes
 from simkit_open_rmf.plugins.door_motion import OPEN, DoorMotion, DoorOptions, Leaf, read_leaves
 from simkit_open_rmf.plugins.lift_motion import (
     LIFT_STATE,
@@ -22,7 +17,7 @@ from simkit_open_rmf.plugins.lift_motion import (
 )
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
+    from simkit.extend import SpecBuilder
 
 DOOR_REQUEST: Final = "rmf_door_msgs/msg/DoorRequest"
 DOOR_STATE: Final = "rmf_door_msgs/msg/DoorState"
@@ -133,8 +128,8 @@ class RmfBuildingPlugin(Plugin):
 
     def _plugins_at(self, floor: Floor) -> list[RmfBuildingPlugin]:
         plugins = self.sim.engine.structure.all_plugins()
-        found = (p for p in plugins if isinstance(p, RmfBuildingPlugin) and p.door is not None)
-        return [plugin for plugin in found if plugin.door is not None and plugin.door.name in floor.doors]
+        door_plugins = (p for p in plugins if isinstance(p, RmfBuildingPlugin) and p.door is not None)
+        return [plugin for plugin in door_plugins if plugin.door is not None and plugin.door.name in floor.doors]
 
     def _doors_at(self, floor: Floor) -> list[DoorMotion]:
         return [plugin.door for plugin in self._plugins_at(floor) if plugin.door is not None]

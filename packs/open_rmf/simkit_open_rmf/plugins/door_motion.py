@@ -5,16 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
+from simkit.extend import JointAxis, Options, number
 from simkit.plugins.find_entities import find_axis_joint
-from simkit.plugins.joints.joint_axis import JointAxis
-from simkit.plugins.options import Options, number
 from simkit_open_rmf.plugins.motion_profile import GuidedJoint, read_limits
 
 if TYPE_CHECKING:
-    from simkit.compiler import ActuatorRef, SpecBuilder
-    from simkit.params import Params
-    from simkit.runtime import Simulation
-    from simkit.scene import SceneJoint, SceneModel
+    from simkit import Params, Simulation
+    from simkit.compiler import ActuatorRef
+    from simkit.extend import SceneJoint, SceneModel, SpecBuilder
 
 CLOSED: Final = 0
 MOVING: Final = 1

@@ -7,18 +7,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from simkit import msgs
-from simkit.params import LARGEST
-from simkit.plugins.find_entities import find_named_joint
-from simkit.plugins.joints.joint_axis import JointAxis
-from simkit.plugins.options import Options, number, text
+from simkit.extend import LARGEST, JointAxis, Options, find_named_joint, number, text
 from simkit_open_rmf.plugins.door_motion import CLOSED, MOVING, OPEN, DoorMotion
 from simkit_open_rmf.plugins.motion_profile import GuidedJoint, read_limits
 
 if TYPE_CHECKING:
-    from simkit.compiler import ActuatorRef, SpecBuilder
-    from simkit.params import Params
-    from simkit.runtime import Simulation
-    from simkit.scene import SceneModel
+    from simkit import Params, Simulation
+    from simkit.compiler import ActuatorRef
+    from simkit.extend import SceneModel, SpecBuilder
 
 LIFT_STATE: Final = "rmf_lift_msgs/msg/LiftState"
 _END_SESSION: Final = 0  # value of LiftRequest.request_type

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
+    from simkit import Params
     from simkit.compiler import ActuatorRef
-    from simkit.params import Params
-    from simkit.plugins.joints.joint_axis import JointAxis
+    from simkit.extend import JointAxis
 
 _LEAD: Final = 0.05
 """Largest distance of a reference before its joint [m or rad]."""
@@ -65,12 +65,12 @@ def speed_to_target(remaining: float, speed: float, limits: MotionLimits, step: 
         return speed - math.copysign(min(abs(speed), limits.nominal * step), speed)
     sign = math.copysign(1.0, remaining)
     remaining, speed = sign * remaining, sign * speed
-    found = min(remaining / step, limits.speed, limits.nominal * step + speed)
+    next_speed = min(remaining / step, limits.speed, limits.nominal * step + speed)
     if speed > 0.0:
         braking = min(speed * speed / (2.0 * remaining), limits.most)
         if limits.nominal <= braking:
-            found = speed - braking * step
-    return sign * found
+            next_speed = speed - braking * step
+    return sign * next_speed
 
 
 class GuidedJoint:

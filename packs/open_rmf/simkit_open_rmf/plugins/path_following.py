@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Final
 
+from simkit.pose import wrap_angle
+
 Point = tuple[float, float]
 
 _NEAR: Final = 1e-3  # distance at which the direction to a point has no meaning [m]
@@ -37,12 +39,7 @@ def turn_towards(heading: float, direction: Point) -> float:
     """
     if math.hypot(*direction) < _NEAR:
         return 0.0
-    return wrap(math.atan2(direction[1], direction[0]) - heading)
-
-
-def wrap(angle: float) -> float:
-    """Return the equal angle in (-π, π]."""
-    return math.remainder(angle, 2 * math.pi)
+    return wrap_angle(math.atan2(direction[1], direction[0]) - heading)
 
 
 def lookahead_point(start: Point, end: Point, place: Point, distance: float) -> Point:

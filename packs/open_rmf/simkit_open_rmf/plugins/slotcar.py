@@ -6,24 +6,33 @@ import math
 from functools import partial
 from typing import TYPE_CHECKING, Final, Literal
 
-from simkit import msgs
-from simkit.params import LARGEST, Params
-from simkit.plugins.base import NEVER
+from simkit import Params, Pose, msgs
+from simkit.extend import (
+    LARGEST,
+    NEVER,
+    Options,
+    OptionsOf,
+    boolean,
+    choice,
+    listens,
+    number,
+    publish_while_subscribed,
+    publishes,
+    text,
+    without_effect,
+)
 from simkit.plugins.drives.kinematic_motion import KinematicMotion, KinematicMover, KinematicPlugin, VelocityTarget
 from simkit.plugins.drives.odometry_messages import TRANSFORMS, transforms
-from simkit.plugins.endpoints import listens, publishes
-from simkit.plugins.options import Options, OptionsOf, boolean, choice, number, text, without_effect
-from simkit.plugins.publish_on_demand import count_instants, publish_while_subscribed
-from simkit.pose import Pose, quat_from_rpy
+from simkit.plugins.publish_on_demand import count_instants
+from simkit.pose import quat_from_rpy, wrap_angle
 from simkit_open_rmf.plugins.building import RmfBuildingPlugin
 from simkit_open_rmf.plugins.motion_profile import MotionLimits, drive_speed, read_limits
-from simkit_open_rmf.plugins.path_following import Displacement, Point, lookahead_point, turn_towards, wrap
+from simkit_open_rmf.plugins.path_following import Displacement, Point, lookahead_point, turn_towards
 from simkit_open_rmf.plugins.slotcar_battery import BatteryModel
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.runtime import Model
-    from simkit.scene import SceneModel
+    from simkit import Model
+    from simkit.extend import SceneModel, SpecBuilder
 
 STATE: Final = "rmf_fleet_msgs/msg/RobotState"
 PATH: Final = "rmf_fleet_msgs/msg/PathRequest"
@@ -226,14 +235,14 @@ class Slotcar(KinematicPlugin):
             if pauses:
                 self._halt = "paused"
                 if len(self._way) == 1:
-                    return Displacement(turn=wrap(there.yaw - heading))
+                    return Displacement(turn=wrap_angle(there.yaw - heading))
                 after = self._way[1]
                 ahead = self._direction(after, (after.x - place[0], after.y - place[1]))
                 return Displacement(turn=turn_towards(heading, ahead))
             self._way, self._path, self._begin = self._way[1:], self._path[1:], (there.x, there.y)
         if self._goal is None:
             return Displacement()
-        turn = wrap(self._goal.yaw - heading)
+        turn = wrap_angle(self._goal.yaw - heading)
         if abs(turn) < _ALIGNED and abs(self._turning) <= self._turn.most * self.period:
             self._goal = None
             return Displacement()

@@ -15,16 +15,15 @@ from typing import TYPE_CHECKING, ClassVar, Final
 
 import numpy as np
 
-from simkit.diagnostics import did_you_mean
+from simkit.extend import did_you_mean
 from simkit_control.controllers.joint_trajectory_kinds import PositionJointTrajectoryController
 from simkit_control.plugins.ros2_control.controller import Controller
 from simkit_control.plugins.ros2_control.gravity_efforts import GravityEfforts
 from simkit_control.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION, VELOCITY
 
 if TYPE_CHECKING:
+    from simkit.extend import GoalHandle, Vector
     from simkit.msgs import EndEffectorCommand, JointTrajectory
-    from simkit.pose import Vector
-    from simkit.runtime.communication.action_server import GoalHandle
 
 LIMB_JOINTS: Final = ("s0", "s1", "e0", "e1", "w0", "w1", "w2")
 """Names of an arm's joints without the side, from the shoulder to the wrist."""
@@ -306,10 +305,10 @@ class BaxterGripperController(BaxterController):
 def _numbers_of(text: str) -> dict[str, float] | None:
     """Return the finite numbers of a JSON object by name; None if the text is not such an object."""
     try:
-        found = {str(name): float(value) for name, value in json.loads(text or "{}").items()}
+        numbers = {str(name): float(value) for name, value in json.loads(text or "{}").items()}
     except (ValueError, TypeError, AttributeError, RecursionError):
         return None
-    return found if all(math.isfinite(value) for value in found.values()) else None
+    return numbers if all(math.isfinite(value) for value in numbers.values()) else None
 
 
 def finger_joint(side: str) -> str:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
-from simkit import msgs
-from simkit.plugins.base import Plugin
-from simkit.plugins.endpoints import listens, publishes
+from simkit import Plugin, msgs
+from simkit.extend import listens, publishes
 
 if TYPE_CHECKING:
-    from simkit.params import Params
-    from simkit.runtime import Model, Simulation
+    from simkit import Model, Params, Simulation
 
 _POSE: Final = "turtlesim/msg/Pose"
 _TWIST: Final = "geometry_msgs/msg/Twist"
@@ -31,7 +29,7 @@ class TurtleMimic(Plugin):
         self._command = self.advertise("output/cmd_vel", _TWIST)
         self.subscribe("input/pose", self._on_pose)
 
-    def _on_pose(self, message: Any) -> None:
+    def _on_pose(self, message: msgs.turtlesim__msg__Pose) -> None:
         if self._once.has_type(message, _POSE, "remapping"):
             speeds = {"x": message.linear_velocity}, {"z": message.angular_velocity}
             self._command.publish(msgs.make(_TWIST, linear=speeds[0], angular=speeds[1]))

@@ -6,23 +6,22 @@ import math
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-from simkit import msgs
+from simkit import Params, Plugin, Pose, msgs
+from simkit.extend import SharedByCopies, acts, listens, offers, publish_while_subscribed, publishes
 from simkit.linear_algebra import matmul
-from simkit.params import Params
-from simkit.plugins.base import WorldPlugin
-from simkit.plugins.endpoints import acts, listens, offers, publishes
-from simkit.plugins.not_deep_copied import SharedByCopies
-from simkit.plugins.publish_on_demand import publish_while_subscribed
-from simkit.pose import Pose
+from simkit.pose import wrap_angle
 
 if TYPE_CHECKING:
-    from simkit.runtime import Simulation
-    from simkit.runtime.communication.action_server import GoalHandle
+    from simkit import Model, Simulation
+    from simkit.extend import GoalHandle
+    from simkit.runtime.communication.publisher import Publisher
+
+Argument = TypeVar("Argument")
 
 _PERIOD: Final = 0.016  # [s] between two updates
 _COMMAND_TIME: Final = 1.0  # [s] for which a command stays active
@@ -75,22 +74,45 @@ class Turtle:
     is_placed: bool = False
 
 
+class _Endpoint(Protocol):
+    """Open topic, service or action."""
+
+    def close(self) -> None: ...
+
+
+@dataclass(eq=False)
+class _TurtleEndpoints:
+    """Open topics, services and action of a turtle."""
+
+    pose: Publisher
+    colour: Publisher
+    others: tuple[_Endpoint, ...]
+
+    def close(self) -> None:
+        """Close all of them."""
+        for endpoint in (self.pose, self.colour, *self.others):
+            endpoint.close()
+
+
 @dataclass(eq=False)
 class _Endpoints(SharedByCopies):
     """Open topics, services and actions by the name of their turtle."""
 
-    by_turtle: dict[str, list[Any]] = field(default_factory=dict)
+    by_turtle: dict[str, _TurtleEndpoints] = field(default_factory=dict)
 
 
-class TurtleSim(WorldPlugin):
+class TurtleSim(Plugin):
     """Moves the turtles of `turtlesim_node`, which draw with pens on a square of 11.09 m.
 
     Names, types, defaults and behaviour are those of ROS 2's turtlesim: a command lasts 1 s, updates come every 16 ms,
     turtles stop at the walls. Each turtle is a model, a copy of `model://turtlesim_turtle`. `~/image` shows the window.
+    The lower left corner of the square is the origin of the world, or of the model that has the plugin. Such models
+    are several squares in one world; the names of their turtles' models begin with the name of the square's model.
     """
 
     filenames = ("libsimkit_turtlesim.so",)
     names = ("simkit::TurtleSim",)
+    parent_kind = ("world", "model")
     endpoints = (
         listens("<turtle>/cmd_vel", "geometry_msgs/msg/Twist"),
         publishes("<turtle>/pose", "turtlesim/msg/Pose"),
@@ -103,7 +125,11 @@ class TurtleSim(WorldPlugin):
     after_step_rate = 1.0 / _PERIOD
     reads_at_load = ("pose_world",)
 
-    def load(self, parent: Simulation, params: Params) -> None:
+    def load(self, parent: Simulation | Model, params: Params) -> None:
+        self._origin, self._prefix = Pose(), ""
+        if self.scoped:
+            self._origin = self.sim.model(self.scoped).pose
+            self._prefix = "" if self.scoped == _TYPES else f"{self.scoped}_"
         self._background = [
             self.declare(f"background_{channel}", value, minimum=0, maximum=255, description="background after /clear")
             for channel, value in _BACKGROUND.items()
@@ -116,7 +142,10 @@ class TurtleSim(WorldPlugin):
         self.offer("reset", "std_srvs/srv/Empty", lambda _: self._start_again())
         self.offer("spawn", f"{_TYPES}/srv/Spawn", self._on_spawn)
         self.offer("kill", f"{_TYPES}/srv/Kill", self._on_kill)
-        begin = self.sim.models["turtle1"].pose if "turtle1" in self.sim.models else Pose((_MIDDLE, _MIDDLE, 0.0))
+        model = self._model_name("turtle1")
+        begin = Pose((_MIDDLE, _MIDDLE, 0.0))
+        if model in self.sim.models:
+            begin = self._origin.inverse() @ self.sim.models[model].pose
         self._add("turtle1", float(begin.position[0]), float(begin.position[1]), float(begin.rpy[2]))
         self._image = self.advertise("~/image", "sensor_msgs/msg/Image")
         publish_while_subscribed(self, self._image, _IMAGE_RATE, "publish_image")
@@ -133,14 +162,14 @@ class TurtleSim(WorldPlugin):
         self._clear()
         self._add("turtle1", _MIDDLE, _MIDDLE, 0.0)
 
-    def _on_spawn(self, request: Any) -> dict[str, str]:
+    def _on_spawn(self, request: msgs.turtlesim__srv__Spawn_Request) -> dict[str, str]:
         name = request.name
         if not name:
             number = 1
-            while f"turtle{number}" in self._turtles or f"turtle{number}" in self.sim.models:
+            while self._is_used(f"turtle{number}"):
                 number += 1
             name = f"turtle{number}"
-        if name in self._turtles or name in self.sim.models:
+        if self._is_used(name):
             self.log.error("A turtle named [%s] already exists", name)
             return {"name": ""}
         if not all(map(math.isfinite, (request.x, request.y, request.theta))) or not _NAME.fullmatch(name):
@@ -150,13 +179,13 @@ class TurtleSim(WorldPlugin):
         self._add(name, request.x, request.y, request.theta)
         return {"name": name}
 
-    def _on_kill(self, request: Any) -> None:
+    def _on_kill(self, request: msgs.turtlesim__srv__Kill_Request) -> None:
         if request.name not in self._turtles:
             self.log.error("Tried to kill turtle [%s], which does not exist", request.name)
             return
         self._remove(request.name)
 
-    def _on_set_pen(self, turtle: Turtle, request: Any) -> None:
+    def _on_set_pen(self, turtle: Turtle, request: msgs.turtlesim__srv__SetPen_Request) -> None:
         turtle.is_pen_down = not request.off
         if turtle.is_pen_down:
             turtle.pen, turtle.width = (request.r, request.g, request.b), request.width
@@ -165,7 +194,7 @@ class TurtleSim(WorldPlugin):
         if not all(map(math.isfinite, (x, y, theta))):
             self.log.error("Cannot teleport a turtle to a pose with NaN or infinite values")
             return
-        before, turtle.theta = (turtle.x, turtle.y), math.remainder(theta, math.tau)
+        before, turtle.theta = (turtle.x, turtle.y), wrap_angle(theta)
         self._move(turtle, x, y)
         self._draw(turtle, before)
 
@@ -188,7 +217,7 @@ class TurtleSim(WorldPlugin):
         """Set the turning speed of the action, or end the goal."""
         goal = turtle.goal
         assert goal is not None
-        remaining = math.remainder(goal.request.theta - turtle.theta, math.tau)
+        remaining = wrap_angle(goal.request.theta - turtle.theta)
         turtle.commanded = self.sim.time
         turtle.forward = turtle.sideways = 0.0
         goal.publish_feedback({"remaining": remaining})
@@ -202,7 +231,7 @@ class TurtleSim(WorldPlugin):
     # ------------------------------------------------------------------ turtles
 
     def _add(self, name: str, x: float, y: float, theta: float) -> None:
-        turtle = self._turtles[name] = Turtle(x, y, math.remainder(theta, math.tau))
+        turtle = self._turtles[name] = Turtle(x, y, wrap_angle(theta))
         turtle.x, turtle.y = _inside(x), _inside(y)
         self._match_endpoints()
 
@@ -211,47 +240,54 @@ class TurtleSim(WorldPlugin):
         if goal is not None:
             goal.abort(reason=f"turtle {name} was removed")
         self._match_endpoints()
-        if name in self.sim.models:
-            self.sim.remove(name)
+        if self._model_name(name) in self.sim.models:
+            self.sim.remove(self._model_name(name))
+
+    def _model_name(self, turtle: str) -> str:
+        return f"{self._prefix}{turtle}"
+
+    def _is_used(self, turtle: str) -> bool:
+        return turtle in self._turtles or self._model_name(turtle) in self.sim.models
 
     def _match_endpoints(self) -> None:
         """Open the topics of new turtles, and close those of turtles that are gone."""
         open_ends = self._endpoints.by_turtle
         for name in [name for name in open_ends if name not in self._turtles]:
-            for end in open_ends.pop(name):
-                end.close()
+            open_ends.pop(name).close()
         for name in [name for name in self._turtles if name not in open_ends]:
             open_ends[name] = self._open(name)
 
-    def _open(self, name: str) -> list[Any]:
-        """Open the topics, services and the action of a turtle: first the publishers of its pose and colour."""
+    def _open(self, name: str) -> _TurtleEndpoints:
+        """Open the topics, services and the action of a turtle."""
 
-        def of_turtle(function: Callable[[Turtle, Any], Any]) -> Callable[[Any], Any]:
+        def of_turtle(function: Callable[[Turtle, Argument], None]) -> Callable[[Argument], None]:
             return lambda argument: function(self._turtles[name], argument) if name in self._turtles else None
 
-        def absolute(turtle: Turtle, request: Any) -> None:
+        def absolute(turtle: Turtle, request: msgs.turtlesim__srv__TeleportAbsolute_Request) -> None:
             self._teleport(turtle, request.x, request.y, request.theta)
 
-        def relative(turtle: Turtle, request: Any) -> None:
+        def relative(turtle: Turtle, request: msgs.turtlesim__srv__TeleportRelative_Request) -> None:
             theta, way = turtle.theta + request.angular, request.linear
             self._teleport(turtle, turtle.x + way * math.cos(theta), turtle.y + way * math.sin(theta), theta)
 
-        return [
+        return _TurtleEndpoints(
             self.advertise(f"{name}/pose", f"{_TYPES}/msg/Pose"),
             self.advertise(f"{name}/color_sensor", f"{_TYPES}/msg/Color"),
-            self.listen(f"{name}/cmd_vel", "geometry_msgs/msg/Twist", of_turtle(self._on_command)),
-            self.offer(f"{name}/set_pen", f"{_TYPES}/srv/SetPen", of_turtle(self._on_set_pen)),
-            self.offer(f"{name}/teleport_absolute", f"{_TYPES}/srv/TeleportAbsolute", of_turtle(absolute)),
-            self.offer(f"{name}/teleport_relative", f"{_TYPES}/srv/TeleportRelative", of_turtle(relative)),
-            self.act(
-                f"{name}/rotate_absolute",
-                f"{_TYPES}/action/RotateAbsolute",
-                of_turtle(self._on_goal),
-                of_turtle(self._on_cancel),
+            (
+                self.listen(f"{name}/cmd_vel", "geometry_msgs/msg/Twist", of_turtle(self._on_command)),
+                self.offer(f"{name}/set_pen", f"{_TYPES}/srv/SetPen", of_turtle(self._on_set_pen)),
+                self.offer(f"{name}/teleport_absolute", f"{_TYPES}/srv/TeleportAbsolute", of_turtle(absolute)),
+                self.offer(f"{name}/teleport_relative", f"{_TYPES}/srv/TeleportRelative", of_turtle(relative)),
+                self.act(
+                    f"{name}/rotate_absolute",
+                    f"{_TYPES}/action/RotateAbsolute",
+                    of_turtle(self._on_goal),
+                    of_turtle(self._on_cancel),
+                ),
             ),
-        ]
+        )
 
-    def _on_command(self, turtle: Turtle, message: Any) -> None:
+    def _on_command(self, turtle: Turtle, message: msgs.Twist) -> None:
         values = message.linear.x, message.linear.y, message.angular.z
         if not all(map(math.isfinite, values)):
             self.log.error("A velocity with NaN or infinite values was ignored")
@@ -259,7 +295,7 @@ class TurtleSim(WorldPlugin):
         turtle.forward, turtle.sideways, turtle.turning = values
         turtle.commanded = self.sim.time
 
-    def set_state(self, state: Mapping[str, Any]) -> None:
+    def set_state(self, state: Mapping[str, object]) -> None:
         super().set_state(state)
         self._match_endpoints()
 
@@ -267,19 +303,19 @@ class TurtleSim(WorldPlugin):
 
     def after_step(self) -> None:
         for name, turtle in list(self._turtles.items()):
-            if turtle.is_placed and name not in self.sim.models:
+            if turtle.is_placed and self._model_name(name) not in self.sim.models:
                 self._remove(name)
                 continue
             before = turtle.x, turtle.y
             self._update(turtle)
             self._place_model(name, turtle)
-            pose, colour, *_ = self._endpoints.by_turtle[name]
+            endpoints = self._endpoints.by_turtle[name]
             fields = {"x": turtle.x, "y": turtle.y, "theta": turtle.theta, "angular_velocity": turtle.turning}
             speed = math.hypot(turtle.forward, turtle.sideways)
-            pose.publish(msgs.make(f"{_TYPES}/msg/Pose", linear_velocity=speed, **fields))
+            endpoints.pose.publish(msgs.make(f"{_TYPES}/msg/Pose", linear_velocity=speed, **fields))
             column, row = _pixel(turtle.x, turtle.y)
             red, green, blue = self._canvas[row, column].tolist()  # without the newest piece of the turtle's own trail
-            colour.publish(msgs.make(f"{_TYPES}/msg/Color", r=red, g=green, b=blue))
+            endpoints.colour.publish(msgs.make(f"{_TYPES}/msg/Color", r=red, g=green, b=blue))
             self._draw(turtle, before)
 
     def _update(self, turtle: Turtle) -> None:
@@ -290,7 +326,7 @@ class TurtleSim(WorldPlugin):
             turtle.forward = turtle.sideways = turtle.turning = 0.0
         if not self._holonomic.value:
             turtle.sideways = 0.0
-        turtle.theta = math.remainder(turtle.theta + turtle.turning * _PERIOD, math.tau)
+        turtle.theta = wrap_angle(turtle.theta + turtle.turning * _PERIOD)
         cos, sin = math.cos(turtle.theta), math.sin(turtle.theta)
         way, aside = turtle.forward * _PERIOD, turtle.sideways * _PERIOD
         if way or aside:
@@ -311,11 +347,12 @@ class TurtleSim(WorldPlugin):
 
     def _place_model(self, name: str, turtle: Turtle) -> None:
         """Move the model of a turtle, which is spawned first if it does not exist."""
-        pose, turtle.is_placed = Pose.from_rpy(turtle.x, turtle.y, 0.0, 0.0, 0.0, turtle.theta), True
-        if name not in self.sim.models:
-            self.sim.spawn(_MODEL, name, pose)
+        pose = self._origin @ Pose.from_rpy(turtle.x, turtle.y, 0.0, 0.0, 0.0, turtle.theta)
+        turtle.is_placed, model = True, self._model_name(name)
+        if model not in self.sim.models:
+            self.sim.spawn(_MODEL, model, pose)
         else:
-            self.sim.model(name).set_pose(pose)
+            self.sim.model(model).set_pose(pose)
 
     def publish_image(self) -> None:
         """Publish the window with trails and turtles."""
@@ -335,7 +372,7 @@ class TurtleSim(WorldPlugin):
 
 def _result(turtle: Turtle) -> dict[str, float]:
     """Return the result of the action: the heading at its start minus the present one, as turtlesim defines it."""
-    return {"delta": math.remainder(turtle.begin - turtle.theta, math.tau)}
+    return {"delta": wrap_angle(turtle.begin - turtle.theta)}
 
 
 def _inside(coordinate: float) -> float:

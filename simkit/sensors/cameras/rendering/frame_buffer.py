@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import functools
-from typing import Any
+from collections.abc import Callable
 
 import mujoco
 import numpy as np
@@ -72,8 +72,9 @@ def _plain_row(width: int, colour: tuple[int, int, int]) -> Colours:
 
 
 @functools.cache
-def _read_pixels() -> Any:
+def _read_pixels() -> Callable[..., None]:
     """Return glReadPixels without PyOpenGL's wrapper, whose check of the array takes as long as the read itself."""
     from OpenGL.raw.GL.VERSION import GL_1_0
 
-    return GL_1_0.glReadPixels
+    read: Callable[..., None] = GL_1_0.glReadPixels
+    return read

@@ -109,11 +109,11 @@ class _ProcessContext:
         if terminate is not None:
             atexit.unregister(terminate)
         self.context = None
-        self.failure = RenderError(_FORKED, "SK-RENDER-011")
+        self.failure = RenderError("SK-RENDER-011", _FORKED)
 
 
 def _copy(error: RenderError) -> RenderError:
-    return RenderError(error.message, error.code)
+    return RenderError(error.code, error.message)
 
 
 _process = _ProcessContext()

@@ -40,7 +40,7 @@ class RenderJob:
         """Wait until the job has succeeded or failed; return at once if this thread is the render thread."""
         if not self._done.is_set() and threading.get_ident() != _thread.number:
             if self._owner is not _thread:
-                raise RenderError("this process was forked while the image was being drawn", "SK-RENDER-011")
+                raise RenderError("SK-RENDER-011", "this process was forked while the image was being drawn")
             while not self._done.is_set():
                 with defer_interrupts() as received:
                     while not received and not self._done.wait(_WAIT_INTERVAL):

@@ -212,7 +212,7 @@ class Renderer:
                 if saves_colour:
                     self._save_background_colour(colours, depths)
             except mujoco.FatalError as error:
-                raise RenderError(f"drawing an image failed: {error}", "SK-RENDER-002") from error
+                raise RenderError("SK-RENDER-002", f"drawing an image failed: {error}") from error
         return DrawnView(view, colours[::-1], depths[::-1] if shot.depth else None)
 
     def uploaded(self) -> list[mujoco.MjrContext]:

@@ -105,13 +105,15 @@ class Composer:
             convert_point_lights(scene)
         if decorate is not None:
             decorate(scene)
-        found = Composition(model, scene, np.array(position, dtype=np.float64), np.array(rotation, dtype=np.float64))
-        found.smooth, found.is_spare, found.bounds = smooth, decorate is None, bounds
+        composition = Composition(
+            model, scene, np.array(position, dtype=np.float64), np.array(rotation, dtype=np.float64)
+        )
+        composition.smooth, composition.is_spare, composition.bounds = smooth, decorate is None, bounds
         if decorate is not None or _has_transparent_geoms(model):
-            found.glassy = [i for i, g in enumerate(scene.geoms[: scene.ngeom]) if g.rgba[3] < SOLID]
+            composition.glassy = [i for i, g in enumerate(scene.geoms[: scene.ngeom]) if g.rgba[3] < SOLID]
         for geom in np.flatnonzero(model.geom_type == _PLANE):
-            found.planes += _scene_index(scene, int(geom))
-        return found
+            composition.planes += _scene_index(scene, int(geom))
+        return composition
 
     def give_back(self, composition: Composition) -> None:
         """Return a composition that will not be drawn again, so that its list is reused."""
@@ -184,12 +186,12 @@ def shapes_out_of_sight(composition: Composition, eye: Vector, rotation: Vector,
 
 def _from_behind(composition: Composition, eye: Vector) -> list[int]:
     """Return the indices of planes seen from behind, where they are invisible."""
-    geoms, found = composition.scene.geoms, []
+    geoms, indices = composition.scene.geoms, []
     for index in composition.planes:
         plane = geoms[index]
         if matmul(eye - plane.pos, np.asarray(plane.mat).reshape(3, 3)[:, 2]) < 0.0:
-            found.append(index)
-    return found
+            indices.append(index)
+    return indices
 
 
 def transparent_shapes(composition: Composition) -> list[int]:

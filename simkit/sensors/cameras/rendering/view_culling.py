@@ -45,8 +45,8 @@ class Bounds:
         # few NumPy calls, because each is slow after drawing: the processor's cache no longer contains Python's code
         rotated = matmul(normals, rotation.T)
         beyond = matmul(self.centres, rotated.T) - (distances + matmul(rotated, position))
-        found: list[int] = np.flatnonzero((beyond > self.radii[:, None]).any(axis=1)).tolist()
-        return found
+        outside_indices: list[int] = np.flatnonzero((beyond > self.radii[:, None]).any(axis=1)).tolist()
+        return outside_indices
 
 
 @functools.lru_cache(maxsize=64)

@@ -134,12 +134,12 @@ def _common_quantities(golden: States, run: States, by_input: bool) -> tuple[lis
 
 
 def _columns(names: list[str], have: list[str], values: Numbers, absent: float) -> Numbers:
-    found = np.full((len(values), len(names)), absent)
+    columns = np.full((len(values), len(names)), absent)
     places = {name: i for i, name in enumerate(have)}
     for at, name in enumerate(names):
         if name in places:
-            found[:, at] = values[:, places[name]]
-    return np.nan_to_num(found, nan=0.0) if absent == 0.0 else found
+            columns[:, at] = values[:, places[name]]
+    return np.nan_to_num(columns, nan=0.0) if absent == 0.0 else columns
 
 
 def largest_difference_text(

@@ -65,29 +65,29 @@ def find_motions(
     # motion of the world frame that moves the entity in the same way
     deltas = {owner: _pose(edit.run) @ _pose(edit.golden).inverse() for owner, edit in in_world.items()}
     carriers = _carrying_entities(run, set(in_world))
-    found: dict[str, Motion] = {}
+    motions: dict[str, Motion] = {}
     roots = {owner: _root_motion(owner, deltas, carriers) for owner in in_world}
     for owner, edit in in_world.items():
         if roots[owner] == owner:
             words, numbers = _simplest_motion(edit, owner, golden, run, carriers)
-            found[owner] = Motion(owner, words, numbers, [edit])
+            motions[owner] = Motion(owner, words, numbers, [edit])
     for owner, edit in in_world.items():
         if roots[owner] != owner:
-            found[roots[owner]].edits.append(edit)
+            motions[roots[owner]].edits.append(edit)
     for edit in poses:
         if edit.attribute == "pose_link":
             words, numbers = _motion_text(_pose(edit.golden), _pose(edit.run))
-            found[edit.owner] = Motion(edit.owner, words, numbers, [edit])
+            motions[edit.owner] = Motion(edit.owner, words, numbers, [edit])
     posed = {e.owner for e in poses}
     for edit in derived:
-        home = _owner_motion(edit.owner, found, roots)
+        home = _owner_motion(edit.owner, motions, roots)
         if home is not None:
-            found[home].edits.append(edit)
+            motions[home].edits.append(edit)
         elif edit.owner not in posed:
             rest.append(edit)
-    for motion in found.values():
+    for motion in motions.values():
         motion.along = _count_carried(motion)
-    return list(found.values()), rest
+    return list(motions.values()), rest
 
 
 def _is_pose(value: object) -> bool:
@@ -128,17 +128,17 @@ def _carrying_entities(run: Mapping[str, object], moved: set[str]) -> dict[str, 
     """
     owners = [split_entity_path(path)[0] for path in run if split_entity_path(path)[1] == "pose_world"]
     links = {scoped_name(owner): owner for owner in owners if entity_kind(owner) == "link"}
-    found: dict[str, list[str]] = {owner: [parent_path(owner)] for owner in moved}
+    carriers: dict[str, list[str]] = {owner: [parent_path(owner)] for owner in moved}
     for path, child in run.items():
         owner, attribute = split_entity_path(path)
         if attribute != "child_link" or not isinstance(child, str):
             continue
         parent = run.get(f"{owner}.parent_link", "")
-        if owner in found and child in links:
-            found[owner].append(links[child])
-        if links.get(child, "") in found and isinstance(parent, str) and parent in links:
-            found[links[child]].append(links[parent])
-    return found
+        if owner in carriers and child in links:
+            carriers[owner].append(links[child])
+        if links.get(child, "") in carriers and isinstance(parent, str) and parent in links:
+            carriers[links[child]].append(links[parent])
+    return carriers
 
 
 def _root_motion(owner: str, deltas: Mapping[str, Pose], carriers: Mapping[str, list[str]]) -> str:
@@ -224,8 +224,8 @@ def _letter(direction: Vector) -> str:
 
 def _rotation_axis(axis: Vector, golden: Pose) -> str:
     """Describe a rotation axis: an axis of the frame, an axis of the entity, or components."""
-    own = golden.inverse().rotate(axis)
-    return f"its own {_letter(own)}" if not _letter(axis) and _letter(own) else _axis(axis)
+    local_axis = golden.inverse().rotate(axis)
+    return f"its own {_letter(local_axis)}" if not _letter(axis) and _letter(local_axis) else _axis(axis)
 
 
 def _count_carried(motion: Motion) -> str:

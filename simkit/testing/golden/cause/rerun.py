@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from simkit.run_spec import RunSpec
+from simkit.run_spec import JsonObject, RunSpec
 from simkit.scene import SceneWorld
 from simkit.testing.golden.cause.edits import Change
 from simkit.testing.golden.cause.world_patch import patch_world
@@ -38,12 +38,12 @@ def rerun_scenario(scenario: RunSpec, change_world: ChangeWorld | None) -> RunRe
     Raises:
         SimkitError: The world or a command of the scenario is invalid.
     """
-    from simkit.testing.run_record.run_recorder import run_record
+    from simkit.testing.run_record.run_recorder import record_run
 
     if scenario.plugins:
         scenario = replace(scenario, plugins=tuple(copy.deepcopy(p) for p in scenario.plugins))
     with open_scenario(scenario, change_world=change_world) as sim:
-        record = run_record(scenario, sim=sim)
+        record = record_run(scenario, sim=sim)
         record.simulation = None
         return record
 
@@ -89,7 +89,8 @@ class ScenarioRerun:
             return None
         edits = [edit for index in chosen for edit in self._changes[index].edits]
         values = {edit.path: edit.golden for edit in edits if edit.kind != "scenario"}
-        scenario = replace(self.run.scenario, **{e.path: e.golden for e in edits if e.kind == "scenario"})
+        fields: JsonObject = {edit.path: edit.golden for edit in edits if edit.kind == "scenario"}
+        scenario = replace(self.run.scenario, **fields)
         scenario = replace(scenario, duration=duration, until="", timeout=None, wall_timeout=None, checks=())
         now = self.run.leaves
         change = (lambda world: patch_world(world, now, values, order=self._golden.leaves)) if values else None
@@ -108,12 +109,12 @@ class ScenarioRerun:
         Returns:
             False if the reruns already cover the whole run.
         """
-        whole = self.run.scenario.longest
-        if self.horizon >= whole:
+        longest = self.run.scenario.longest
+        if self.horizon >= longest:
             return False
         self._pace = max(self._pace, self._begin / self.horizon)
         self._begin = 0.0
-        self.horizon = whole
+        self.horizon = longest
         self._known.clear()
         return True
 
@@ -121,20 +122,20 @@ class ScenarioRerun:
 
     def _first_horizon(self) -> float:
         """Return the end of the first reruns [s]: the end of the simulated second with the first difference."""
-        whole = self.run.scenario.longest
+        longest = self.run.scenario.longest
         differences = self._comparison.differences
         if any(d.kind == "statistics" for d in differences) or not differences:
-            return whole
+            return longest
         times = [d.time for d in differences if math.isfinite(d.time)]
-        return min(whole, math.floor(min(times)) + 1.0) if times else whole
+        return min(longest, math.floor(min(times)) + 1.0) if times else longest
 
     def _is_golden(self, record: RunRecord) -> bool:
         if self._comparison.tier == "exact":
             return _same_bits(self._golden, record, self.horizon)
 
         golden, mine = (
-            replace(cut_record(one, self.horizon), scenario=replace(one.scenario, model=False))
-            for one in (self._golden, record)
+            replace(cut_record(full_record, self.horizon), scenario=replace(full_record.scenario, model=False))
+            for full_record in (self._golden, record)
         )
         return compare(golden, mine).passed
 
@@ -157,10 +158,10 @@ def _same_bits(golden: RunRecord, run: RunRecord, until: float) -> bool:
 
 def _second_hashes(stream: Stream | None, seconds: int) -> list[str]:
     """Return the hash of each second; leave out seconds without a message at the end."""
-    found = list(stream.chunks[:seconds]) if stream is not None else []
-    while found and found[-1] == _NOTHING:
-        found.pop()
-    return found
+    hashes = list(stream.chunks[:seconds]) if stream is not None else []
+    while hashes and hashes[-1] == _NOTHING:
+        hashes.pop()
+    return hashes
 
 
 def cut_record(record: RunRecord, until: float) -> RunRecord:
@@ -169,14 +170,14 @@ def cut_record(record: RunRecord, until: float) -> RunRecord:
     streams = {name: _cut_stream(stream, limit) for name, stream in record.streams.items()}
     states = record.states
     ticks = min(len(states.marks), math.ceil(until / states.timestep) - 1)
-    kept = int(np.searchsorted(states.ticks, ticks, side="right"))
+    state_count = int(np.searchsorted(states.ticks, ticks, side="right"))
     states = replace(
         states,
         marks=states.marks[:ticks],
         inputs=states.inputs[:ticks],
-        ticks=states.ticks[:kept],
-        values=states.values[:kept],
-        input_values=states.input_values[:kept],
+        ticks=states.ticks[:state_count],
+        values=states.values[:state_count],
+        input_values=states.input_values[:state_count],
         digest="",
     )
     return replace(record, streams={n: s for n, s in streams.items() if len(s.times_ns)}, states=states)
@@ -211,6 +212,6 @@ def can_be_undone(change: Change, run: RunRecord) -> bool:
     if change.kind != "model" or not change.edits:
         return False
     world = getattr(run.simulation, "world", None)
-    kept = [f"models[{m.name}]" for m in world.models if m.mjcf is not None] if world is not None else []
+    mjcf_paths = [f"models[{m.name}]" for m in world.models if m.mjcf is not None] if world is not None else []
     is_plain = all(e.golden is ABSENT or isinstance(e.golden, (bool, int, float, str, list)) for e in change.edits)
-    return is_plain and not any(e.path.startswith(("files[", *kept)) for e in change.edits)
+    return is_plain and not any(e.path.startswith(("files[", *mjcf_paths)) for e in change.edits)

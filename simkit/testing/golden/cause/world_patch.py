@@ -43,7 +43,7 @@ class _PatchNode:
     @property
     def has_value(self) -> bool:
         """True if the node or a descendant has a value."""
-        return self.value is not ABSENT or any(one.has_value for one in self.children.values())
+        return self.value is not ABSENT or any(child.has_value for child in self.children.values())
 
     def reach(self, path: str, *, touch: bool) -> _PatchNode:
         """Return the node at a path; create missing nodes."""
@@ -96,12 +96,12 @@ def patch_world(
 
 @lru_cache(maxsize=65536)
 def _steps(path: str) -> tuple[str, ...]:
-    found: list[str] = []
+    steps: list[str] = []
     for field, key in split_path(path):
-        found.append(field)
+        steps.append(field)
         if key:
-            found.append(f"[{key}]")
-    return tuple(found)
+            steps.append(f"[{key}]")
+    return tuple(steps)
 
 
 class _PatchedBuilder:
@@ -124,42 +124,44 @@ class _PatchedBuilder:
         """
         owner = getattr(node, "scoped", None) or owner
         others = {}
-        for one in fields(node):
-            inner = patch.children.get(one.name)
+        for attribute in fields(node):
+            inner = patch.children.get(attribute.name)
             if inner is not None and inner.is_touched:
-                others[one.name] = self._field(type(node), one, getattr(node, one.name), inner, owner)
+                others[attribute.name] = self._field(type(node), attribute, getattr(node, attribute.name), inner, owner)
         return replace(node, **others) if others else node
 
     def created(self, kind: type, patch: _PatchNode, owner: str, key: str) -> object:
         """Create a node that does not exist yet from its values."""
         name = re.sub(r"#\d+$", "", key)
-        whole = owner if kind.__name__ == "ScenePlugin" else (f"{owner}::{name}" if owner and name else name or owner)
-        given: dict[str, object] = {}
+        scoped = owner if kind.__name__ == "ScenePlugin" else (f"{owner}::{name}" if owner and name else name or owner)
+        arguments: dict[str, object] = {}
         hints = _hints(kind)
-        words = {"name": name, "scoped": whole, "parent": owner, "uri": ""}
-        for one in fields(kind):
-            inner = patch.children.get(one.name)
-            default = default_of(one)
+        words = {"name": name, "scoped": scoped, "parent": owner, "uri": ""}
+        for attribute in fields(kind):
+            inner = patch.children.get(attribute.name)
+            default = default_of(attribute)
             if inner is not None and inner.has_value:
-                given[one.name] = self._field(kind, one, None if default is MISSING else default, inner, whole)
-            elif one.name in words and isinstance(words[one.name], str) and hints[one.name] is str:
-                given[one.name] = words[one.name]
-            elif hints[one.name] is Params:
-                given[one.name] = Params(one.name)
+                arguments[attribute.name] = self._field(
+                    kind, attribute, None if default is MISSING else default, inner, scoped
+                )
+            elif attribute.name in words and isinstance(words[attribute.name], str) and hints[attribute.name] is str:
+                arguments[attribute.name] = words[attribute.name]
+            elif hints[attribute.name] is Params:
+                arguments[attribute.name] = Params(attribute.name)
             else:  # the field has no value and is empty
-                given[one.name] = self._nothing(one, hints[one.name])
-        return kind(**given)
+                arguments[attribute.name] = self._nothing(attribute, hints[attribute.name])
+        return kind(**arguments)
 
-    def _field(self, kind: type, one: Field[Any], now: Any, patch: _PatchNode, owner: str) -> object:
-        hint = _hints(kind)[one.name]
-        if one.name in _KEPT_FIELDS:
-            raise CannotPatch(one.name)
+    def _field(self, kind: type, attribute: Field[object], now: Any, patch: _PatchNode, owner: str) -> object:
+        hint = _hints(kind)[attribute.name]
+        if attribute.name in _KEPT_FIELDS:
+            raise CannotPatch(attribute.name)
         if hint is Params:
-            return self._params(now if isinstance(now, Params) else Params(one.name), patch)
+            return self._params(now if isinstance(now, Params) else Params(attribute.name), patch)
         if typing.get_origin(hint) is tuple and any(step.startswith("[") for step in patch.children):
             return self._elements(now or (), _node_kinds(hint), patch, owner)
         if not patch.has_value:
-            return self._nothing(one, hint)
+            return self._nothing(attribute, hint)
         if isinstance(now, Mapping) or typing.get_origin(hint) in (Mapping, dict):
             return self._mapping(now or {}, patch)
         kinds = _node_kinds(hint)
@@ -179,14 +181,14 @@ class _PatchedBuilder:
             return self.changed(now, patch, owner)
         return self.created(kind, patch, owner, "")
 
-    def _nothing(self, one: Field[Any], hint: object) -> object:
+    def _nothing(self, attribute: Field[object], hint: object) -> object:
         if _may_be_none(hint):
             return None
         if typing.get_origin(hint) is tuple:
             return ()
-        default = default_of(one)
+        default = default_of(attribute)
         if default is MISSING:
-            raise CannotPatch(one.name)
+            raise CannotPatch(attribute.name)
         return default
 
     def _elements(
@@ -194,44 +196,44 @@ class _PatchedBuilder:
     ) -> tuple[object, ...]:
         """Return the items of a list without removed items; added items get their position in the golden run."""
         there = dict(zip(item_keys(now), now, strict=True))
-        found: dict[str, object] = {}
+        items_by_key: dict[str, object] = {}
         for key, item in there.items():
             inner = patch.children.get(f"[{key}]")
             if inner is None or not inner.is_touched:
-                found[key] = item
+                items_by_key[key] = item
             elif inner.has_value:
                 is_block = isinstance(item, Params)
-                found[key] = self._params(item, inner) if is_block else self.changed(item, inner, owner)
-        places = list(found)
+                items_by_key[key] = self._params(item, inner) if is_block else self.changed(item, inner, owner)
+        places = list(items_by_key)
         before = ""
         for step, inner in patch.children.items():
             key = step[1:-1]
             if step.startswith("[") and key not in there and inner.has_value:
                 if not kinds:
                     raise CannotPatch(step)
-                found[key] = self.created(next(iter(kinds.values())), inner, owner, key)
+                items_by_key[key] = self.created(next(iter(kinds.values())), inner, owner, key)
                 places.insert(places.index(before) + 1 if before in places else 0 if not before else len(places), key)
-            if key in found:
+            if key in items_by_key:
                 before = key
-        return tuple(found[key] for key in places)
+        return tuple(items_by_key[key] for key in places)
 
     def _mapping(self, now: Mapping[str, object], patch: _PatchNode) -> dict[str, object]:
-        found = dict(now)
+        mapping = dict(now)
         for step, inner in patch.children.items():
             if inner.is_touched:
                 if inner.children:
                     raise CannotPatch(step)
-                found.pop(step[1:-1], None)
+                mapping.pop(step[1:-1], None)
                 if inner.has_value:
-                    found[step[1:-1]] = _as_scene_value(inner.value, None)
-        return found
+                    mapping[step[1:-1]] = _as_scene_value(inner.value, None)
+        return mapping
 
     def _params(self, now: Params, patch: _PatchNode) -> Params:
         """Return a changed copy of a parameter block; the copy reports all its parameters as unread."""
         attributes = dict(now.attributes)
         children: list[Params] = []
         taken = set()
-        elements, given = self._split(patch)
+        elements, attribute_patches = self._split(patch)
         for key, child in zip(element_keys(now.children), now.children, strict=True):
             inner = elements.get(key)
             taken.add(key)
@@ -242,7 +244,7 @@ class _PatchedBuilder:
         for key, inner in elements.items():
             if key not in taken and inner.has_value:
                 children.append(self._params(Params(key.partition("[")[0], diagnostics=now.diagnostics), inner))
-        for name, inner in given.items():
+        for name, inner in attribute_patches.items():
             if inner.is_touched:
                 attributes.pop(name, None)
                 if inner.has_value:
@@ -257,17 +259,17 @@ class _PatchedBuilder:
     def _split(self, patch: _PatchNode) -> tuple[dict[str, _PatchNode], dict[str, _PatchNode]]:
         """Return two mappings: the child elements by key, and the attributes by name."""
         elements: dict[str, _PatchNode] = {}
-        given: dict[str, _PatchNode] = {}
+        attribute_patches: dict[str, _PatchNode] = {}
         for step, inner in patch.children.items():
             if step.startswith("@"):
-                given[step[1:]] = inner
+                attribute_patches[step[1:]] = inner
                 continue
             keyed = {k: v for k, v in inner.children.items() if k.startswith("[")}
-            for key, one in keyed.items():
-                elements[f"{step}[{escaped_key(key[1:-1])}]"] = one
+            for key, keyed_patch in keyed.items():
+                elements[f"{step}[{escaped_key(key[1:-1])}]"] = keyed_patch
             if inner.value is not ABSENT or len(keyed) < len(inner.children):
                 elements[step] = inner
-        return elements, given
+        return elements, attribute_patches
 
     def _text_of(self, value: object) -> str:
         if isinstance(value, str) and re.fullmatch(r"[0-9a-f]{16} \(\d+ bytes\)", value):
@@ -280,16 +282,16 @@ class _PatchedBuilder:
         if hint is Pose:
             return Pose(value[:3], value[3:])
         if hint is Path or Path in typing.get_args(hint):
-            found = self._files.get(value)
-            if found is None:
+            content = self._files.get(value)
+            if content is None:
                 raise CannotPatch("the content of a file")
-            return found
+            return content
         return _as_scene_value(value, hint)
 
 
-def default_of(one: Field[Any]) -> object:
+def default_of(attribute: Field[object]) -> object:
     """Return the default of a field; MISSING if it has none."""
-    return one.default_factory() if one.default_factory is not MISSING else one.default
+    return attribute.default_factory() if attribute.default_factory is not MISSING else attribute.default
 
 
 def _text_value(text: str) -> object:
@@ -330,7 +332,7 @@ def _node_kinds(hint: Any) -> Mapping[str, type]:
     if is_dataclass(hint) and isinstance(hint, type) and hint is not Pose:
         return {hint.__name__: hint}
     if typing.get_origin(hint) in (tuple, typing.Union, types.UnionType):
-        return {name: kind for one in typing.get_args(hint) for name, kind in _node_kinds(one).items()}
+        return {name: kind for argument in typing.get_args(hint) for name, kind in _node_kinds(argument).items()}
     return {}
 
 
@@ -345,7 +347,10 @@ def files_named_by(value: object) -> list[Path]:
         return [value]
     if is_dataclass(value) and not isinstance(value, type):
         return [
-            p for one in fields(value) if one.name not in _KEPT_FIELDS for p in files_named_by(getattr(value, one.name))
+            p
+            for attribute in fields(value)
+            if attribute.name not in _KEPT_FIELDS
+            for p in files_named_by(getattr(value, attribute.name))
         ]
     if isinstance(value, (tuple, list)):
         return [p for item in value for p in files_named_by(item)]

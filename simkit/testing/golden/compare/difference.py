@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
     from simkit.testing.conditions import CheckResult
@@ -94,8 +94,8 @@ class Cause:
     kind: CauseKind
     words: str
     path: str
-    golden: Any
-    run: Any
+    golden: object
+    run: object
     where: str = ""
     proven: bool | None = None
 

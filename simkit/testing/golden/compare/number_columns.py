@@ -14,8 +14,17 @@ from simkit.elementary_functions import arctan2
 from simkit.linear_algebra import norm
 from simkit.run_spec import Tolerance
 from simkit.testing.golden.compare.difference import Difference
-from simkit.testing.golden.compare.tolerances import FieldFinding, FieldTerms, FlatValues
-from simkit.testing.golden.compare.units import is_colour, item_name, period_of, quantity_text, time_text, value_text
+from simkit.testing.golden.compare.tolerances import (
+    FieldFinding,
+    FieldTerms,
+    FlatValues,
+    is_colour,
+    item_name,
+    period_of,
+    quantity_text,
+    time_text,
+    value_text,
+)
 from simkit.testing.run_record.record import Array, Column
 
 Floats = npt.NDArray[np.float64]
@@ -78,9 +87,9 @@ def _value_names(terms: FieldTerms, width: int, index: int) -> list[str]:
         for name in _NAMES:
             texts = terms.stream.words.get(prefix + name)
             if texts is not None and index < len(texts):
-                found = texts[index].split(", ")
-                if len(found) == width and all(found) and (width > 1 or depth):
-                    return found
+                names = texts[index].split(", ")
+                if len(names) == width and all(names) and (width > 1 or depth):
+                    return names
     return []
 
 
@@ -150,9 +159,9 @@ def compare_column(terms: FieldTerms, golden: Column, run: Column) -> FieldFindi
         mine, other = mine.first(first), other.first(first)
     shift = _deviation(terms, mine.values, other.values)
     limit = _limit(terms, golden, run, mine.values)
-    found = field_finding(terms, shift, limit, mine, other, HALF_STEP * (golden.step + run.step))
-    if found.difference is not None or not uneven.size:
-        return found
+    finding = field_finding(terms, shift, limit, mine, other, HALF_STEP * (golden.step + run.step))
+    if finding.difference is not None or not uneven.size:
+        return finding
     # describe the first message with more or fewer values
     a, b, time = int(golden.of(first).size), int(run.of(first).size), terms.time(first)
     things = item_name(terms.stream.type_name, terms.field)
@@ -288,10 +297,12 @@ def compare_orientation(terms: FieldTerms, golden: list[Column], run: list[Colum
     axis = np.argmax(np.abs(vector), axis=-1)
     along = np.take_along_axis(vector * np.where(scalar < 0.0, -1.0, 1.0)[:, None], axis[:, None], axis=-1)[:, 0]
     angles = replace(mine[0], values=np.zeros(angle.shape))  # only the shape and the messages are used
-    found = field_finding(terms, np.where(along < 0.0, -angle, angle), limit, angles, angles, 2.0 * step)
-    if found.difference is None:
-        return found
-    return FieldFinding(_with_axis(terms, found.difference, mine[0], vector, axis, 2.0 * step), found.excess, found.off)
+    finding = field_finding(terms, np.where(along < 0.0, -angle, angle), limit, angles, angles, 2.0 * step)
+    if finding.difference is None:
+        return finding
+    return FieldFinding(
+        _with_axis(terms, finding.difference, mine[0], vector, axis, 2.0 * step), finding.excess, finding.off
+    )
 
 
 def _with_axis(

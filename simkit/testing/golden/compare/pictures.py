@@ -11,8 +11,7 @@ import numpy.typing as npt
 from simkit.run_spec import Tolerance
 from simkit.testing.golden.compare.difference import Difference
 from simkit.testing.golden.compare.number_columns import compare_column
-from simkit.testing.golden.compare.tolerances import FieldTerms
-from simkit.testing.golden.compare.units import time_text
+from simkit.testing.golden.compare.tolerances import FieldTerms, time_text
 from simkit.testing.run_record.message_recorder import TILE
 from simkit.testing.run_record.record import Array, Column, Pictures, Stream
 
@@ -204,15 +203,17 @@ def _brightness(pair: _CommonPictures, row: int) -> str:
 def _depths(pair: _CommonPictures, notes: list[str]) -> Ranked:
     """Compare depths [m]; if the reduced pictures are equal, compare the tiles of the full pictures."""
     mine, other, topic = pair.golden.small, pair.run.small, pair.stream.topic
-    kept = replace(pair.stream, times_ns=pair.stream.times_ns[pair.messages], words={})
-    terms = FieldTerms(kept, "", pair.tolerance, pair.is_exact, len(pair.messages), "m")
-    found = compare_column(terms, Column(mine, None, _rounding_step(mine)), Column(other, None, _rounding_step(other)))
-    if found.difference is not None:
-        index = int(pair.messages[found.difference.index])
-        return [(found.excess, replace(found.difference, kind="picture", index=index))]
+    stream = replace(pair.stream, times_ns=pair.stream.times_ns[pair.messages], words={})
+    terms = FieldTerms(stream, "", pair.tolerance, pair.is_exact, len(pair.messages), "m")
+    finding = compare_column(
+        terms, Column(mine, None, _rounding_step(mine)), Column(other, None, _rounding_step(other))
+    )
+    if finding.difference is not None:
+        index = int(pair.messages[finding.difference.index])
+        return [(finding.excess, replace(finding.difference, kind="picture", index=index))]
     changed = _changed_tiles(pair)
     if not pair.is_exact or not changed.any():
-        if found.excess > 0.1:
+        if finding.excess > 0.1:
             notes.append(f"{topic}: pictures differ within {terms.allowed}")
         return []
     first = int(np.argmax(changed.any(axis=1)))
@@ -273,7 +274,7 @@ def structural_similarity(golden: Array, run: Array, peak: float = 255.0) -> flo
     variance_a, variance_b = blur(a * a) - mean_a**2, blur(b * b) - mean_b**2
     covariance = blur(a * b) - mean_a * mean_b
     c1, c2 = (0.01 * peak) ** 2, (0.03 * peak) ** 2
-    found = ((2 * mean_a * mean_b + c1) * (2 * covariance + c2)) / (
+    similarity = ((2 * mean_a * mean_b + c1) * (2 * covariance + c2)) / (
         (mean_a**2 + mean_b**2 + c1) * (variance_a + variance_b + c2)
     )
-    return float(found.mean())
+    return float(similarity.mean())

@@ -1,20 +1,186 @@
-"""Comparison of two run records: the first difference of each field beyond its tolerance."""
+"""Comparison of two run records: the first difference of each field beyond its tolerance, and of the physics."""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
+from simkit.plugins.discovery.left_out import CODES as LEFT_OUT_CODES
 from simkit.testing.golden.compare.difference import Comparison, Difference, DifferenceKind
-from simkit.testing.golden.compare.physics_states import compare_physics
 from simkit.testing.golden.compare.streams import StreamPair, begin_time, compare_stream
-from simkit.testing.golden.compare.tolerances import tolerance_of
+from simkit.testing.golden.compare.tolerances import joint_unit, quantity_text, time_text, tolerance_of
 from simkit.testing.golden.compare.world_edits import field_edits
 from simkit.testing.run_record.fingerprint import RAY_TRACER, fingerprint_differences
-from simkit.testing.run_record.record import RunRecord, Stream
+from simkit.testing.run_record.record import RunRecord, States, Stream
+
+_TINY: Final = 1e-9  # smallest scale of a quantity, so that tiny motions are not reported as large relative differences
+# on another machine: word in the quantity's name, absolute tolerance, tolerance as a share of the largest value
+_ALLOWED: Final[tuple[tuple[str, float, float], ...]] = (
+    ("velocity", 2e-2, 1e-2),
+    ("position", 1e-3, 1e-3),
+    ("orientation", 1e-3, 0.0),
+    ("", 1e-3, 1e-2),
+)
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class _StateDifferences:
+    """Differences of the ticks and quantities that both runs recorded."""
+
+    names: list[str]
+    times: Floats
+    golden: Floats
+    shift: Floats
+    joints: Mapping[str, str]
+
+
+def compare_physics(
+    golden: States, run: States, is_exact: bool, joints: Mapping[str, str] | None = None
+) -> Difference | None:
+    """Compare the physics of two runs; return None without a difference beyond the tolerance.
+
+    Args:
+        golden: States of the golden run.
+        run: States of the new run, of the same scenario.
+        is_exact: True if bits must be equal; otherwise the recorded states are compared with tolerances.
+        joints: Unit of each joint's position, by joint name.
+    """
+    if golden.timestep != run.timestep:
+        steps = [quantity_text(s.timestep, "s", signed=False) for s in (golden, run)]
+        words = f"physics: time step {steps[0]} became {steps[1]}"
+        return _state(words, 0.0, abs(run.timestep - golden.timestep), "s", "")
+    parts = _entity_changes(golden, run)
+    if parts:
+        return _state(f"physics: different moving entities: {parts}", 0.0, float("nan"), "", "")
+    differences = _state_differences(golden, run, joints or {})
+    return _bits(golden, run, differences) if is_exact else _values(differences)
+
+
+def _state(words: str, time: float, size: float, unit: str, name: str, allowed: str = "the same bits") -> Difference:
+    return Difference("", name, "state", time, size, unit, words, allowed)
+
+
+def _entity_changes(golden: States, run: States) -> str:
+    """List added and removed entities, such as `new: crate; gone: pillar`."""
+    groups = []
+    for words, names in (("new", set(run.names) - set(golden.names)), ("gone", set(golden.names) - set(run.names))):
+        owners = sorted({_quantity_owner(name) for name in names})
+        if owners:
+            more = f" and {len(owners) - 3} more" if len(owners) > 3 else ""
+            groups.append(f"{words}: {', '.join(owners[:3])}{more}")
+    return "; ".join(groups)
+
+
+def _quantity_owner(name: str) -> str:
+    """Return the entity of a quantity: `crate` for `crate angular velocity x`."""
+    for word in (" position", " orientation", " angular velocity", " velocity", " activation"):
+        if word in name:
+            return name[: name.index(word)]
+    return name
+
+
+# ---------------------------------------------------------------------- same machine
+
+
+def _bits(golden: States, run: States, differences: _StateDifferences) -> Difference | None:
+    if len(differences.times) and differences.times[0] <= 0.0 and differences.shift[0].any():
+        return _largest_difference(differences, 0, "physics: initial state differs", 0.0, "the same bits")
+    both = min(len(golden.marks), len(run.marks))
+    apart = np.flatnonzero(golden.marks[:both] != run.marks[:both])
+    if not apart.size:
+        has_digests = golden.named_digest and run.named_digest and len(golden.marks) == len(run.marks)
+        if not has_digests or golden.named_digest == run.named_digest:
+            return None
+    tick = int(apart[0]) + 1 if apart.size else both
+    time = tick * run.timestep
+    words = f"physics: state differs from {time_text(time)} (tick {tick})"
+    first = next(
+        (i for i in range(len(differences.times)) if differences.times[i] >= time and differences.shift[i].any()), None
+    )
+    if first is None:
+        return _state(f"{words}, but not in the recorded states", time, 0.0, "", "")
+    return _largest_difference(differences, first, words, time, "the same bits")
+
+
+def _largest_difference(
+    differences: _StateDifferences, index: int, words: str, time: float, allowed: str
+) -> Difference:
+    """Describe the quantity with the largest relative difference in one recorded state."""
+    scale = np.maximum(np.abs(differences.golden).max(axis=0), _TINY)
+    at = int(np.argmax(np.abs(differences.shift[index]) / scale))
+    name, unit = differences.names[at], unit_of_quantity(differences.names[at], differences.joints)
+    shifts = differences.shift[:, at]
+    shift, largest = float(shifts[index]), int(np.argmax(np.abs(shifts)))
+    when = "" if differences.times[index] == time else f" at {time_text(float(differences.times[index]))}"
+    words += f": {name} {quantity_text(shift, unit)}{when}"
+    size = abs(float(shifts[largest]))
+    if largest > index and size > 1.5 * abs(shift):
+        words += (
+            f", up to {quantity_text(float(shifts[largest]), unit)} at {time_text(float(differences.times[largest]))}"
+        )
+    return _state(words, time, size, unit, name, allowed)
+
+
+# ---------------------------------------------------------------------- another machine
+
+
+def _values(differences: _StateDifferences) -> Difference | None:
+    if not len(differences.times):
+        return None
+    largest = np.abs(differences.golden).max(axis=0)
+    limits = np.array([_limit(name, float(size)) for name, size in zip(differences.names, largest, strict=True)])
+    over = np.where(np.abs(differences.shift) > limits, differences.shift, 0.0)
+    failing = (np.abs(differences.shift) > limits).any(axis=1)
+    if not failing.any():
+        return None
+    index = int(np.argmax(failing))
+    time, allowed = float(differences.times[index]), "1 mm, 1 mrad, 1 % of velocities"
+    words = f"physics: state differs from {time_text(time)}"
+    return _largest_difference(replace(differences, shift=over), index, words, time, allowed)
+
+
+def _limit(name: str, size: float) -> float:
+    return next(absolute + relative * size for word, absolute, relative in _ALLOWED if word in name)
+
+
+def _state_differences(golden: States, run: States, joints: Mapping[str, str]) -> _StateDifferences:
+    """Subtract the states that both runs recorded; a difference is infinite if only one value is a number."""
+    names = [name for name in golden.names if name in set(run.names)]
+    ticks = np.intersect1d(golden.ticks, run.ticks)
+    mine = golden.values[np.searchsorted(golden.ticks, ticks)][:, [golden.names.index(name) for name in names]]
+    other = run.values[np.searchsorted(run.ticks, ticks)][:, [run.names.index(name) for name in names]]
+    with np.errstate(invalid="ignore"):
+        shift = other - mine
+    shift[np.isnan(mine) & np.isnan(other)] = 0.0
+    times = np.asarray(ticks * run.timestep, np.float64)
+    return _StateDifferences(names, times, np.nan_to_num(mine), np.nan_to_num(shift, nan=np.inf), joints)
+
+
+def unit_of_quantity(name: str, joints: Mapping[str, str]) -> str:
+    """Return the unit of a state quantity.
+
+    Args:
+        name: Name of the quantity.
+        joints: Unit of each joint's position, by joint name.
+    """
+    if "angular velocity" in name:
+        return "rad/s"
+    if " velocity " in name:
+        return "m/s"
+    if " position " in name:
+        return "m"
+    position = joints.get(_quantity_owner(name).rpartition("::")[2], "")
+    if name.endswith(" velocity"):
+        return joint_unit("rad/s or m/s", position)
+    return joint_unit("rad or m", position) if name.endswith(" position") else ""
+
 
 _FROM_IMAGES = (
     "sensor_msgs/msg/Image",
@@ -44,32 +210,32 @@ def compare(golden: RunRecord, run: RunRecord, *, exact: bool | None = None) -> 
     is_reordered = exact is None and same and _is_reordered(golden, run)
     if is_reordered:  # the engine sums values in file order, so the rounding differs
         same = same_pictures = same_rays = False
-    found = Comparison("exact" if same else "tolerant")
+    comparison = Comparison("exact" if same else "tolerant")
     if is_reordered:
-        found.notes.append("the entities of the world have another order, so bits need not be equal")
+        comparison.notes.append("the entities of the world have another order, so bits need not be equal")
 
     def must_be_equal(stream: Stream) -> bool:
         return same and (same_pictures or not _is_rendered(stream)) and (same_rays or not _is_traced(stream))
 
-    found.machine = fingerprint_differences(
+    comparison.machine = fingerprint_differences(
         golden.fingerprint,
         run.fingerprint,
         pictures=any(map(_is_rendered, run.streams.values())),
         rays=any(map(_is_traced, run.streams.values())),
     )
     with np.errstate(all="ignore"):  # compared values may be NaN or infinite
-        _compare_topics(golden, run, must_be_equal, found)
+        _compare_topics(golden, run, must_be_equal, comparison)
     if run.scenario.state:
-        found.is_identical &= golden.states.named_digest == run.states.named_digest
+        comparison.is_identical &= golden.states.named_digest == run.states.named_digest
         physics = compare_physics(golden.states, run.states, same, joint_units(run))
         if physics is not None:
-            found.differences.append(physics)
-    _compare_ends(golden, run, found)
-    found.differences.sort(key=lambda d: (d.kind != "end", d.time, d.topic))
-    if run.scenario.model and not found.differences:
-        _compare_worlds(golden, run, found)
-    _note_diagnostics(golden, run, found)
-    return found
+            comparison.differences.append(physics)
+    _compare_ends(golden, run, comparison)
+    comparison.differences.sort(key=lambda d: (d.kind != "end", d.time, d.topic))
+    if run.scenario.model and not comparison.differences:
+        _compare_worlds(golden, run, comparison)
+    _note_diagnostics(golden, run, comparison)
+    return comparison
 
 
 def _is_reordered(golden: RunRecord, run: RunRecord) -> bool:
@@ -83,20 +249,20 @@ _JOINT = re.compile(r"joints\[([^\]]+)\]\.type$")
 
 def joint_units(record: RunRecord) -> dict[str, str]:
     """Return the unit of each joint's position, by joint name; empty if joints of both types share the name."""
-    found: dict[str, str] = {}
+    units: dict[str, str] = {}
     for path, kind in record.leaves.items():
         match = _JOINT.search(path)
         if match:
             unit = "m" if kind == "prismatic" else "rad"
-            found[match[1]] = unit if found.get(match[1], unit) == unit else ""
-    return found
+            units[match[1]] = unit if units.get(match[1], unit) == unit else ""
+    return units
 
 
 # ---------------------------------------------------------------------- topics
 
 
 def _compare_topics(
-    golden: RunRecord, run: RunRecord, must_be_equal: Callable[[Stream], bool], found: Comparison
+    golden: RunRecord, run: RunRecord, must_be_equal: Callable[[Stream], bool], comparison: Comparison
 ) -> None:
     notes: list[str] = []
     joints = joint_units(run)
@@ -104,21 +270,21 @@ def _compare_topics(
         mine, other = golden.streams.get(topic), run.streams.get(topic)
         known = mine or other
         assert known is not None
-        whole = tolerance_of(run.scenario, topic, known.type_name, "")
-        if whole.ignore:
-            found.notes.append(f"{topic} is not compared" + (f" ({whole.where})" if whole.where else ""))
+        tolerance = tolerance_of(run.scenario, topic, known.type_name, "")
+        if tolerance.ignore:
+            comparison.notes.append(f"{topic} is not compared" + (f" ({tolerance.where})" if tolerance.where else ""))
         elif mine is None or other is None:
-            found.differences.append(_missing_topic(known, mine is None, golden, run))
+            comparison.differences.append(_missing_topic(known, mine is None, golden, run))
         else:
             is_exact = must_be_equal(other)
             result = compare_stream(StreamPair(mine, other, run.scenario, is_exact, run.states.timestep, joints))
-            found.is_identical &= bool(mine.digest) and mine.digest == other.digest
-            found.differences += result.differences
+            comparison.is_identical &= bool(mine.digest) and mine.digest == other.digest
+            comparison.differences += result.differences
             notes += result.notes
-            found.topics += 1
-            found.messages += len(mine.times_ns)
+            comparison.topics += 1
+            comparison.messages += len(mine.times_ns)
     more = [f"{len(notes) - _NOTES} more notes"] if len(notes) > _NOTES else []
-    found.notes += notes[:_NOTES] + more
+    comparison.notes += notes[:_NOTES] + more
 
 
 def _missing_topic(stream: Stream, is_new: bool, golden: RunRecord, run: RunRecord) -> Difference:
@@ -146,18 +312,18 @@ def _is_traced(stream: Stream) -> bool:
 # ---------------------------------------------------------------------- end, world, diagnostics
 
 
-def _compare_ends(golden: RunRecord, run: RunRecord, found: Comparison) -> None:
+def _compare_ends(golden: RunRecord, run: RunRecord, comparison: Comparison) -> None:
     """Compare the reasons and times at which the runs ended."""
     ticks = len(golden.states.marks), len(run.states.marks)
     time = min(ticks) * run.states.timestep
     if golden.end != run.end:
         words = f"the run ended with “{run.end}” at t = {ticks[1] * run.states.timestep:g} s"
         words += f"; the golden run with “{golden.end}” at t = {ticks[0] * golden.states.timestep:g} s"
-        found.differences.append(Difference("", "", "end", time, math.nan, "", words, "the same end"))
+        comparison.differences.append(Difference("", "", "end", time, math.nan, "", words, "the same end"))
     elif ticks[0] != ticks[1] and golden.states.timestep == run.states.timestep:
         words = f"the run took {ticks[1]} steps, the golden run {ticks[0]}"
         size = float(abs(ticks[1] - ticks[0]))
-        found.differences.append(Difference("", "", "end", time, size, "steps", words, "as many steps"))
+        comparison.differences.append(Difference("", "", "end", time, size, "steps", words, "as many steps"))
 
 
 def _compare_worlds(golden: RunRecord, run: RunRecord, found: Comparison) -> None:
@@ -214,7 +380,12 @@ def _is_same_value(a: object, b: object) -> bool:
 def _note_diagnostics(golden: RunRecord, run: RunRecord, found: Comparison) -> None:
     for code in sorted(golden.diagnostics.keys() | run.diagnostics.keys()):
         counts = golden.diagnostics.get(code, 0), run.diagnostics.get(code, 0)
-        if counts[0] != counts[1]:
+        if code in LEFT_OUT_CODES and counts[1] > counts[0]:
+            words = f"{counts[1]} sensors or plugins are left out ({code}); in the golden run {counts[0]}"
+            found.differences.append(
+                Difference("", "", "model", 0.0, float(counts[1] - counts[0]), "", words, "as many, or fewer")
+            )
+        elif counts[0] != counts[1]:
             found.notes.append(f"loading reports {code} {counts[1]} times; in the golden run {counts[0]} times")
 
 

@@ -15,8 +15,15 @@ from simkit.run_spec import RunSpec, Tolerance
 from simkit.testing.golden.compare.difference import Difference, DifferenceKind
 from simkit.testing.golden.compare.number_columns import compare_column, compare_orientation, quaternion_paths
 from simkit.testing.golden.compare.pictures import compare_pictures
-from simkit.testing.golden.compare.tolerances import FieldFinding, FieldTerms, tolerance_of
-from simkit.testing.golden.compare.units import joint_unit, quantity_text, time_text, value_text
+from simkit.testing.golden.compare.tolerances import (
+    FieldFinding,
+    FieldTerms,
+    joint_unit,
+    quantity_text,
+    time_text,
+    tolerance_of,
+    value_text,
+)
 from simkit.testing.run_record.noise_statistics import NoiseStatistics, StatisticDifference, statistic_differences
 from simkit.testing.run_record.record import Column, Stream
 
@@ -203,29 +210,29 @@ class StreamPair:
 def compare_stream(pair: StreamPair) -> StreamComparison:
     """Compare the streams of a topic."""
     golden, run = pair.golden, pair.run
-    found = StreamComparison()
+    comparison = StreamComparison()
     if golden.digest and golden.digest == run.digest and np.array_equal(golden.times_ns, run.times_ns):
-        return found
+        return comparison
     if golden.type_name != run.type_name:
         words, time = f"{run.topic}: {golden.type_name} became {run.type_name}", begin_time(golden)
-        found.differences.append(Difference(run.topic, "", "text", time, math.nan, "", words, "the same type"))
-        return found
-    whole = pair.tolerance("")
-    if whole.exact:
+        comparison.differences.append(Difference(run.topic, "", "text", time, math.nan, "", words, "the same type"))
+        return comparison
+    message_tolerance = pair.tolerance("")
+    if message_tolerance.exact:
         pair = replace(pair, is_exact=True)
     count, timing = compare_times(golden, run, pair.timestep, pair.is_exact)
     if timing is not None:
-        found.differences.append(timing)
-    ranked = [*_compare_numbers(pair, count, found), *_missing_fields(pair), *_compare_texts(pair, count)]
+        comparison.differences.append(timing)
+    ranked = [*_compare_numbers(pair, count, comparison), *_missing_fields(pair), *_compare_texts(pair, count)]
     if golden.pictures is not None or run.pictures is not None:
-        ranked += compare_pictures(golden, run, whole, pair.is_exact, count, found.notes)
+        ranked += compare_pictures(golden, run, message_tolerance, pair.is_exact, count, comparison.notes)
     if golden.statistics or run.statistics:
-        ranked += _compare_statistics(pair, found)
+        ranked += _compare_statistics(pair, comparison)
     ranked.sort(key=lambda ranking: -ranking[0])
-    found.differences += [difference for _, difference in ranked]
-    if not found.differences:
-        _compare_bits(pair, found)
-    return found
+    comparison.differences += [difference for _, difference in ranked]
+    if not comparison.differences:
+        _compare_bits(pair, comparison)
+    return comparison
 
 
 # ---------------------------------------------------------------------- fields

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, is_dataclass
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
@@ -64,8 +63,8 @@ def scoped_name(owner: str) -> str:
 
 def entity_kind(owner: str) -> str:
     """Return the kind of an entity: model, link, …; "world" for the world."""
-    found = split_path(owner)
-    return found[-1][0].removesuffix("s") if found else "world"
+    steps = split_path(owner)
+    return steps[-1][0].removesuffix("s") if steps else "world"
 
 
 def parent_path(owner: str) -> str:
@@ -80,7 +79,20 @@ def is_within(owner: str, outer: str) -> bool:
 
 
 _REPORT_FIELDS = frozenset(
-    ("folder", "file", "name", "test", "topics", "skip", "tolerances", "state", "model", "picture", "bits")
+    (
+        "folder",
+        "file",
+        "name",
+        "test",
+        "topics",
+        "skip",
+        "tolerances",
+        "state",
+        "model",
+        "picture",
+        "bits",
+        "diagnostics",
+    )
 )
 """Fields of a scenario that select outputs or name files, and therefore do not change the run."""
 
@@ -98,8 +110,8 @@ class Edit:
 
     kind: CauseKind
     path: str
-    golden: Any
-    run: Any
+    golden: object
+    run: object
     where: str = ""
 
     @property
@@ -125,22 +137,22 @@ def model_edits(golden: Mapping[str, object], run: Mapping[str, object], places:
 
 def other_edits(golden: RunRecord, run: RunRecord) -> list[Edit]:
     """Return the differences outside the world: scenario, files, code and versions."""
-    found = [Edit("scenario", name, a, b) for name, (a, b) in _scenario(golden.scenario, run.scenario).items()]
+    edits = [Edit("scenario", name, a, b) for name, (a, b) in _scenario(golden.scenario, run.scenario).items()]
     code = (".py", ".so", ".pyc")
     for name, a, b in _unequal(golden.sources, run.sources):
-        found.append(Edit("code" if name.split(" ")[0].endswith(code) else "file", name, a, b))
-    return found + [Edit("version", name, a, b) for name, a, b in _unequal(golden.fingerprint, run.fingerprint)]
+        edits.append(Edit("code" if name.split(" ")[0].endswith(code) else "file", name, a, b))
+    return edits + [Edit("version", name, a, b) for name, a, b in _unequal(golden.fingerprint, run.fingerprint)]
 
 
 def field_edits(golden: RunRecord, run: RunRecord) -> list[Edit]:
     """Return the fields of the compiled model that differ."""
-    found = []
+    edits = []
     for name, a, b in _pairs(golden.fields, run.fields):
         if a is ABSENT or b is ABSENT:
-            found.append(Edit("model", name, a, b))
-        elif np.shape(a) != np.shape(b) or not _is_equal(a, b):
-            found.append(Edit("model", name, np.asarray(a).tolist(), np.asarray(b).tolist()))
-    return found
+            edits.append(Edit("model", name, a, b))
+        elif np.asarray(a).shape != np.asarray(b).shape or not _is_equal(a, b):
+            edits.append(Edit("model", name, np.asarray(a).tolist(), np.asarray(b).tolist()))
+    return edits
 
 
 def is_same_value(a: object, b: object) -> bool:
@@ -164,24 +176,24 @@ def _is_equal(a: object, b: object) -> bool:
 
 
 def _scenario(golden: RunSpec, run: RunSpec) -> dict[str, tuple[object, object]]:
-    found: dict[str, tuple[object, object]] = {}
+    unequal: dict[str, tuple[object, object]] = {}
     golden, run = permit_code(golden, allow_code=True), permit_code(run, allow_code=True)  # only compared, not run
-    for one in fields(RunSpec):
-        if one.name in _REPORT_FIELDS:
+    for attribute in fields(RunSpec):
+        if attribute.name in _REPORT_FIELDS:
             continue
-        a, b = getattr(golden, one.name), getattr(run, one.name)
-        if one.name == "plugins":
+        a, b = getattr(golden, attribute.name), getattr(run, attribute.name)
+        if attribute.name == "plugins":
             a, b = tuple(_class_of(p) for p in a), tuple(_class_of(p) for p in b)
-        if one.name == "world":
+        if attribute.name == "world":
             a, b = _world_name(a), _world_name(b)
         if _plain(a) != _plain(b):
-            found[one.name] = (a, b)
-    return found
+            unequal[attribute.name] = (a, b)
+    return unequal
 
 
 def _class_of(plugin: object) -> str:
-    one = plugin[-1] if isinstance(plugin, tuple) else plugin
-    return one if isinstance(one, str) else getattr(one, "__name__", type(one).__name__)
+    target = plugin[-1] if isinstance(plugin, tuple) else plugin
+    return target if isinstance(target, str) else getattr(target, "__name__", type(target).__name__)
 
 
 def _world_name(world: str) -> str:
@@ -189,22 +201,22 @@ def _world_name(world: str) -> str:
     return world if "<" in world else world.replace("\\", "/").rstrip("/").rpartition("/")[2]
 
 
-def _plain(value: Any) -> object:
+def _plain(value: object) -> object:
     """Convert a value to plain data, so that values from files and from Python compare equal."""
     if isinstance(value, Mapping):
         return {str(k): _plain(v) for k, v in value.items() if k != "where"}
     if isinstance(value, (list, tuple)):
         return [_plain(v) for v in value]
-    if hasattr(value, "__dataclass_fields__"):
+    if is_dataclass(value) and not isinstance(value, type):
         return {f.name: _plain(getattr(value, f.name)) for f in fields(value) if f.name != "where"}
     return value if isinstance(value, (int, float, str, bool, type(None))) else str(value)
 
 
-def _pairs(golden: Mapping[str, Any], run: Mapping[str, Any]) -> Iterator[tuple[str, Any, Any]]:
+def _pairs(golden: Mapping[str, object], run: Mapping[str, object]) -> Iterator[tuple[str, object, object]]:
     """Iterate over (name, golden value, run value) in the order of the run; a missing value is ABSENT."""
     for name in [*run, *(name for name in golden if name not in run)]:
         yield name, golden.get(name, ABSENT), run.get(name, ABSENT)
 
 
-def _unequal(golden: Mapping[str, Any], run: Mapping[str, Any]) -> Iterator[tuple[str, Any, Any]]:
+def _unequal(golden: Mapping[str, object], run: Mapping[str, object]) -> Iterator[tuple[str, object, object]]:
     return (pair for pair in _pairs(golden, run) if not is_same_value(pair[1], pair[2]))

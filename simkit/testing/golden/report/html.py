@@ -188,8 +188,8 @@ def _tolerances(verdict: Verdict, stream: Stream) -> str:
         words = "the same bits" if is_exact else tolerance_text(tolerance, unit_of(stream.type_name, field))
         groups.setdefault(words, []).append(field)
     if stream.pictures is not None:
-        found = tolerance_of(verdict.run.scenario, stream.topic, stream.type_name, "data")
-        groups[f"mean difference {found.image:g} of 255, similarity {found.ssim:g}"] = ["images"]
+        of_images = tolerance_of(verdict.run.scenario, stream.topic, stream.type_name, "data")
+        groups[f"mean difference {of_images.image:g} of 255, similarity {of_images.ssim:g}"] = ["images"]
     if len(groups) == 1:
         return next(iter(groups))
     return "; ".join(

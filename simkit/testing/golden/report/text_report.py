@@ -39,8 +39,8 @@ def text_report(verdict: Verdict, width: int = 100, *, most: int = MAX_DIFFERENC
         return [line for label, text in lines for line in _wrap_lines(label, text, width, 0 if label == "ok" else 2)]
     lines = list(_body_lines(verdict, most))
     name = f"{verdict.name}: " if mark else ""
-    found = _wrap_lines(mark, name + headline(verdict), width, 0)
-    return [*found, *(line for label, text in lines for line in _wrap_lines(label, text, width, 2))]
+    title_lines = _wrap_lines(mark, name + headline(verdict), width, 0)
+    return [*title_lines, *(line for label, text in lines for line in _wrap_lines(label, text, width, 2))]
 
 
 def passed_text(verdict: Verdict) -> str:
@@ -79,7 +79,7 @@ def headline(verdict: Verdict) -> str:
 
 def first_difference(comparison: Comparison) -> Difference | None:
     """Return the first difference of a topic; sensor readings are more informative than state values."""
-    of_topics = (one for one in comparison.differences if one.topic)
+    of_topics = (difference for difference in comparison.differences if difference.topic)
     return next(of_topics, comparison.differences[0] if comparison.differences else None)
 
 
@@ -89,12 +89,12 @@ def cause_lines(explanation: Explanation | None) -> list[str]:
         return []
     if explanation.lines:
         return list(explanation.lines)
-    found = [cause_text(cause) for cause in explanation.causes]
+    sentences = [cause_text(cause) for cause in explanation.causes]
     if explanation.tick is not None:
         at = f"tick {explanation.tick}" + (f" (t = {explanation.time:.6g} s)" if explanation.time is not None else "")
         quantity = f": {explanation.quantity}" if explanation.quantity else ""
-        found.append(f"the physics differs from {at}{quantity}")
-    return found
+        sentences.append(f"the physics differs from {at}{quantity}")
+    return sentences
 
 
 def cause_text(cause: Cause) -> str:
@@ -136,17 +136,17 @@ def run_failed(verdict: Verdict) -> bool:
 def _body_lines(verdict: Verdict, most: int) -> Iterator[tuple[str, str]]:
     comparison, head = verdict.comparison, headline(verdict)
     for number, line in enumerate(_limited_lines(cause_lines(verdict.explanation), most, "lines")):
-        own = _OWN_LABEL.match(line)
-        yield (own[1], line[own.end() :]) if own else ("cause" if number == 0 else "", line)
+        labelled = _OWN_LABEL.match(line)
+        yield (labelled[1], line[labelled.end() :]) if labelled else ("cause" if number == 0 else "", line)
     first = first_difference(comparison)
     exact = comparison.tier == "exact"
     allowed = allowed_text(first, exact=exact) if first is not None else ""
     if allowed and allowed not in head and not run_failed(verdict):
         yield "allowed", allowed
     is_in_headline = first is not None and (first.words == head or first.kind == "model")
-    rest = [one for one in comparison.differences if not (one is first and is_in_headline)]
+    rest = [difference for difference in comparison.differences if not (difference is first and is_in_headline)]
     for number, line in enumerate(
-        _limited_lines([difference_text(one, exact=exact) for one in rest], most, "differences")
+        _limited_lines([difference_text(difference, exact=exact) for difference in rest], most, "differences")
     ):
         yield "then" if number == 0 else "", line
     failed = [check for check in verdict.checks if not check.passed]
@@ -194,17 +194,17 @@ def junit_cases(verdicts: Verdict | Iterable[Verdict]) -> list[JunitCase]:
     A golden run is one class. Its first case, `run`, has the run's wall time and fails if the run failed. Further cases
     are every topic of either run, the physics state and the world if they differ, and every check of the scenario.
     """
-    found = [verdicts] if isinstance(verdicts, Verdict) else verdicts
-    return [case for verdict in found for case in _cases_of_verdict(verdict)]
+    verdict_list = [verdicts] if isinstance(verdicts, Verdict) else verdicts
+    return [case for verdict in verdict_list for case in _cases_of_verdict(verdict)]
 
 
 def _cases_of_verdict(verdict: Verdict) -> list[JunitCase]:
     scenario = verdict.run.scenario
     classname, file = f"golden.{verdict.name}", str(scenario.file) if scenario.file is not None else ""
-    whole = "\n".join(text_report(verdict))
+    report = "\n".join(text_report(verdict))
     stopped, exact = run_failed(verdict), verdict.comparison.tier == "exact"
-    error = (f"the run failed: {verdict.run.end.strip().partition(chr(10))[0]}", whole) if stopped else None
-    cases = [JunitCase("run", classname, verdict.elapsed, error=error, output="" if stopped else whole, file=file)]
+    error = (f"the run failed: {verdict.run.end.strip().partition(chr(10))[0]}", report) if stopped else None
+    cases = [JunitCase("run", classname, verdict.elapsed, error=error, output="" if stopped else report, file=file)]
     causes = cause_lines(verdict.explanation)
     by_topic: dict[str, list[Difference]] = {
         topic: [] for topic in sorted(verdict.golden.streams.keys() | verdict.run.streams.keys())

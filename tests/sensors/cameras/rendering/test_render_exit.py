@@ -86,6 +86,7 @@ def test_a_forked_child_reports_that_opengl_cannot_draw_and_continues() -> None:
 
 @NEEDS_GL
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
+@pytest.mark.slow
 def test_in_a_forked_child_a_new_simulation_draws_in_software_and_the_parents_one_not_at_all() -> None:
     done = run(
         """
@@ -110,6 +111,7 @@ def test_in_a_forked_child_a_new_simulation_draws_in_software_and_the_parents_on
 
 
 @NEEDS_GL
+@pytest.mark.slow
 def test_a_child_forked_before_the_first_image_draws_with_any_pyopengl_platform() -> None:
     done = run(
         """

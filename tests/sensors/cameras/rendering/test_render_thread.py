@@ -207,7 +207,7 @@ def test_a_failed_image_switches_its_camera_off_with_one_report(monkeypatch: pyt
     def failing(self: Any, drawn_views: Any, context: Any) -> Any:
         made[0] += 1
         if made[0] == 3:
-            raise RenderError("drawing an image failed: out of memory", "SK-RENDER-002")
+            raise RenderError("SK-RENDER-002", "drawing an image failed: out of memory")
         return make_reading(self, drawn_views, context)
 
     monkeypatch.setattr(Camera, "make_reading", failing)

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.compiler.servo_gains import drive_gains, effective_inertias
-from simkit.pose import Vector
+from simkit.extend import Vector
 from simkit_control.plugins.ros2_control.hardware_interfaces import POSITION, VELOCITY, Indices
 
 if TYPE_CHECKING:

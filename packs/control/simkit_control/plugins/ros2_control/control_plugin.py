@@ -2,37 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import TYPE_CHECKING, ClassVar, Final
 
-from simkit.diagnostics import did_you_mean
-from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
+from simkit import ModelPlugin, Params
+from simkit.extend import Options, OptionsOf, boolean, did_you_mean, text, texts
 from simkit.plugins.endpoints import offers_all
 from simkit.plugins.find_entities import find_plugin_file
-from simkit.plugins.options import Options, OptionsOf, boolean, text, texts
 from simkit.plugins.ros_parameter_block import ParameterBlock
 from simkit.plugins.ros_parameter_files import ParameterFiles, read_parameter_file
-from simkit.plugins.ros_parameter_substitution import substitute_arguments
 from simkit_control.plugins.ros2_control.controller_manager import ControllerManager
 from simkit_control.plugins.ros2_control.controller_manager_services import offer_services
 from simkit_control.plugins.ros2_control.hardware import Hardware
 from simkit_control.plugins.ros2_control.hardware_description import describe_hardware
 from simkit_control.plugins.ros2_control.hardware_interfaces import POSITION, VELOCITY
-from simkit_control.plugins.ros2_control.hardware_joint import PidGains, read_pid_gains
+from simkit_control.plugins.ros2_control.hardware_joint import HardwareJoint, PidGains, read_pid_gains
 from simkit_control.plugins.ros2_control.manager_parameter_files import (
     adapt_to_manager,
     report_high_rates,
     report_unused_parameters,
 )
+from simkit_control.plugins.ros2_control.parameter_substitution import substitute_arguments
 from simkit_control.plugins.ros2_control.transmissions import transmissions_of
 
 if TYPE_CHECKING:
-    from simkit.compiler import ActuatorRef, SpecBuilder
+    from simkit import Model
+    from simkit.compiler import ActuatorRef
+    from simkit.extend import SceneModel, SpecBuilder
     from simkit.plugins.ros_parameter_files import ParameterFile
-    from simkit.runtime import Model
-    from simkit.scene import SceneModel
     from simkit_control.plugins.ros2_control.hardware_description import ComponentDescription
 
 UPDATE_RATE: Final = 100.0
@@ -100,7 +98,8 @@ class ControlPlugin(ModelPlugin):
         self.hardware.holds_position = self.options.hold_joints
         self.mark_ignored_elements(params)
         self.before_step_rate = self.read_rate(params, builder)
-        self._report_driven_twice(builder)
+        refs = [ref for record in builder.records.values() for ref in record.actuators]
+        self._earlier = {ref.name for ref in refs}
         self.hardware.prepare(builder, self.name, self.read_pids())
 
     # ------------------------------------------------------------------ the plugin's element and its files
@@ -118,14 +117,14 @@ class ControlPlugin(ModelPlugin):
 
     def read_rate(self, params: Params, builder: SpecBuilder) -> float | None:
         """Return the update rate of the manager [Hz]; None for an update at every step."""
-        own = self.files.of_node(f"{self.ros.namespace}/{self._manager_name}")
-        if own is None or "update_rate" not in (own.below or {}):
+        entry = self.files.of_node(f"{self.ros.namespace}/{self._manager_name}")
+        if entry is None or "update_rate" not in (entry.below or {}):
             return UPDATE_RATE
-        rate = own.block("controller_manager", params.diagnostics).number("update_rate", UPDATE_RATE, minimum=1e-3)
+        rate = entry.block("controller_manager", params.diagnostics).number("update_rate", UPDATE_RATE, minimum=1e-3)
         steps = 1.0 / builder.world.physics.max_step_size
         if rate > steps * (1.0 + 1e-9):
             message = f"the controller manager's update_rate is {rate:g} Hz, above the step rate of {steps:g} Hz"
-            where = (own.below or {})["update_rate"].where
+            where = (entry.below or {})["update_rate"].where
             params.diagnostics.warning("SK-CONTROL-017", f"{message}; it is updated at every step", where)
         return rate
 
@@ -134,29 +133,29 @@ class ControlPlugin(ModelPlugin):
 
         The gains come from the hardware's joints. Gains in `pid_gains` of the plugin's own node override them.
         """
-        found = {j.name: dict(j.pids) for c in self.hardware.components for j in c.joints}
+        gains_by_joint = {j.name: dict(j.pids) for c in self.hardware.components for j in c.joints}
         entry = self.files.of_node(f"{self.ros.namespace}/{self.name}")
         if entry is not None and "pid_gains" in (entry.below or {}):
             block = entry.block(self.name, self.params.diagnostics).block("pid_gains")
             for interface in (POSITION, VELOCITY):
                 for joint, gains in self.gains_of_joints(block.block(interface)).items():
-                    found.setdefault(joint, {})[interface] = gains
+                    gains_by_joint.setdefault(joint, {})[interface] = gains
             block.report_unread("SK-CONTROL-011", "pid_gains")
-        return {joint: pids for joint, pids in found.items() if pids}
+        return {joint: pids for joint, pids in gains_by_joint.items() if pids}
 
     def gains_of_joints(self, block: Params) -> dict[str, PidGains]:
         """Return the gains of a block by joint; report joints that the hardware does not have."""
-        found = {}
+        by_joint = {}
         forms = block.forms if isinstance(block, ParameterBlock) else {}
         for name, (_, where) in forms.items():
             gains = block.block(name)
             if name in self.hardware.joints:
-                found[name] = read_pid_gains(gains)
+                by_joint[name] = read_pid_gains(gains)
                 continue
             gains.mark_all_read()
             message = f"pid_gains names joint {name!r}, which the hardware does not have"
             self.params.diagnostics.warning("SK-CONTROL-008", message, where, did_you_mean(name, self.hardware.joints))
-        return found
+        return by_joint
 
     def speed_bounds(self, topic: str) -> tuple[tuple[float, float], tuple[float, float]] | None:
         """Return the speed bounds [m/s, rad/s] of the controller that subscribes to a topic.
@@ -169,33 +168,53 @@ class ControlPlugin(ModelPlugin):
         getters = (getattr(entry.controller, "speed_bounds", None) for entry in loaded)
         return next((bounds for get in getters if get is not None and (bounds := get(topic)) is not None), None)
 
-    def _report_driven_twice(self, builder: SpecBuilder) -> None:
-        """Report joints that a plugin earlier in the file drives too."""
-        refs = [ref for record in builder.records.values() for ref in record.actuators]
-        self._earlier = {ref.name for ref in refs}
-        self._report_shared_joints(refs, "already")
+    def prevails(self, joint: HardwareJoint, other: ActuatorRef, *, is_later: bool) -> bool:
+        """Check whether this plugin moves a joint in Gazebo although another plugin drives the joint too.
 
-    def _report_driven_later(self) -> None:
-        """Report joints that a plugin later in the file drives too; another plugin of ros_control reports itself."""
+        Args:
+            joint: joint of the hardware.
+            other: actuator of the other plugin.
+            is_later: true if the other plugin comes later in the file.
+        """
+        return other.kind != "motor" and not is_later  # the last velocity of a step counts, and a force replaces it
+
+    def _find_rivals(self) -> None:
+        """Report joints that another plugin drives too, and tell the hardware which of the two moves them.
+
+        Another plugin of ros_control that comes later reports itself.
+        """
         structure = self.sim.engine.structure
         others = {p.name for p in structure.all_plugins() if isinstance(p, ControlPlugin)}
         refs = [ref for record in structure.builder.records.values() for ref in record.actuators]
-        later = [ref for ref in refs if ref.name not in self._earlier and ref.owner not in others]
-        self._report_shared_joints(later, "also")
+        by_scoped = {joint.scoped: joint for joint in self.hardware.joints.values() if joint.command_interfaces}
+        shared: dict[tuple[str, bool, bool], list[str]] = {}
+        for ref in (ref for ref in refs if ref.joint in by_scoped and ref.owner != self.name):
+            joint, is_later, is_manager = by_scoped[ref.joint], ref.name not in self._earlier, ref.owner in others
+            if is_manager and is_later:
+                continue
+            prevails = self.prevails(joint, ref, is_later=is_later)
+            if not is_manager:
+                self.hardware.rivals.setdefault(joint.name, []).append((ref, prevails))
+            shared.setdefault((ref.owner, is_later, prevails), []).append(joint.name)
+        for (owner, is_later, prevails), names in shared.items():
+            self._report_shared_joints(owner, names, is_later=is_later, prevails=prevails, is_manager=owner in others)
 
-    def _report_shared_joints(self, refs: Iterable[ActuatorRef], when: str) -> None:
-        """Report the joints of the hardware that these actuators drive, in one warning for each other plugin."""
-        driven = {ref.joint: ref.owner for ref in refs}
-        shared: dict[str, list[str]] = {}
-        for joint in self.hardware.joints.values():
-            if joint.command_interfaces and joint.scoped in driven:
-                shared.setdefault(driven[joint.scoped], []).append(joint.name)
-        for owner, names in shared.items():
-            listed, many = ", ".join(map(repr, names)), len(names) > 1
-            what = f"joints {listed} are" if many else f"joint {listed} is"
-            message = f"{what} {when} driven by plugin {owner!r}: both act on {'them' if many else 'it'}"
-            hint = "remove one of the two plugins, or remove the joint from <ros2_control> or <transmission>"
-            self.params.diagnostics.warning("SK-CONTROL-004", message, self.where, hint)
+    def _report_shared_joints(
+        self, owner: str, names: Sequence[str], *, is_later: bool, prevails: bool, is_manager: bool
+    ) -> None:
+        """Report joints that another plugin drives too, and which of the two plugins moves them."""
+        listed, many = ", ".join(map(repr, names)), len(names) > 1
+        message = f"joints {listed} are" if many else f"joint {listed} is"
+        message += f" {'also' if is_later else 'already'} driven by plugin {owner!r}: "
+        them = "them" if many else "it"
+        if is_manager:
+            message += f"both act on {them}"
+        elif prevails:
+            message += f"{self.name!r} holds {them}, and the commands of {owner!r} have no effect, as in Gazebo"
+        else:
+            message += f"{owner!r} moves {them}, and {self.name!r} has no effect on {them}, as in Gazebo"
+        hint = "remove one of the two plugins, or remove the joint from <ros2_control> or <transmission>"
+        self.params.diagnostics.warning("SK-CONTROL-004", message, self.where, hint)
 
     def _adapted_run_files(self, run_files: Sequence[ParameterFile], params: Params) -> Iterator[ParameterFile]:
         """Adapt the parameter files of the run to the node names that this manager expects."""
@@ -206,8 +225,14 @@ class ControlPlugin(ModelPlugin):
     def read_files(self, params: Params, builder: SpecBuilder, *, has_other_files: bool) -> Iterator[ParameterFile]:
         """Yield the parameter files that the plugin's element names; without any, report it."""
         elements = params.all("parameters")
+        given = {str(entry.file.path) for entry in builder.parameter_files}
         for element in elements:
-            for uri in [element.value] if element.value.startswith("$(") else element.value.split():
+            names = [element.value] if element.value.startswith("$(") else element.value.split()
+            if len(names) > 1 and find_plugin_file(self, element.value, builder, _CONFIG_FOLDERS) is not None:
+                names = [element.value]  # a path with spaces
+            for uri in names:
+                if uri in given:
+                    continue  # a file of the run, which is read in any case
                 path = find_plugin_file(self, uri, builder, _CONFIG_FOLDERS)
                 if path is None:
                     message = (
@@ -229,7 +254,7 @@ class ControlPlugin(ModelPlugin):
     # ------------------------------------------------------------------ run time
 
     def load(self, parent: Model, params: Params) -> None:
-        self._report_driven_later()
+        self._find_rivals()
         self.hardware.load(self.sim)
         self.manager = self.manager_class(self, self.hardware, self.files, self._manager_name, params.diagnostics)
         self._choose_free_namespace(parent.scoped.partition("::")[0], params)
@@ -245,7 +270,11 @@ class ControlPlugin(ModelPlugin):
             near = did_you_mean(name, declared) or "declared controllers: " + (", ".join(declared) or "none")
             message = f"<simkit:controllers> names {name!r}, which no parameter file declares with a type"
             params.diagnostics.error("SK-CONTROL-013", message, element.where, near)
+        if not self._chosen_controllers and self.manager.is_started_by_nodes:
+            chosen = []
         self.manager.start(chosen)
+        # the nodes of a run are added after its world was loaded
+        self.manager.is_start_open = not self._chosen_controllers and not self.sim.tick and not self.sim.nodes
         report_high_rates(self.manager, self.before_step_rate, params.diagnostics)
 
     def controllers_to_start(self, declared: Mapping[str, str]) -> list[str]:
@@ -264,7 +293,7 @@ class ControlPlugin(ModelPlugin):
         hint = "give each robot a <namespace> in the plugin's <ros>"
         params.diagnostics.note("SK-CONTROL-001", f"{message}are below {self.ros.namespace!r}", self.where, hint)
 
-    def _remember_loaded(self) -> dict[str, Any]:
+    def get_loaded_state(self) -> dict[str, object]:
         """Return the attributes themselves, because all of them can be copied; a copy would take 10 % of the load."""
         return vars(self)
 
@@ -276,13 +305,13 @@ class ControlPlugin(ModelPlugin):
                 raise
             # a callback removed the robot during the update, so there is nothing left to command
 
-    def get_state(self) -> dict[str, Any]:
+    def get_state(self) -> dict[str, object]:
         state = super().get_state()
         if "manager" in state:
             state["manager"] = self.manager.get_state()
         return state
 
-    def set_state(self, state: Mapping[str, Any]) -> None:
+    def set_state(self, state: Mapping[str, object]) -> None:
         if "manager" not in state:
             super().set_state(state)
             return
@@ -302,6 +331,14 @@ class GazeboRos2Control(ControlPlugin):
     """Runs the controllers that the files in `<parameters>` declare; see `docs/ros2_control.md`."""
 
     filenames = ("libgazebo_ros2_control.so",)
+
+    def prevails(self, joint: HardwareJoint, other: ActuatorRef, *, is_later: bool) -> bool:
+        """Check whether this plugin moves the joint; see `ControlPlugin.prevails`.
+
+        Gazebo Classic sets the velocity of the joint before the step. The motor of a drive plugin then acts within the
+        step, so that the joint has the velocity of the motor at its end. A force of another plugin acts for one step.
+        """
+        return other.kind == "motor"
 
 
 class GazeboRosControl(ControlPlugin):
@@ -327,6 +364,17 @@ class GazeboRosControl(ControlPlugin):
         if not params.has("robotNamespace"):  # the default namespace is the model's name
             self.ros = self.ros.in_namespace(model)
 
+    def prevails(self, joint: HardwareJoint, other: ActuatorRef, *, is_later: bool) -> bool:
+        """Check whether this plugin moves the joint; see `ControlPlugin.prevails`.
+
+        The plugin sets position or motor velocity at every step, but a drive plugin only at its update rate. An effort
+        of 0 leaves the joint to the drive. ROS 2, whose drives have an element `<ros>`, does not have this plugin.
+        """
+        owners = (p for p in self.sim.engine.structure.all_plugins() if p.name == other.owner)
+        if any(owner.params.has("ros") for owner in owners):
+            return False
+        return bool({POSITION, VELOCITY} & set(joint.command_interfaces))
+
     def mark_ignored_elements(self, params: Params) -> None:
         for name in ("robotSimType", "legacyModeNS", "robotParam", "eStopTopic", "joints"):
             params.child(name)
@@ -336,15 +384,15 @@ class GazeboRosControl(ControlPlugin):
         return 1.0 / period if period > 0.0 else None
 
     def read_pids(self) -> Mapping[str, Mapping[str, PidGains]]:
-        found: dict[str, Mapping[str, PidGains]] = {}
+        gains_by_joint: dict[str, Mapping[str, PidGains]] = {}
         for node in dict.fromkeys((f"{self.ros.namespace}/{_ROS_1_NODE}", f"/{_ROS_1_NODE}")):
             entry = self.files.of_node(node)
             if entry is not None:
                 block = entry.block(_ROS_1_NODE, self.params.diagnostics).block("pid_gains")
                 for joint, gains in self.gains_of_joints(block).items():
-                    found.setdefault(joint, self._gains_by_interface(joint, gains))
+                    gains_by_joint.setdefault(joint, self._gains_by_interface(joint, gains))
                 block.report_unread("SK-CONTROL-011", "pid_gains")
-        return found
+        return gains_by_joint
 
     def _gains_by_interface(self, joint: str, gains: PidGains) -> Mapping[str, PidGains]:
         """Assign one set of gains to each command interface of the joint, position or velocity."""

@@ -6,22 +6,22 @@ import abc
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
-from simkit.msgs.message_types import Message
-from simkit.params import Params
+from simkit import Params
+from simkit.extend import SharedByCopies
+from simkit.msgs import Message
 from simkit.plugins.attribute_state import copy_attributes, restore_attributes
 from simkit.plugins.live_parameters import declare_at, descend
-from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.runtime.communication.parameter import Parameter
 from simkit.topic_logger import TopicLogger
 from simkit_control.plugins.ros2_control.hardware_interfaces import InterfaceSelection
 
 if TYPE_CHECKING:
-    from simkit.plugins.base import Plugin
-    from simkit.runtime import Simulation
-    from simkit.runtime.communication.action_server import Action, GoalHandle
+    from simkit import Plugin, Simulation
+    from simkit.extend import GoalHandle
+    from simkit.runtime.communication.action_server import Action
     from simkit.runtime.communication.publisher import Listener, Publisher
-    from simkit.runtime.communication.service_call import Service
+    from simkit.runtime.communication.service_server import Service
     from simkit_control.plugins.ros2_control.hardware import Hardware
 
 
@@ -49,8 +49,8 @@ class ControllerEndpoints(SharedByCopies):
         """Return the endpoint of a key; create it if it does not exist yet."""
         if key not in self._handles:
             self._handles[key] = make()
-        found: Handle = self._handles[key]
-        return found
+        handle: Handle = self._handles[key]
+        return handle
 
     def relay(self, key: Key, handler: Relay, absent: Relay = lambda *_: None) -> Relay:
         """Set the handler of an endpoint; return a callback that calls the current handler, or `absent` without one."""
@@ -85,6 +85,7 @@ class Controller(SharedByCopies, abc.ABC):
         commands: interfaces in `command_interfaces`, available after `configure`, claimed while the controller is
             active.
         update_rate: update rate [Hz]; 0 for the manager's update rate.
+        remappings: source and target of the remapping rules that only this controller has.
         log: logger below `simkit`.
         endpoints: topics, services and actions; the manager keeps them for the next controller of the same name.
     """
@@ -98,6 +99,7 @@ class Controller(SharedByCopies, abc.ABC):
     states: InterfaceSelection
     commands: InterfaceSelection
     update_rate: int = 0
+    remappings: Sequence[tuple[str, str]] = ()
     log: TopicLogger
     endpoints: ControllerEndpoints
 
@@ -156,7 +158,7 @@ class Controller(SharedByCopies, abc.ABC):
 
     def topic(self, name: str) -> str:
         """Return a name in the controller's node: `~/state` becomes `<controller>/state`."""
-        return self.plugin.ros.topic_of_node(name, self.name)
+        return self.plugin.ros.topic_of_node(name, self.name, self.remappings)
 
     def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Publisher:
         """Create a publisher, like `Plugin.advertise`, in the controller's node."""
@@ -218,9 +220,9 @@ class Controller(SharedByCopies, abc.ABC):
         """
         plugin = self.plugin
         params, last = descend(self.params, name)
-        own, model, sim = f"{plugin.ros.namespace}/{self.name}", plugin.scoped.partition("::")[0], plugin.sim
+        node_name, model, sim = f"{plugin.ros.namespace}/{self.name}", plugin.scoped.partition("::")[0], plugin.sim
         parameter = Parameter(
-            sim.communication.node_of(plugin, own, f"/{model}/{self.name}"),
+            sim.communication.node_of(plugin, node_name, f"/{model}/{self.name}"),
             name,
             default,
             minimum=minimum,
@@ -250,5 +252,5 @@ class Controller(SharedByCopies, abc.ABC):
 
 
 _OWN_ATTRIBUTES = frozenset(
-    ("name", "plugin", "params", "hardware", "states", "commands", "log", "endpoints", "_uncopied")
+    ("name", "plugin", "params", "hardware", "states", "commands", "remappings", "log", "endpoints", "_uncopied")
 )

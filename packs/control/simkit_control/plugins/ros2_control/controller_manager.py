@@ -11,16 +11,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal
 
-from simkit.diagnostics import Diagnostics, Where, did_you_mean
-from simkit.params import Params
-from simkit.plugins.not_deep_copied import SharedByCopies
+from simkit import Params
+from simkit.extend import Diagnostics, SharedByCopies, Where, did_you_mean
 from simkit.plugins.ros_parameter_files import Entry, ParameterFiles
 from simkit.registry import Kinds
 from simkit_control.plugins.ros2_control.controller import Controller, ControllerEndpoints
 from simkit_control.plugins.ros2_control.hardware import Hardware
 
 if TYPE_CHECKING:
-    from simkit.plugins.base import Plugin
+    from simkit import Plugin
 
 GROUP: Final = "simkit.controllers"
 _SECOND: Final = 1_000_000_000
@@ -41,8 +40,8 @@ def controller_kinds() -> Mapping[str, type[Controller]]:
     """Return all controller classes by type name; the mapping is read-only and created once."""
 
     def names(cls: type[Controller]) -> tuple[str, ...]:
-        own: tuple[str, ...] = vars(cls).get("types", ())  # inherited names belong to the base class
-        return own
+        types: tuple[str, ...] = vars(cls).get("types", ())  # inherited names belong to the base class
+        return types
 
     return Kinds("simkit_control.controllers", GROUP, Controller, names)  # type: ignore[type-abstract]
 
@@ -87,6 +86,9 @@ class ControllerManager(SharedByCopies):
         namespace: namespace of the manager's node and of the controllers' nodes.
         controllers: loaded controllers by name, in the order in which they were loaded.
         is_ros_1: true if the services use the states and steps of ROS 1.
+        is_start_open: true until it is known whether the run has a node that loads controllers; see
+            `leave_start_to_nodes`.
+        remappings: source and target of the remapping rules of single controllers, by the name of the controller.
     """
 
     def __init__(
@@ -96,7 +98,8 @@ class ControllerManager(SharedByCopies):
         self._diagnostics: Diagnostics | None = diagnostics
         self.namespace = plugin.ros.namespace
         self.controllers: dict[str, LoadedController] = {}
-        self.is_ros_1 = False
+        self.is_ros_1 = self.is_start_open = False
+        self.remappings: dict[str, tuple[tuple[str, str], ...]] = {}
         self._last_ns = 0
         self._endpoints: dict[str, ControllerEndpoints] = {}
         # the active controllers in their order; None after a change
@@ -119,24 +122,26 @@ class ControllerManager(SharedByCopies):
         The type stands below the name of the controller in the manager's node, or in the controller's own node, where
         the spawner of ros2_control looks for it. The entries of the manager's node come first.
         """
-        own = self.files.of_node(self.node)
-        kinds = {name: (entry.below or {}).get("type") for name, entry in (own.below or {}).items()} if own else {}
-        found = {name: kind for name, kind in kinds.items() if kind is not None and kind.text}
+        of_node = self.files.of_node(self.node)
+        kinds = (
+            {name: (entry.below or {}).get("type") for name, entry in (of_node.below or {}).items()} if of_node else {}
+        )
+        declared = {name: kind for name, kind in kinds.items() if kind is not None and kind.text}
         for name in self.files.nodes_below(self.namespace):
             entry = self.files.of_node(f"{self.namespace}/{name}")
             kind = (entry.below or {}).get("type") if entry is not None else None
             # nodes that are not controllers may have a parameter `type` too, but not the name of a class
-            if name not in found and name != self.name and kind is not None and _CLASS.fullmatch(kind.text):
-                found[name] = kind
-        return found
+            if name not in declared and name != self.name and kind is not None and _CLASS.fullmatch(kind.text):
+                declared[name] = kind
+        return declared
 
     # ------------------------------------------------------------------ life cycle
 
     @property
     def reports(self) -> Diagnostics:
         """Diagnostics that receive new problems: the loading diagnostics until `start` returns, then the run's."""
-        found: Diagnostics = self.plugin.sim.engine.reports if self._diagnostics is None else self._diagnostics
-        return found
+        diagnostics: Diagnostics = self.plugin.sim.engine.reports if self._diagnostics is None else self._diagnostics
+        return diagnostics
 
     def load(self, name: str) -> str:
         """Create a controller of the type that the files declare; return the problem, or an empty text."""
@@ -150,16 +155,17 @@ class ControllerManager(SharedByCopies):
             return f"controller '{name}' (type '{kind}') {_reason_for_unknown(kind)}"
         params = self._parameters(name)
         controller = cls(name, self.plugin, params, self.hardware)
+        controller.remappings = self.remappings.get(name, ())
         controller.endpoints = self._endpoints.setdefault(name, controller.endpoints)
         self.controllers[name] = LoadedController(controller, kind)
         return ""
 
     def _parameters(self, name: str) -> Params:
-        found, entry = Diagnostics(), self.files.of_node(f"{self.namespace}/{name}")
+        problems, entry = Diagnostics(), self.files.of_node(f"{self.namespace}/{name}")
         if entry is None:
-            return Params(name, where=self.plugin.where, diagnostics=found)
-        created = entry.params(name, found)
-        return created[0] if created else Params(name, where=entry.where, diagnostics=found)
+            return Params(name, where=self.plugin.where, diagnostics=problems)
+        created = entry.params(name, problems)
+        return created[0] if created else Params(name, where=entry.where, diagnostics=problems)
 
     def configure(self, name: str) -> str:
         """Let a controller read its parameters; return the problem, or an empty text."""
@@ -188,6 +194,14 @@ class ControllerManager(SharedByCopies):
             self._check_interfaces(controller, states, self.hardware.states.names, "state")
         params.report_unread("SK-CONTROL-011", f"controller {name!r}")
         errors = [d for d in params.diagnostics if d.severity == "error"]
+        if errors and self._diagnostics is not None and all(map(self.reports.can_leave_out, errors)):
+            params.diagnostics.soften(errors)
+            self.reports.extend(params.diagnostics)
+            message = f"controller {name!r} ({loaded.type}) is left out, because it has errors"
+            message += "; its joints do not follow its commands" if commands else "; it publishes nothing"
+            hint = "correct the errors above; with --strict they stop the run"
+            self.reports.warning("SK-LOAD-014" if commands else "SK-LOAD-013", message, params.where, hint)
+            return "; ".join(d.message for d in errors)
         self.reports.extend(params.diagnostics)
         if params.diagnostics.error_count > before:
             return "; ".join(d.message for d in errors)
@@ -301,7 +315,7 @@ class ControllerManager(SharedByCopies):
         self, names: Sequence[str], verb: str, needed: State, problems: list[str], leaving: Sequence[str]
     ) -> list[str]:
         """Return the names that can be switched; append the reasons for the others to `problems`."""
-        found = []
+        switchable = []
         for name in dict.fromkeys(names):
             loaded = self.controllers.get(name)
             if loaded is None:
@@ -309,12 +323,12 @@ class ControllerManager(SharedByCopies):
                 missing = f"could not {verb} controller '{name}' because no controller with this name exists"
                 problems.append(f"{missing}; {near}" if near else missing)
             elif loaded.state == needed or (verb == "activate" and name in leaving):
-                found.append(name)
+                switchable.append(name)
             else:
                 already = "already active" if loaded.state == "active" else f"not in {needed} state"
                 reason = already if verb == "activate" else "not active"
                 problems.append(f"could not {verb} controller '{name}' since it is {reason}")
-        return found
+        return switchable
 
     def unload(self, name: str) -> str:
         """Remove a controller that is not active; return the problem, or an empty text."""
@@ -352,14 +366,39 @@ class ControllerManager(SharedByCopies):
         hint = f"call {service} to activate {name} and deactivate the other controllers"
         self.reports.note("SK-CONTROL-014", message, self._declaration_location(name), hint)
 
+    @property
+    def is_started_by_nodes(self) -> bool:
+        """True if nodes such as spawners load the controllers, so that none of them starts with the robot."""
+        sim = self.plugin.sim
+        spec = sim.run_spec
+        waits = spec is not None and not spec.options.get("start_controllers", True)
+        return waits or sim.control.has_controller_nodes
+
+    def leave_start_to_nodes(self) -> None:
+        """Unload the controllers that started with the robot if the run has a node that loads controllers.
+
+        The nodes of a run are added after its world was loaded, so the first step, or the first call of a service of
+        the manager, decides it.
+        """
+        if not self.is_start_open:
+            return
+        self.is_start_open = False
+        if self.is_started_by_nodes:
+            for name in [name for name, loaded in self.controllers.items() if loaded.state == "active"]:
+                self.deactivate(name)
+            for name in list(self.controllers):
+                self.unload(name)
+
     def _declaration_location(self, name: str) -> Where:
-        own = self.files.of_node(self.node)
-        entry = (own.below or {}).get(name) if own is not None else None
+        of_node = self.files.of_node(self.node)
+        entry = (of_node.below or {}).get(name) if of_node is not None else None
         entry = entry or self.declarations().get(name)
         return self.plugin.where if entry is None else entry.where
 
     def update(self, now_ns: int) -> None:
         """Read the hardware, update the active controllers and write the commands."""
+        if self.is_start_open:
+            self.leave_start_to_nodes()
         self.hardware.read()
         if self._active_controllers is None:
             self._active_controllers = [(c, c.controller) for c in self.controllers.values() if c.state == "active"]
@@ -384,16 +423,18 @@ class ControllerManager(SharedByCopies):
             {name: dict(endpoints.handlers) for name, endpoints in self._endpoints.items()},
             self._last_ns,
             hardware.get_state(),
+            *([True] if self.is_start_open else []),  # a reset goes back to the time before the first step
         )
 
     def set_state(self, state: Any) -> None:
         """Restore a state from `get_state`."""
-        controllers, handlers, self._last_ns, hardware = state
+        controllers, handlers, self._last_ns, hardware, *is_start_open = state
+        self.is_start_open = bool(is_start_open)
         for name, endpoints in self._endpoints.items():
             endpoints.handlers = dict(handlers.get(name, {}))
         self.controllers, self._active_controllers = {}, None
-        for name, loaded, kind, state_name, last, own in controllers:
+        for name, loaded, kind, state_name, last, controller_state in controllers:
             loaded.type, loaded.state, loaded.last = kind, state_name, last
-            loaded.controller.set_state(own)
+            loaded.controller.set_state(controller_state)
             self.controllers[name] = loaded
         self.hardware.set_state(hardware)

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Final
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
 
-from simkit.msgs.message_types import Message
+from simkit.msgs import Message
 from simkit_control.plugins.ros2_control.controller import Controller
 from simkit_control.plugins.ros2_control.controller_manager import ControllerManager, LoadedController, controller_kinds
+from simkit_control.plugins.ros2_control.controller_parameters import set_parameters
 
 if TYPE_CHECKING:
     from simkit.msgs import SetHardwareComponentState_Request, SwitchController_Request
     from simkit_control.plugins.ros2_control.hardware_description import ComponentDescription
+
+Handler = Callable[[Any], object]
+"""Function that answers a request of a service."""
 
 _STRICT: Final = 2
 _BEST_EFFORT: Final = 1
@@ -23,7 +28,7 @@ _ROS_1_STATES: Final = {"unconfigured": "initialized", "inactive": "stopped", "a
 
 def offer_services(manager: ControllerManager) -> None:
     """Offer the services of a controller manager below its node."""
-    handlers: dict[str, Callable[[Message], object]] = {
+    handlers: dict[str, Handler] = {
         "ListControllers": lambda _: {"controller": [_state(manager, n, c) for n, c in manager.controllers.items()]},
         "ListControllerTypes": lambda _: _types(),
         "LoadController": lambda request: {"ok": _load(manager, request.name)},
@@ -39,7 +44,23 @@ def offer_services(manager: ControllerManager) -> None:
     }
     for name, handler in handlers.items():
         snake = "".join(f"_{c.lower()}" if c.isupper() else c for c in name).lstrip("_")
-        manager.plugin.offer(f"{manager.name}/{snake}", f"controller_manager_msgs/srv/{name}", handler)
+        manager.plugin.offer(
+            f"{manager.name}/{snake}", f"controller_manager_msgs/srv/{name}", _settled(manager, handler)
+        )
+    if not manager.is_ros_1:
+        name = f"{manager.name}/set_parameters"
+        handler = _settled(manager, partial(set_parameters, manager))
+        manager.plugin.offer(name, "rcl_interfaces/srv/SetParameters", handler)
+
+
+def _settled(manager: ControllerManager, handler: Handler) -> Handler:
+    """Return a handler of a service that decides first who starts the controllers."""
+
+    def handle(request: Message) -> object:
+        manager.leave_start_to_nodes()
+        return handler(request)
+
+    return handle
 
 
 def _report_problem(manager: ControllerManager, problem: str) -> bool:

@@ -7,10 +7,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from simkit.params import Params
-from simkit.plugins.not_deep_copied import SharedByCopies
+from simkit import Params
+from simkit.extend import SharedByCopies, Vector
 from simkit.plugins.ros_parameter_block import read_numbers
-from simkit.pose import Vector
 
 _INFINITY = math.inf
 
@@ -99,8 +98,8 @@ _UNITS = {"velocity": "m/s or rad/s", "acceleration": "m/s² or rad/s²", "jerk"
 
 def read_bound(block: Params, name: str, minimum: float | None, maximum: float | None) -> float | None:
     """Read a bound; None if it is absent or NaN."""
-    found = block.child(name)
-    if found is None or found.value.strip().lstrip(".").lower() == "nan":
+    element = block.child(name)
+    if element is None or element.value.strip().lstrip(".").lower() == "nan":
         return None
     return block.number(name, minimum=minimum, maximum=maximum, finite=False)
 
@@ -195,10 +194,10 @@ def _wheel_size(
             if key in missing and value is not None:
                 message = f"{params.name}: {key} is missing; the model's value is used: {value:g} m"
                 params.diagnostics.note("SK-CONTROL-044", message, params.where)
-    found = (
+    sizes = (
         params.number(k, v, required=v is None, minimum=_SMALLEST_SIZE) for k, v in zip(keys, measured, strict=True)
     )
-    separation, radius = found
+    separation, radius = sizes
     return separation or 1.0, radius or 1.0  # a missing size has already been reported as an error
 
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar, Final
 
-from simkit.diagnostics import Where
+from simkit.extend import Where
 from simkit.plugins.ros_parameter_files import Entry
 from simkit_control.plugins.ros2_control.control_plugin import GazeboRosControl
 from simkit_control.plugins.ros2_control.controller_manager import ControllerManager
 from simkit_control.plugins.ros2_control.robot_controller import RobotController
 
 if TYPE_CHECKING:
-    from simkit.params import Params
+    from simkit import Params
 
 _JOINT_STATES: Final = "joint_states"
 _JOINT_STATES_TYPE: Final = "fetch_gazebo/JointStates"
@@ -21,16 +21,16 @@ class RobotControllerManager(ControllerManager):
     """Manager whose controllers are listed in `gazebo/default_controllers`, and which start with a goal."""
 
     def declarations(self) -> dict[str, Entry]:
-        own = self.files.of_node(f"{self.namespace}/gazebo")
-        listed = (own.below or {}).get("default_controllers") if own is not None else None
-        found = {}
+        of_node = self.files.of_node(f"{self.namespace}/gazebo")
+        listed = (of_node.below or {}).get("default_controllers") if of_node is not None else None
+        declared = {}
         for item in (listed.items or ()) if listed is not None else ():
             entry = self.files.of_node(f"{self.namespace}/{item.text}")
             kind = (entry.below or {}).get("type") if entry is not None else None
-            found[item.text] = kind if kind is not None else Entry(item.where)
-        if found:
-            found[_JOINT_STATES] = Entry(Where(), _JOINT_STATES_TYPE)
-        return found
+            declared[item.text] = kind if kind is not None else Entry(item.where)
+        if declared:
+            declared[_JOINT_STATES] = Entry(Where(), _JOINT_STATES_TYPE)
+        return declared
 
     def start_configured(self, name: str) -> None:
         controller = self.controllers[name].controller

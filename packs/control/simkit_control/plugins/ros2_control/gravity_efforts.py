@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
-from simkit.plugins.not_deep_copied import SharedByCopies
-from simkit.pose import Vector
+from simkit.extend import SharedByCopies, Vector
 
 if TYPE_CHECKING:
-    from simkit.runtime import Simulation
+    from simkit import Simulation
 
 
 class GravityEfforts(SharedByCopies):

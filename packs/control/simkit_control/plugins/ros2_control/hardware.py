@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from simkit.compiler.couplings import Couplings
-from simkit.plugins.not_deep_copied import SharedByCopies
-from simkit.pose import Vector
+from simkit.extend import SharedByCopies, Vector
 from simkit_control.plugins.ros2_control.actuator_modes import (
     EFFORT_MODE,
     FREE,
@@ -36,10 +35,9 @@ from simkit_control.plugins.ros2_control.transmissions import TransmissionLaw, t
 if TYPE_CHECKING:
     import mujoco
 
-    from simkit.compiler import SpecBuilder
-    from simkit.diagnostics import Diagnostics
-    from simkit.runtime import Simulation
-    from simkit.scene import SceneJoint, SceneModel
+    from simkit import Simulation
+    from simkit.compiler import ActuatorRef
+    from simkit.extend import Diagnostics, SceneJoint, SceneModel, SpecBuilder
     from simkit.scene.actuation import Transmission
     from simkit_control.plugins.ros2_control.hardware_description import ComponentDescription, JointDescription
 
@@ -63,6 +61,8 @@ class Hardware(SharedByCopies):
         springs: kp and kd by joint, by the name of a controller that simulates springs at its joints.
         holds_position: true if an unclaimed joint holds its position, whatever interfaces it has.
         is_limp: true if an unclaimed joint moves freely, whatever interfaces it has.
+        rivals: actuators of other plugins that drive a joint too, by the joint's name, each with True if this hardware
+            moves the joint and False if the other plugin moves it.
     """
 
     joints: dict[str, HardwareJoint] = field(default_factory=dict)
@@ -76,6 +76,7 @@ class Hardware(SharedByCopies):
     springs: dict[str, dict[str, tuple[float, float]]] = field(default_factory=dict)
     holds_position: bool = True
     is_limp: bool = False
+    rivals: dict[str, list[tuple[ActuatorRef, bool]]] = field(default_factory=dict)
     _sim: Simulation = field(init=False, repr=False)
     _sources: Indices = field(default_factory=lambda: np.zeros(0, np.intp))
     # indices of joints without a claimed interface
@@ -95,23 +96,23 @@ class Hardware(SharedByCopies):
     ) -> Hardware:
         """Create the hardware from its description, before a simulation exists."""
         scenes = {scene_joint.name: scene_joint for scene_joint in scene.all_joints()}
-        found = cls(components=components)
+        hardware = cls(components=components)
         states: list[str] = []
         commands: list[str] = []
         for joint in (joint for component in components for joint in component.joints):
-            found.joints[joint.name] = _hardware_joint(joint, scenes[joint.name])
+            hardware.joints[joint.name] = _hardware_joint(joint, scenes[joint.name])
             states += [f"{joint.name}/{interface}" for interface in joint.states]
             commands += [f"{joint.name}/{interface}" for interface in joint.commands]
         for sensor in (sensor for component in components for sensor in component.sensors):
             states += [f"{sensor.name}/{name}" for name in sensor.interfaces]
             hardware_sensor = find_sensor(sensor, scene, diagnostics)
             if hardware_sensor is not None:
-                found.sensors[sensor.name] = hardware_sensor
-        for law in transmission_laws(transmissions, list(found.joints), diagnostics):
-            found.actuators |= dict.fromkeys((a for a in law.actuators if a not in found.joints), law)
-        states += [f"{actuator}/{interface}" for actuator in found.actuators for interface in _MODES]
-        found.states, found.commands = InterfaceTable(states), InterfaceTable(commands)
-        return found
+                hardware.sensors[sensor.name] = hardware_sensor
+        for law in transmission_laws(transmissions, list(hardware.joints), diagnostics):
+            hardware.actuators |= dict.fromkeys((a for a in law.actuators if a not in hardware.joints), law)
+        states += [f"{actuator}/{interface}" for actuator in hardware.actuators for interface in _MODES]
+        hardware.states, hardware.commands = InterfaceTable(states), InterfaceTable(commands)
+        return hardware
 
     # ------------------------------------------------------------------ preparation
 
@@ -175,7 +176,8 @@ class Hardware(SharedByCopies):
             chosen = claimed.get(joint.name, "")
             self._sources[k] = self.commands.index(f"{joint.name}/{chosen}") if chosen else -1
             mode = _MODES[chosen] if chosen else self._idle_mode(joint, claimed.get(joint.leader, ""))
-            modes.append(SPRING_MODE if mode == EFFORT_MODE and joint.name in springy else mode)
+            mode = SPRING_MODE if mode == EFFORT_MODE and joint.name in springy else mode
+            modes.append(self._settle_rivals(joint, mode, is_claimed=bool(chosen)))
         self._unclaimed = np.flatnonzero(self._sources < 0)
         self._group_joints()
         self.actuated.switch(np.array(modes, np.intp))
@@ -186,6 +188,22 @@ class Hardware(SharedByCopies):
         numbers = {owner: k for k, owner in enumerate(dict.fromkeys(by_joint.values()), 1)}
         claimed = [numbers.get(by_joint.get(joint.name, ""), 0) for joint in self.actuated.joints]
         self.actuated.groups = np.array(claimed, np.intp)
+
+    def _settle_rivals(self, joint: HardwareJoint, mode: int, *, is_claimed: bool) -> int:
+        """Return the mode of a joint beside the actuators of other plugins, and switch these actuators on or off.
+
+        A servo of the plugin that has no effect in Gazebo is switched off: it would hold the joint against the other.
+        """
+        for ref, prevails in self.rivals.get(joint.name, ()):
+            if not prevails and (mode == VELOCITY_MODE or (mode == POSITION_MODE and not is_claimed)):
+                mode = FREE
+            engine = self._sim.engine
+            index = engine.names.actuator(ref)
+            limited, ranges = engine.touch("actuator_forcelimited"), engine.touch("actuator_forcerange")
+            is_off = prevails and mode != FREE
+            limited[index] = True if is_off else engine.original("actuator_forcelimited")[index]
+            ranges[index] = 0.0 if is_off else engine.original("actuator_forcerange")[index]
+        return mode
 
     def _idle_mode(self, joint: HardwareJoint, leader_interface: str) -> int:
         """Return the mode of an unclaimed joint; a mimic joint has the mode of its leader's claimed interface."""
@@ -226,8 +244,11 @@ class Hardware(SharedByCopies):
                 self._plan.append((self.states.index(name), reading))
             elif owner in self.sensors:
                 by_kind.setdefault(f"sensor {owner}", []).append((self.states.index(name), interface))
-        for kind, found in by_kind.items():
-            rows, names = np.array([row for row, _ in found], np.intp), tuple(name for _, name in found)
+        for kind, rows_and_names in by_kind.items():
+            rows, names = (
+                np.array([row for row, _ in rows_and_names], np.intp),
+                tuple(name for _, name in rows_and_names),
+            )
             if kind.startswith("sensor "):
                 sensor = self.sensors[kind.removeprefix("sensor ")]
                 self._deferred.append((rows, partial(sensor.read, self._sim, names)))
@@ -271,10 +292,10 @@ class Hardware(SharedByCopies):
     def get_state(self) -> object:
         """Return a copy of everything that changes at run time."""
         values = self.states.values.copy(), self.commands.values.copy()
-        own = (*values, dict(self.owners), self._sources.copy(), self._read_interfaces)
+        values_and_owners = (*values, dict(self.owners), self._sources.copy(), self._read_interfaces)
         actuated = self.actuated
         shares = None if actuated.gravity_shares is None else actuated.gravity_shares.copy()
-        return own, (actuated.modes.copy(), actuated.targets.copy(), actuated.integrals.copy()), shares
+        return values_and_owners, (actuated.modes.copy(), actuated.targets.copy(), actuated.integrals.copy()), shares
 
     def set_state(self, state: Any) -> None:
         """Restore a state from `get_state`."""

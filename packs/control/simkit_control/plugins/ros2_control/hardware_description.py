@@ -7,14 +7,15 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final
 
-from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
-from simkit.number_text import number_or_nan
-from simkit.params import Params
+from simkit import Params
+from simkit.diagnostics import NOWHERE
+from simkit.extend import Diagnostics, Where, did_you_mean
+from simkit.number_text import is_number, number_or_nan
 from simkit_control.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION, VELOCITY
 from simkit_control.plugins.ros2_control.hardware_joint import PidGains
 
 if TYPE_CHECKING:
-    from simkit.scene import SceneJoint, SceneModel
+    from simkit.extend import SceneJoint, SceneModel
 
 
 _LARGEST_NUMBER: Final = 1e15
@@ -149,23 +150,24 @@ def describe_hardware(scene: SceneModel, params: Params) -> list[ComponentDescri
         scene: model whose hardware is described.
         params: parameters of the plugin; problems are recorded there.
     """
-    found = params.diagnostics
+    diagnostics = params.diagnostics
     blocks = [*scene.controls, *params.all("ros2_control")]
     for block in blocks:
         block.mark_all_read()
-        report_unknown_elements(block, found)
+        report_unknown_elements(block, diagnostics)
     if blocks:
         return _remove_mimic_circles(
-            _remove_repeated_joints([_component(scene, block, found) for block in blocks], found), found
+            _remove_repeated_joints([_component(scene, block, diagnostics) for block in blocks], diagnostics),
+            diagnostics,
         )
     if scene.transmissions:
-        return [_component_of_transmissions(scene, found)]
+        return [_component_of_transmissions(scene, diagnostics)]
     names = [joint.name for joint in scene.all_joints() if _is_drivable(joint)]
     message = (
         f"model {scene.scoped!r} has neither <ros2_control> nor <transmission>: each of its joints with one axis can "
         f"be commanded by position, velocity or effort"
     )
-    found.note("SK-CONTROL-005", message, params.where)
+    diagnostics.note("SK-CONTROL-005", message, params.where)
     joints = tuple(JointDescription(name, MOTION_INTERFACES, MOTION_INTERFACES) for name in names)
     return [ComponentDescription(scene.name, "system", "simkit", joints)]
 
@@ -262,8 +264,9 @@ def _initial_position(interfaces: Iterable[Params], joint: SceneJoint, diagnosti
     for interface in interfaces:
         texts = _param_texts(interface)
         for bound in (texts.get("min", ""), texts.get("max", "")):
-            if bound.strip().lower() not in ("", "inf", "-inf"):
-                parse_number(bound, 0.0, interface, diagnostics)
+            if bound.strip().lower() not in ("", "inf", "-inf") and not is_number(bound):
+                message = f"the bound {bound!r:.100} is not a number; it has no effect, as in Gazebo"
+                diagnostics.warning("SK-PARAM-005", message, interface.where)
         if interface.name == "state_interface" and interface.attribute("name") == POSITION:  # Gazebo ignores others
             first = texts.get("initial_value", interface.attribute("initial_value"))
             initial.append(parse_initial_position(first, joint, interface, diagnostics))

@@ -8,10 +8,8 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
-from simkit.plugins.not_deep_copied import SharedByCopies
-from simkit.pose import Vector
+from simkit.extend import SharedByCopies, Vector, did_you_mean
 
 Indices = npt.NDArray[np.intp]
 """Indices of an array, shape (n,)."""
@@ -66,11 +64,11 @@ class InterfaceTable:
         Raises:
             InputError: the name is not known; the message suggests the closest name.
         """
-        found = self._index.get(name)
-        if found is None:
+        number = self._index.get(name)
+        if number is None:
             near = did_you_mean(name, self.names)
             raise InputError(f"there is no interface {name!r}{near and '; ' + near}")
-        return found
+        return number
 
     def select(self, names: Sequence[str]) -> InterfaceSelection:
         """Return the interfaces with these names, in the order of the names.

@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from simkit.params import Params
+from simkit import Params
 
 if TYPE_CHECKING:
-    from simkit.runtime import Joint
+    from simkit import Joint
 
 
 @dataclass(frozen=True, slots=True)

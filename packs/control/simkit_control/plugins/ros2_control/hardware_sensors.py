@@ -5,17 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit.diagnostics import Diagnostics, did_you_mean
-from simkit.pose import Vector
+from simkit.extend import Diagnostics, Vector, did_you_mean
 from simkit_control.plugins.ros2_control.hardware_description import SensorDescription
 
 if TYPE_CHECKING:
-    from simkit.runtime import Simulation
-    from simkit.scene import SceneModel
+    from simkit import Simulation
+    from simkit.extend import SceneModel
 
 _IMU: Final = {
     f"{part}.{axis}": f"{part}.{axis}"
@@ -54,7 +53,7 @@ class HardwareSensor:
 
 
 @cache
-def _field_getter(kind: str, interfaces: tuple[str, ...]) -> attrgetter[Any]:
+def _field_getter(kind: str, interfaces: tuple[str, ...]) -> attrgetter[tuple[float, ...]]:
     """Return a function that reads the fields of some interfaces from a message of this kind of sensor."""
     return attrgetter(*(SENSOR_INTERFACES[kind][interface] for interface in interfaces))
 

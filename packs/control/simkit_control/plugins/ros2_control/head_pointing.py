@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit import msgs
-from simkit.diagnostics import did_you_mean
+from simkit import Pose, msgs
 from simkit.elementary_functions import arcsin
 from simkit.errors import InputError
+from simkit.extend import Vector, did_you_mean
 from simkit.linear_algebra import matmul, solve
-from simkit.pose import IDENTITY, Pose, Vector
+from simkit.pose import IDENTITY
 
 if TYPE_CHECKING:
+    from simkit import Simulation
+    from simkit.extend import SceneModel
     from simkit.msgs import CameraInfo
-    from simkit.runtime import Simulation
-    from simkit.scene import SceneModel
 
 _GRID: Final = 25  # angles that are tried for each joint, before the best pair is refined
 _STEPS: Final = 60
@@ -150,9 +150,9 @@ def frame_link(sim: Simulation, model: str, name: str, extra_names: Sequence[str
                 return link.scoped, IDENTITY
             names.append(link.name)
     for scene in (handle.scene for handle in models):
-        found = _sensor_frame(sim, scene, name, names)
-        if found is not None:
-            return found
+        sensor_link = _sensor_frame(sim, scene, name, names)
+        if sensor_link is not None:
+            return sensor_link
     near = did_you_mean(name, dict.fromkeys([*names, *extra_names]))
     raise InputError(f"there is no frame {name!r}{near and '; ' + near}")
 

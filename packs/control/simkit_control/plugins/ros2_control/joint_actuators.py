@@ -23,9 +23,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit.extend import SharedByCopies, Vector
 from simkit.linear_algebra import squared_length
-from simkit.plugins.not_deep_copied import SharedByCopies
-from simkit.pose import Vector
 from simkit.runtime.engine.physics_step import CONTROL
 from simkit_control.plugins.ros2_control.actuator_modes import (
     FREE,
@@ -41,9 +40,9 @@ from simkit_control.plugins.ros2_control.velocity_references import advance_refe
 if TYPE_CHECKING:
     import mujoco
 
-    from simkit.compiler import SpecBuilder
+    from simkit import Simulation
     from simkit.compiler.name_map import ActuatorRef
-    from simkit.runtime import Simulation
+    from simkit.extend import SpecBuilder
     from simkit_control.plugins.ros2_control.hardware_joint import HardwareJoint, PidGains
 
 _LARGEST_CONTROL: Final = 9e9  # MuJoCo treats controls of 1e10 or more as invalid
@@ -154,6 +153,14 @@ class JointActuators(SharedByCopies):
         for k, joint in enumerate(self.joints):
             if joint.name in springs:
                 self._loops.gains[k, SPRING_MODE] = np.minimum(springs[joint.name], self._loops.stable_springs[k])
+
+    def stable_gains(self, joint: str) -> tuple[float, float] | None:
+        """Return the largest kp and kd of a joint that do not oscillate at the engine's step; None without actuator."""
+        index = next((k for k, other in enumerate(self.joints) if other.name == joint), None)
+        if index is None:
+            return None
+        kp, kd = self._loops.stable_springs[index].tolist()
+        return kp, kd
 
     def spring_gains(self, joints: Sequence[str]) -> tuple[Vector, Vector]:
         """Return the current kp and kd of joints in `SPRING_MODE`, after a reduction to stable gains."""

@@ -7,11 +7,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit import msgs
-from simkit.params import Params
-from simkit.plugins.not_deep_copied import SharedByCopies
+from simkit import Params, msgs
+from simkit.extend import SharedByCopies, Vector
 from simkit.plugins.ros_parameter_block import read_names
-from simkit.pose import Vector
 from simkit_control.plugins.ros2_control.hardware import Hardware
 from simkit_control.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION, VELOCITY, array_index
 from simkit_control.plugins.ros2_control.joint_pids import JointPids
@@ -83,9 +81,9 @@ class JointGroup(SharedByCopies):
             kind = commanded[0]
             message = f"'{kind}' command interface can only be used alone if 'velocity' and 'position' state interfaces"
             params.error(_BAD_INTERFACES, f"{message} are present", "state_interfaces: [position, velocity]")
-        found = [hardware.joints.get(name) for name in self.commanded_joints]
+        joints = [hardware.joints.get(name) for name in self.commanded_joints]
         self.turning: Vector = np.zeros(len(self.joints), dtype=bool)
-        self.turning[self.commanded_indices] = [f is not None and f.is_continuous for f in found]
+        self.turning[self.commanded_indices] = [f is not None and f.is_continuous for f in joints]
         gains = params.block("gains")  # ROS 2 Humble has the parameters of continuous joints in this block
         for j, joint in enumerate(self.joints):
             block, wraps = gains.block(joint), bool(self.turning[j])
@@ -215,6 +213,6 @@ class TrajectoryMessages(SharedByCopies):
 
     def _command_point(self, values: Vector) -> JointTrajectoryPoint:
         count = len(self._group.commanded_joints)
-        found = {kind: values[k * count : (k + 1) * count] for k, kind in enumerate(self._group.commands)}
-        position, velocity, acceleration, effort = (found.get(kind, self._empty) for kind in _INTERFACE_ORDER)
+        by_kind = {kind: values[k * count : (k + 1) * count] for k, kind in enumerate(self._group.commands)}
+        position, velocity, acceleration, effort = (by_kind.get(kind, self._empty) for kind in _INTERFACE_ORDER)
         return self._point_type(position, velocity, acceleration, effort, msgs.duration(0))

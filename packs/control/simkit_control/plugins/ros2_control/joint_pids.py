@@ -6,8 +6,8 @@ from typing import Final
 
 import numpy as np
 
-from simkit.params import Params
-from simkit.pose import Vector
+from simkit import Params
+from simkit.extend import Vector
 
 _IGNORED_CLAMPS: Final = ("antiwindup", "save_i_term")  # the clamps of the integral part always apply
 ANTIWINDUP: Final = ("none", "back_calculation", "conditional_integration")

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
-from simkit.diagnostics import Diagnostics, Where, did_you_mean
+from simkit.extend import Diagnostics, Where, did_you_mean
 from simkit.plugins.ros_parameter_files import Entry, ParameterFile, node_matches
 from simkit_control.plugins.ros2_control.controller_manager import KNOWN_PARAMETERS, ControllerManager
 
@@ -34,9 +34,9 @@ def adapt_to_manager(
         root = file.root if _nested_entry(file.root, parts) is not None else _wrap_in_namespace(file.root, parts)
         if is_ros_1:
             return replace(file, root=root)
-        own = _nested_entry(root, parts) or root
-        _report_ros_1_gains(own, file, diagnostics)
-        declared = list(_declared_controllers(own, only_type=True))
+        of_manager = _nested_entry(root, parts) or root
+        _report_ros_1_gains(of_manager, file, diagnostics)
+        declared = list(_declared_controllers(of_manager, only_type=True))
         nodes = [(f"{namespace}/{manager}", Entry(root.where, below=dict(declared)))] if declared else []
         return replace(file, root=root, nodes=nodes)
     if not is_ros_1:
@@ -61,10 +61,10 @@ def _declared_controllers(entry: Entry, *, only_type: bool) -> Iterator[tuple[st
 
 def _nested_entry(entry: Entry, parts: Sequence[str]) -> Entry | None:
     """Return the block at a path; None if there is none."""
-    found: Entry | None = entry
+    nested: Entry | None = entry
     for part in parts:
-        found = (found.below or {}).get(part) if found is not None else None
-    return found
+        nested = (nested.below or {}).get(part) if nested is not None else None
+    return nested
 
 
 def _wrap_in_namespace(entry: Entry, parts: Sequence[str]) -> Entry:
@@ -73,8 +73,8 @@ def _wrap_in_namespace(entry: Entry, parts: Sequence[str]) -> Entry:
     return entry
 
 
-def _report_ros_1_gains(own: Entry, file: ParameterFile, diagnostics: Diagnostics) -> None:
-    below = own.below or {}
+def _report_ros_1_gains(gains: Entry, file: ParameterFile, diagnostics: Diagnostics) -> None:
+    below = gains.below or {}
     if _ROS_1_LOOPS in below:
         message = (
             f"{file.path.name}: {_ROS_1_LOOPS} has gains for the plugin of ROS 1; this robot's plugin is for ROS 2"
@@ -96,8 +96,8 @@ def report_unused_parameters(manager: ControllerManager, diagnostics: Diagnostic
     declared, node = manager.declared(), manager.node
     _report_misspelt_nodes(manager, declared, diagnostics)
     if manager.is_ros_1:
-        own = manager.files.of_node(node)
-        for name, entry in (own.below or {}).items() if own is not None else ():
+        of_node = manager.files.of_node(node)
+        for name, entry in (of_node.below or {}).items() if of_node is not None else ():
             _report_in_ros_1(name, entry, declared, diagnostics)
     nodes = [(pattern, entry) for file in manager.files.files for pattern, entry in file.nodes]
     for pattern, entry in nodes:
@@ -105,16 +105,16 @@ def report_unused_parameters(manager: ControllerManager, diagnostics: Diagnostic
         if not pattern.endswith("*") and node_matches(pattern, node):
             for name, parameter in (entry.below or {}).items():
                 _report_in_manager(name, parameter, declared, manager.files.node_names(), diagnostics)
-    if not declared:
+    if not declared and not manager.is_started_by_nodes:
         _report_no_controllers(manager.files.files, node, diagnostics)
 
 
 def report_high_rates(manager: ControllerManager, rate: float | None, diagnostics: Diagnostics) -> None:
     """Report controllers whose update rate is above the manager's `rate` [Hz]."""
     for name, loaded in manager.controllers.items():
-        own = loaded.controller.update_rate
-        if rate is not None and own > rate * (1.0 + 1e-9):
-            message = f"controller {name!r} has an update rate of {own} Hz, above the manager's {rate:g} Hz"
+        update_rate = loaded.controller.update_rate
+        if rate is not None and update_rate > rate * (1.0 + 1e-9):
+            message = f"controller {name!r} has an update rate of {update_rate} Hz, above the manager's {rate:g} Hz"
             diagnostics.warning(
                 "SK-CONTROL-017", f"{message}; the manager's rate applies", loaded.controller.params.where
             )
@@ -130,10 +130,10 @@ def _report_misspelt_nodes(manager: ControllerManager, declared: Mapping[str, st
             name, below = pattern.rpartition("/")[2], entry.below or {}
             if name in known:
                 continue
-            own, near = f"{manager.namespace}/{name}", did_you_mean(name, declared)
-            if not node_matches(pattern, own) and ("type" in below or near):
+            full_name, near = f"{manager.namespace}/{name}", did_you_mean(name, declared)
+            if not node_matches(pattern, full_name) and ("type" in below or near):
                 message = f"{file.path.name} has parameters for {pattern!r}, outside the manager's namespace"
-                hint = f"write {own} or /**/{name} instead of {pattern.strip('/')}"
+                hint = f"write {full_name} or /**/{name} instead of {pattern.strip('/')}"
                 diagnostics.warning("SK-CONTROL-019", message, entry.where, hint)
             elif near:
                 message = f"{file.path.name} has parameters for {name!r}, which no controller manager declares"

@@ -7,18 +7,16 @@ import math
 from collections import deque
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar, cast
 
 import numpy as np
 
-from simkit import msgs
+from simkit import Params, Pose, msgs
 from simkit.float_sum import float_sum
-from simkit.params import Params
-from simkit.plugins.drives.odometry import COMMAND_TYPES, BodyTwist, DeadReckoning, Motion
-from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, odometry_message, transforms
+from simkit.plugins.drives.odometry import COMMAND_TYPES, DeadReckoning, Motion
+from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, BodyTwist, odometry_message, transforms
 from simkit.plugins.one_time_warnings import are_usable
 from simkit.plugins.ros_parameter_block import read_names, read_numbers
-from simkit.pose import Pose
 from simkit_control.plugins.ros2_control.controller import Controller
 
 if TYPE_CHECKING:
@@ -118,7 +116,7 @@ class ReferenceDrive(Controller):
         if not self._is_active:
             self._warn("inactive", "a command arrived while the controller is inactive; the command is ignored")
             return
-        twist: Any = getattr(message, "twist", message)
+        twist = cast("Twist", getattr(message, "twist", message))
         reference = float(twist.linear.x), float(twist.linear.y), float(twist.angular.z)
         if not are_usable(*reference):
             self._warn("finite", "a command has a value that is NaN or infinite; the command is ignored")
@@ -154,11 +152,11 @@ class ReferenceDrive(Controller):
 def read_joints(params: Params, names: Sequence[str], counts: Sequence[int]) -> list[str]:
     """Return the joints in the first parameter of `names` that exists; a wrong number of joints is an error."""
     name = next((name for name in names if params.has(name)), names[0])
-    found = read_names(params, name, required=True, code="SK-CONTROL-041")
-    if found and len(found) not in counts:
+    joints = read_names(params, name, required=True, code="SK-CONTROL-041")
+    if joints and len(joints) not in counts:
         allowed = " or ".join(map(str, counts))
-        params.error("SK-CONTROL-040", f"{name} names {len(found)} joints; this controller needs {allowed}")
-    return found
+        params.error("SK-CONTROL-040", f"{name} names {len(joints)} joints; this controller needs {allowed}")
+    return joints
 
 
 def read_size(params: Params, names: Sequence[str], default: float | None = None) -> float:

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Final
 
-from simkit.params import Params
+from simkit import Params
 from simkit.plugins.ros_parameter_files import Entry
 from simkit_control.plugins.ros2_control.controller import Controller
 
 if TYPE_CHECKING:
-    from simkit.runtime.communication.action_server import Action, GoalHandle
+    from simkit.extend import GoalHandle
+    from simkit.runtime.communication.action_server import Action
 
 _REFUSED: Final = "Cannot execute, unable to start controller."
 

@@ -16,10 +16,10 @@ from typing import Final, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from simkit.extend import Vector
+from simkit.plugins.joints.joint_trajectory import SECOND, cubic, quintic
 from simkit.plugins.not_deep_copied import ImmutableValue
-from simkit.pose import Vector
 
-SECOND: Final = 1_000_000_000
 _TURN: Final = 2.0 * np.pi
 _LOOK_AHEAD: Final = 32
 """Number of setpoints computed at once, because computing 32 setpoints takes as long as computing one."""
@@ -260,22 +260,12 @@ def _hermite_piece(a: TrajectoryPoint, b: TrajectoryPoint) -> Vector:
     p0, p1 = _zero_if_missing(a.positions), _zero_if_missing(b.positions)
     t = (b.time - a.time) / SECOND
     piece = np.zeros((6, len(p0)))
-    rise = p1 - p0
-    piece[0] = p0
     if a.velocities is None or b.velocities is None:
-        piece[1] = rise / t
-        return piece
-    v0, v1 = a.velocities, b.velocities
-    piece[1] = v0
-    if a.accelerations is None or b.accelerations is None:
-        piece[2] = (3.0 * rise / t - 2.0 * v0 - v1) / t
-        piece[3] = (-2.0 * rise / t + v0 + v1) / t**2
-        return piece
-    a0, a1 = a.accelerations, b.accelerations
-    piece[2] = a0 / 2.0
-    piece[3] = (20.0 * rise - (8.0 * v1 + 12.0 * v0) * t - (3.0 * a0 - a1) * t**2) / (2.0 * t**3)
-    piece[4] = (-30.0 * rise + (14.0 * v1 + 16.0 * v0) * t + (3.0 * a0 - 2.0 * a1) * t**2) / (2.0 * t**4)
-    piece[5] = (12.0 * rise - 6.0 * (v1 + v0) * t + (a1 - a0) * t**2) / (2.0 * t**5)
+        piece[:2] = p0, (p1 - p0) / t
+    elif a.accelerations is None or b.accelerations is None:
+        piece[:4] = cubic(p0, p1, a.velocities, b.velocities, t)
+    else:
+        piece[:] = quintic(p0, p1, a.velocities, b.velocities, a.accelerations, b.accelerations, t)
     return piece
 
 

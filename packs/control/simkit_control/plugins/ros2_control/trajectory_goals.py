@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit.extend import LARGEST, Vector
 from simkit.msgs import stamp_ns
-from simkit.params import LARGEST
-from simkit.pose import Vector
-from simkit_control.plugins.ros2_control.trajectory import SECOND, TrajectoryPoint
+from simkit.plugins.joints.joint_trajectory import SECOND
+from simkit_control.plugins.ros2_control.trajectory import TrajectoryPoint
 
 if TYPE_CHECKING:
     from simkit.msgs import FollowJointTrajectory_Goal, JointTolerance, JointTrajectory, JointTrajectoryPoint

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit.params import Params
-from simkit.plugins.not_deep_copied import SharedByCopies
-from simkit.pose import Vector
+from simkit import Params
+from simkit.extend import SharedByCopies, Vector
 from simkit_control.plugins.ros2_control.joint_pids import JointPids
 from simkit_control.plugins.ros2_control.trajectory import Spline
 from simkit_control.plugins.ros2_control.trajectory_goals import Tolerances

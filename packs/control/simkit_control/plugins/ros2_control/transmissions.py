@@ -18,15 +18,14 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit import Params
+from simkit.extend import Diagnostics, Vector, did_you_mean
 from simkit.linear_algebra import inverse, matmul
-from simkit.params import Params
-from simkit.pose import Vector
 from simkit.scene.actuation import Transmission, TransmissionEnd
 from simkit_control.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION
 
 if TYPE_CHECKING:
-    from simkit.scene import SceneModel
+    from simkit.extend import SceneModel
 
 _KINDS: Final = {
     "SimpleTransmission": "simple",
@@ -127,8 +126,8 @@ def _by_role(ends: Sequence[TransmissionEnd]) -> list[TransmissionEnd]:
 
 def transmissions_of(scene: SceneModel, blocks: Iterable[Params]) -> list[Transmission]:
     """Return the transmissions in `<ros2_control>`; if there are none, the robot's `<transmission>` blocks (ROS 1)."""
-    found = [_read_transmission(element) for block in blocks for element in block.all("transmission")]
-    return found or list(scene.transmissions)
+    written = [_read_transmission(element) for block in blocks for element in block.all("transmission")]
+    return written or list(scene.transmissions)
 
 
 def _read_transmission(element: Params) -> Transmission:

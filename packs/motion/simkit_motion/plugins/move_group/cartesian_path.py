@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit import Pose
+from simkit.extend import Vector
 from simkit.linear_algebra import matmul, norm
-from simkit.pose import Pose, Vector
 from simkit_motion.plugins.move_group.error_codes import Code, PlanningFailed
 from simkit_motion.plugins.move_group.group_model import GroupModel
 from simkit_motion.plugins.move_group.inverse_kinematics import PoseGoal, solve
@@ -71,10 +72,10 @@ def line_options(request: Message, types: Sequence[str]) -> LineOptions:
     if not 0.0 < request.max_step < np.inf:
         raise PlanningFailed(Code.FAILURE, f"max_step is {request.max_step:g}; expected a positive length [m]")
     refuse_constraints(request.path_constraints)
-    given = [
+    thresholds = [
         request.prismatic_jump_threshold if kind == "prismatic" else request.revolute_jump_threshold for kind in types
     ]
-    jumps = [value or request.jump_threshold or np.inf for value in given]
+    jumps = [value or request.jump_threshold or np.inf for value in thresholds]
     return LineOptions(float(request.max_step), np.array(jumps, dtype=float), bool(request.avoid_collisions))
 
 
@@ -116,21 +117,21 @@ def follow_line(model: GroupModel, link: str, poses: Sequence[Pose], options: Li
 def _positions_along(model: GroupModel, link: str, targets: Sequence[object], options: LineOptions) -> Line:
     q, rows, checks, problem = model.start, [model.start], 0, ""
     for target in targets:
-        found = solve(model, PoseGoal(link, target, np.zeros(3)), q)
-        if found is None:
+        solution = solve(model, PoseGoal(link, target, np.zeros(3)), q)
+        if solution is None:
             problem = "no joint positions within the limits lead further"
             break
-        if (np.abs(found - q) > options.jumps).any():
+        if (np.abs(solution - q) > options.jumps).any():
             problem = "a joint would jump"
             break
         if options.avoids_collisions:
-            between = fine_positions(model, q, found)
+            between = fine_positions(model, q, solution)
             checks += len(between)
             blocked = next((position for position in between if not model.is_free(position)), None)
             if blocked is not None:
                 problem = " and ".join(model.collisions(blocked)[0]) + " would touch"
                 break
-        q = found
+        q = solution
         rows.append(q)
     return Line(np.array(rows), (len(rows) - 1) / len(targets), checks, problem)
 

@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from simkit.pose import Vector
+from simkit.extend import Vector
 
 if TYPE_CHECKING:
+    from coal import CollisionGeometry
+
     from simkit.msgs import Message
 
-Triangles = npt.NDArray[np.integer[Any]]
+Triangles = npt.NDArray[np.int64]
 
 
-def shape_of_geom(model: mujoco.MjModel, geom: int) -> Any:
+def shape_of_geom(model: mujoco.MjModel, geom: int) -> CollisionGeometry | None:
     """Return the shape of a geom in the geom's frame; None for a kind of geom that has no such shape.
 
     A mesh is its convex hull, as in MuJoCo's collisions. A plane is the half space below it.
@@ -46,7 +48,7 @@ def shape_of_geom(model: mujoco.MjModel, geom: int) -> Any:
     return None
 
 
-def shape_of_primitive(primitive: Message) -> Any:
+def shape_of_primitive(primitive: Message) -> CollisionGeometry:
     """Return the shape of a `shape_msgs/msg/SolidPrimitive`; its origin and axes are those of the primitive.
 
     Raises:
@@ -70,7 +72,7 @@ def shape_of_primitive(primitive: Message) -> Any:
     return coal.Cylinder(radius, height) if kind == primitive.CYLINDER else coal.Cone(radius, height)
 
 
-def convex_hull(points: Vector) -> Any:
+def convex_hull(points: Vector) -> CollisionGeometry:
     """Return the convex hull of points, shape (n, 3)."""
     import coal
     from scipy.spatial import ConvexHull
@@ -89,7 +91,7 @@ def convex_hull(points: Vector) -> Any:
     return coal.Convex(vertices, faces)
 
 
-def triangle_mesh(points: Vector, triangles: Triangles) -> Any:
+def triangle_mesh(points: Vector, triangles: Triangles) -> CollisionGeometry:
     """Return a surface of triangles; its inside is not solid.
 
     Args:
@@ -106,7 +108,7 @@ def triangle_mesh(points: Vector, triangles: Triangles) -> Any:
     return surface
 
 
-def voxels(centres: Vector, side: float) -> tuple[Any, Vector] | None:
+def voxels(centres: Vector, side: float) -> tuple[CollisionGeometry, Vector] | None:
     """Return one shape for many equal cubes, and its position; None if the cubes do not lie in one grid.
 
     The shape is an octree: a check against 1100 cubes takes 0.03 ms, against as many boxes 2 ms.
@@ -124,7 +126,7 @@ def voxels(centres: Vector, side: float) -> tuple[Any, Vector] | None:
     return coal.makeOctree(np.ascontiguousarray((np.round(steps) + 0.5) * side), side), corner
 
 
-def _height_field(model: mujoco.MjModel, field: int) -> Any:
+def _height_field(model: mujoco.MjModel, field: int) -> CollisionGeometry:
     """Return the surface of a height field."""
     rows, columns = int(model.hfield_nrow[field]), int(model.hfield_ncol[field])
     x_half, y_half, top, _ = model.hfield_size[field]

@@ -14,9 +14,9 @@ from simkit_motion.plugins.move_group.planning import find_joint
 from simkit_motion.plugins.play_motion.motion_planning import active_controllers
 
 if TYPE_CHECKING:
+    from simkit import Model, Simulation
+    from simkit.extend import GoalHandle
     from simkit.msgs import Message
-    from simkit.runtime import Model, Simulation
-    from simkit.runtime.communication.action_server import GoalHandle
 
 _START_TOLERANCE = 0.05  # [rad or m] between the first point of a trajectory and the robot
 

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from simkit import msgs
+from simkit import Pose, msgs
 from simkit.errors import InputError
-from simkit.pose import IDENTITY, Pose, Vector
+from simkit.extend import Vector
+from simkit.pose import IDENTITY
 from simkit_control.plugins.ros2_control.head_pointing import frame_pose
 from simkit_motion.plugins.move_group.error_codes import Code, PlanningFailed
 from simkit_motion.plugins.move_group.inverse_kinematics import PoseGoal
@@ -18,8 +19,8 @@ from simkit_motion.plugins.move_group.planning import Group, Planner, find_link,
 from simkit_motion.plugins.move_group.state_copy import se3
 
 if TYPE_CHECKING:
+    from simkit import Model, Simulation
     from simkit.msgs import Message
-    from simkit.runtime import Model, Simulation
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,10 +30,12 @@ class Frames:
     Attributes:
         sim: Simulation.
         robot: Robot whose frames are searched first.
+        root_name: Further name of the robot's root link, which counts if there is no such frame.
     """
 
     sim: Simulation
     robot: Model
+    root_name: str = ""
 
     def pose(self, name: str) -> Pose:
         """Return the present pose of a frame in the world; an empty name is the root link of the robot.
@@ -43,6 +46,8 @@ class Frames:
         try:
             return frame_pose(self.sim, self.robot.scoped, name or root_link(self.robot))
         except InputError as error:
+            if name.lstrip("/") == self.root_name:
+                return self.pose("")
             raise PlanningFailed(Code.FRAME_TRANSFORM_FAILURE, str(error)) from None
 
     def in_world(self, frame: str, message: Message) -> Pose:
@@ -80,11 +85,14 @@ def goal_positions(planner: Planner, group: Group, constraints: Message, frames:
         raise PlanningFailed(Code.INVALID_GOAL_CONSTRAINTS, "visibility constraints are not supported")
     if len(joints) and not len(positions) and not len(turns):
         return [planner.joint_positions(joints)]
-    if len(joints) or len(positions) != 1 or len(turns) > 1:
-        found = f"found {len(joints)} joint, {len(positions)} position and {len(turns)} orientation constraints"
-        needed = "a goal needs joint constraints, or one position and at most one orientation constraint"
-        raise PlanningFailed(Code.INVALID_GOAL_CONSTRAINTS, f"{needed}; {found}")
-    goal = _pose_goal(group, positions[0], turns, frames)
+    if len(joints) or len(positions) > 1 or len(turns) > 1 or not (len(positions) or len(turns)):
+        counts = f"found {len(joints)} joint, {len(positions)} position and {len(turns)} orientation constraints"
+        needed = "a goal needs joint constraints, or at most one position and one orientation constraint"
+        raise PlanningFailed(Code.INVALID_GOAL_CONSTRAINTS, f"{needed}; {counts}")
+    if len(positions):
+        goal = _pose_goal(group, positions[0], turns, frames)
+    else:
+        goal = _rotation_goal(group, turns[0], frames)
     return planner.pose_solutions(goal, planner.model.start, avoids_collisions=True)
 
 
@@ -104,3 +112,9 @@ def _pose_goal(group: Group, place: Message, turns: Sequence[Message], frames: F
     link = find_link(frames.robot, place.link_name or group.tip)
     p = place.target_point_offset
     return PoseGoal(link, se3(target), np.array([p.x, p.y, p.z], dtype=float), bool(len(turns)))
+
+
+def _rotation_goal(group: Group, turn: Message, frames: Frames) -> PoseGoal:
+    """Return the goal of an orientation constraint; the position is free."""
+    pose = frames.in_world(turn.header.frame_id, msgs.make("geometry_msgs/msg/Pose", orientation=turn.orientation))
+    return PoseGoal(find_link(frames.robot, turn.link_name or group.tip), se3(pose), np.zeros(3), places=False)

@@ -8,19 +8,24 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import mujoco
 import numpy as np
 
+from simkit import Pose
+from simkit.extend import Vector
 from simkit.linear_algebra import matmul, norm
-from simkit.pose import Pose, Vector
 from simkit_motion.plugins.move_group.collision_shapes import shape_of_geom
 from simkit_motion.plugins.move_group.state_copy import copied_state, link_pose_at, quaternion_of, se3
 from simkit_motion.plugins.play_motion.collision_check import SELF_TOLERANCE, CollisionCheck
 
 if TYPE_CHECKING:
-    from simkit.runtime import Joint, Model, Simulation
+    from coal import CollisionGeometry
+    from pinocchio import SE3
+
+    from simkit import Joint, Model, Simulation
+    from simkit.compiler.name_map import JointBinding
 
 SELF_MARGIN: Final = 2e-3  # [m] between two links of the robot: shapes of wrists are 9 mm apart at the joint limits
 _CONTACT: Final = 1e-3  # [m], distance by which the margin of a pair stays below its distance at the start
@@ -39,7 +44,7 @@ class Obstacle:
     """
 
     name: str
-    shape: Any
+    shape: CollisionGeometry
     pose: Pose
     link: str = ""
     touches: frozenset[str] = frozenset()
@@ -89,7 +94,7 @@ class GroupModel:
 
     # ------------------------------------------------------------------ kinematics
 
-    def _build_joints(self, bindings: Sequence[Any]) -> None:
+    def _build_joints(self, bindings: Sequence[JointBinding]) -> None:
         """Add a joint to the kinematic model for each axis that the group moves, also for joints that mimic one."""
         pin, mj = self._pin, self._mj
         rules = {b.joint_ids[0]: (k, 1.0, 0.0) for k, b in enumerate(bindings)}
@@ -130,7 +135,7 @@ class GroupModel:
         self._mj_joints.append(joint)
         return int(self._model.addJoint(parent, kind, placement, f"joint_{joint}"))
 
-    def tip(self, link: str) -> tuple[int, Any]:
+    def tip(self, link: str) -> tuple[int, SE3]:
         """Return the joint of the model that moves a link, and the pose of the link in the frame of this joint."""
         binding = self._sim.engine.names.link(link)
         return self._place(binding.body, self._body_pose(binding.body) @ binding.offset)
@@ -138,18 +143,18 @@ class GroupModel:
     def _body_pose(self, body: int) -> Pose:
         return Pose(self._data.xpos[body], self._data.xquat[body])
 
-    def _place(self, body: int, pose: Pose) -> tuple[int, Any]:
+    def _place(self, body: int, pose: Pose) -> tuple[int, SE3]:
         mover = int(self._mover[body])
         return mover, self._frames[mover].actInv(se3(pose))
 
-    def pose_and_jacobian(self, tip: tuple[int, Any], q: Vector) -> tuple[Any, Vector]:
+    def pose_and_jacobian(self, tip: tuple[int, SE3], q: Vector) -> tuple[SE3, Vector]:
         """Return the pose of a tip in the world, and its Jacobian in its own axes, shape (6, joints).
 
         The rows of the Jacobian are the linear and then the angular velocity for each joint velocity.
         """
         pin, model, data = self._pin, self._model, self._pin_data
-        own = matmul(self._ratios, q) + self._offsets
-        pin.computeJointJacobians(model, data, own)
+        positions = matmul(self._ratios, q) + self._offsets
+        pin.computeJointJacobians(model, data, positions)
         joint, offset = tip
         if joint == 0:
             return offset, np.zeros((6, len(q)))
@@ -172,17 +177,17 @@ class GroupModel:
         self._margin = margin
         names = self._geom_names()
         placed = {geom: self._add_geom(geom, names[geom], shape) for geom, shape in self._geoms()}
-        held = self._check.held_geoms
+        carried = self._check.held_geoms
         mine = [*placed]
-        moving = [(i, names[g]) for g, i in placed.items() if self._mover_of(g, held)]
+        moving = [(i, names[g]) for g, i in placed.items() if self._mover_of(g, carried)]
         shape_names = {i: names[g] for g, i in placed.items()}
         pairs = [(placed[a], placed[b]) for a, b in self._check.self_pairs if a in placed and b in placed]
-        for a in (g for g in mine if g in held):  # an object in the gripper and the links that do not hold it
+        for a in (g for g in mine if g in carried):  # an object in the gripper and the links that do not hold it
             touched = self._touched_by(a)
             pairs += [
                 (placed[a], placed[b])
                 for b in mine
-                if b not in held and self._mover_of(b, held) != self._mover_of(a, held) and b not in touched
+                if b not in carried and self._mover_of(b, carried) != self._mover_of(a, carried) and b not in touched
             ]
         self._set_levers([i for i, _ in moving])
         if world:
@@ -201,21 +206,21 @@ class GroupModel:
             self._geometry.addCollisionPair(self._pin.CollisionPair(a, b))
         self._pairs = [(shape_names[a], shape_names[b]) for a, b in pairs]
         self._geometry_data = self._geometry.createData()
-        own = set(placed.values())
-        self._set_margins([SELF_MARGIN if a in own and b in own else margin for a, b in pairs])
+        of_robot = set(placed.values())
+        self._set_margins([SELF_MARGIN if a in of_robot and b in of_robot else margin for a, b in pairs])
         # a tree of bounding boxes takes a quarter of the time of a check of all pairs, for TIAGo at a table
         make = self._pin.BroadPhaseManager_DynamicAABBTreeCollisionManager
         self._tree = make(self._model, self._geometry, self._geometry_data)
 
-    def _geoms(self) -> list[tuple[int, Any]]:
+    def _geoms(self) -> list[tuple[int, CollisionGeometry]]:
         """Return the geoms of the robot and of held objects that can collide, with their shapes."""
         collides = (self._mj.geom_contype | self._mj.geom_conaffinity) != 0
         return self._with_shapes(int(g) for g in (*self._check.robot_geoms, *self._check.held_geoms) if collides[g])
 
-    def _with_shapes(self, geoms: Iterable[int]) -> list[tuple[int, Any]]:
+    def _with_shapes(self, geoms: Iterable[int]) -> list[tuple[int, CollisionGeometry]]:
         """Return geoms with their shapes, without those of a kind that has no shape."""
-        found = ((geom, shape_of_geom(self._mj, geom)) for geom in geoms)
-        return [(geom, shape) for geom, shape in found if shape is not None]
+        shapes = ((geom, shape_of_geom(self._mj, geom)) for geom in geoms)
+        return [(geom, shape) for geom, shape in shapes if shape is not None]
 
     def _mover_of(self, geom: int, held: Mapping[int, int]) -> int:
         return int(self._mover[held.get(geom, self._mj.geom_bodyid[geom])])
@@ -223,20 +228,20 @@ class GroupModel:
     def _touched_by(self, geom: int) -> set[int]:
         """Return the geoms that touch a held object in the present state."""
         data, root = self._sim.engine.physics.fresh(), self._mj.body_rootid[self._mj.geom_bodyid[geom]]
-        found = set()
+        touched = set()
         for a, b in np.array(data.contact.geom).tolist() if data.ncon else ():
-            for one, other in ((a, b), (b, a)):
-                if one >= 0 and other >= 0 and self._mj.body_rootid[self._mj.geom_bodyid[one]] == root:
-                    found.add(int(other))
-        return found
+            for carried, other in ((a, b), (b, a)):
+                if carried >= 0 and other >= 0 and self._mj.body_rootid[self._mj.geom_bodyid[carried]] == root:
+                    touched.add(int(other))
+        return touched
 
-    def _add_geom(self, geom: int, name: str, shape: Any) -> int:
+    def _add_geom(self, geom: int, name: str, shape: CollisionGeometry) -> int:
         pose = Pose(self._data.geom_xpos[geom], quaternion_of(self._data.geom_xmat[geom]))
-        held = self._check.held_geoms
-        joint, placement = self._place(held.get(geom, int(self._mj.geom_bodyid[geom])), pose)
+        carried = self._check.held_geoms
+        joint, placement = self._place(carried.get(geom, int(self._mj.geom_bodyid[geom])), pose)
         return self._add_shape(name, joint, placement, shape)
 
-    def _add_shape(self, name: str, joint: int, placement: Any, shape: Any) -> int:
+    def _add_shape(self, name: str, joint: int, placement: SE3, shape: CollisionGeometry) -> int:
         number = len(self._geometry.geometryObjects)
         shape.computeLocalAABB()
         item = self._pin.GeometryObject(f"{number} {name}", joint, placement, shape)
@@ -253,19 +258,19 @@ class GroupModel:
         others = [i for i in names if self._geometry.geometryObjects[i].parentJoint != joint] if joint else None
         index = self._add_shape(obstacle.name, joint, placement, obstacle.shape)
         pairs = [(index, i) for i in (others if others is not None else [i for i, _ in moving])]
-        found = [(i, k) for i, k in pairs if not obstacle.touches.intersection(_own_names(names[k]))]
+        free_pairs = [(i, k) for i, k in pairs if not obstacle.touches.intersection(_own_names(names[k]))]
         names[index] = obstacle.name
-        return found
+        return free_pairs
 
-    def _surroundings(self, mine: Collection[int]) -> list[tuple[int, Any]]:
+    def _surroundings(self, mine: Collection[int]) -> list[tuple[int, CollisionGeometry]]:
         """Return the geoms of other models that the group can reach, with their shapes."""
-        mj, own = self._mj, set(mine) | set(self._check.robot_geoms.tolist())
+        mj, of_robot = self._mj, set(mine) | set(self._check.robot_geoms.tolist())
         collides = (mj.geom_contype | mj.geom_conaffinity) != 0
         reach = float(self._reach)
         centre = self._frames[1].translation if len(self._frames) > 1 else np.zeros(3)
         away = np.linalg.norm(self._data.geom_xpos - centre, axis=1) - mj.geom_rbound
         near = (away < reach) | (mj.geom_rbound <= 0)
-        return self._with_shapes(int(g) for g in np.nonzero(collides & near)[0] if int(g) not in own)
+        return self._with_shapes(int(g) for g in np.nonzero(collides & near)[0] if int(g) not in of_robot)
 
     def _is_in_reach(self, obstacle: Obstacle) -> bool:
         obstacle.shape.computeLocalAABB()
@@ -283,27 +288,27 @@ class GroupModel:
         for number, joint in enumerate(self._mj_joints, start=1):
             if self._mj.jnt_type[joint] == mujoco.mjtJoint.mjJNT_SLIDE:
                 strokes[number] = float(np.abs(self._mj.jnt_range[joint]).max()) if self._mj.jnt_limited[joint] else 1e3
-        own = [0.0] * count  # from the origin of each joint to the farthest point of the shapes that it carries
+        reach = [0.0] * count  # from the origin of each joint to the farthest point of the shapes that it carries
         for i in moving:
             item = self._geometry.geometryObjects[i]
             box = item.geometry
             length = norm(item.placement.act(box.aabb_center)) + box.aabb_radius
-            own[item.parentJoint] = max(own[item.parentJoint], float(length))
+            reach[item.parentJoint] = max(reach[item.parentJoint], float(length))
         for number in range(count - 1, 0, -1):
             step = norm(model.jointPlacements[number].translation) + strokes[number]
             parent = parents[number]
             if parent:
-                own[parent] = max(own[parent], own[number] + step)
+                reach[parent] = max(reach[parent], reach[number] + step)
         levers = np.array(
             [
-                1.0 if self._mj.jnt_type[joint] == mujoco.mjtJoint.mjJNT_SLIDE else own[number]
+                1.0 if self._mj.jnt_type[joint] == mujoco.mjtJoint.mjJNT_SLIDE else reach[number]
                 for number, joint in enumerate(self._mj_joints, start=1)
             ]
         )
         self.levers = matmul(np.abs(self._ratios).T, levers)
         roots = [number for number in range(1, count) if not parents[number]]
         origin = self._frames[1].translation if count > 1 else np.zeros(3)
-        away = [norm(self._frames[r].translation - origin) + strokes[r] + own[r] for r in roots]
+        away = [norm(self._frames[r].translation - origin) + strokes[r] + reach[r] for r in roots]
         self._reach = max(away, default=0.0) + self._margin
 
     def _set_margins(self, margins: Sequence[float]) -> None:
@@ -320,12 +325,12 @@ class GroupModel:
 
     def _collide(self, q: Vector) -> None:
         """Check all pairs at these joint positions."""
-        pin, own = self._pin, self._own(q)
-        pin.computeCollisions(self._model, self._pin_data, self._geometry, self._geometry_data, own, False)
+        pin, positions = self._pin, self._own(q)
+        pin.computeCollisions(self._model, self._pin_data, self._geometry, self._geometry_data, positions, False)
 
     def _own(self, q: Vector) -> Vector:
-        own: Vector = matmul(self._ratios, q) + self._offsets
-        return own
+        positions: Vector = matmul(self._ratios, q) + self._offsets
+        return positions
 
     def is_free(self, q: Vector) -> bool:
         """Check whether nothing collides at these joint positions [rad or m]."""
@@ -334,8 +339,8 @@ class GroupModel:
     def collisions(self, q: Vector) -> list[tuple[str, str]]:
         """Return the names of the colliding pairs at these joint positions [rad or m]."""
         self._collide(q)
-        found = zip(self._pairs, self._geometry_data.collisionResults, strict=True)
-        return list(dict.fromkeys(pair for pair, result in found if result.isCollision()))
+        results = zip(self._pairs, self._geometry_data.collisionResults, strict=True)
+        return list(dict.fromkeys(pair for pair, result in results if result.isCollision()))
 
     @property
     def pair_count(self) -> int:

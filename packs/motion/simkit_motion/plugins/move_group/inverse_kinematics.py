@@ -1,17 +1,20 @@
-"""Inverse kinematics of a group of joints: damped least squares within the limits, from several seeds."""
+"""Inverse kinematics of a group of joints within their limits, from several seeds."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit import linear_algebra
+from simkit.extend import Vector
 from simkit.linear_algebra import matmul
-from simkit.pose import Vector
+from simkit.plugins.joints.inverse_kinematics import PoseError, find_positions
 from simkit_motion.plugins.move_group.group_model import GroupModel
+
+if TYPE_CHECKING:
+    from pinocchio import SE3
 
 _STEPS: Final = 120  # iterations for one seed
 _LONGEST_STEP: Final = 0.4  # [rad or m], of one joint
@@ -28,20 +31,22 @@ class PoseGoal:
         pose: Pose in the world, of Pinocchio's class; its rotation is ignored if `turns` is False.
         offset: Point of the link that the position is for, in the frame of the link [m].
         turns: False if only the position is given.
+        places: False if only the rotation is given.
     """
 
     link: str
-    pose: Any
+    pose: SE3
     offset: Vector
     turns: bool = True
+    places: bool = True
 
 
 def solutions(model: GroupModel, goal: PoseGoal, seeds: Iterator[Vector]) -> Iterator[Vector]:
     """Yield joint positions [rad or m] with which a link has a pose, one for each seed that leads to them."""
     for seed in seeds:
-        found = solve(model, goal, seed)
-        if found is not None:
-            yield found
+        solution = solve(model, goal, seed)
+        if solution is not None:
+            yield solution
 
 
 def seeds_of(model: GroupModel, first: Vector, random: np.random.Generator, count: int) -> Iterator[Vector]:
@@ -61,37 +66,31 @@ def finite_limits(model: GroupModel) -> tuple[Vector, Vector]:
 def solve(model: GroupModel, goal: PoseGoal, seed: Vector) -> Vector | None:
     """Return joint positions with which a link has a pose; None if the iteration from this seed does not lead to them.
 
-    The step is Jᵀ (J Jᵀ + λ² I)⁻¹ e with the pose error e in the frame of the tip. λ² falls with |e|², so that the last
-    steps are those of Newton's method. A joint at a limit that the step would exceed takes no part in the step.
+    The pose error is in the frame of the tip. The damping falls with its square, so that the last steps are those of
+    Newton's method. A joint at a limit that the step would exceed takes no part in the step.
     """
     import pinocchio
 
     joint, placement = model.tip(goal.link)
     tip = (joint, placement * pinocchio.SE3(np.eye(3), goal.offset))
-    q = np.array(seed, dtype=float)
-    for _ in range(_STEPS):
+
+    def pose_error(q: Vector) -> PoseError:
         pose, jacobian = model.pose_and_jacobian(tip, q)
-        if goal.turns:
+        if not goal.places:
+            error, jacobian = pinocchio.log3(matmul(pose.rotation.T, goal.pose.rotation)), jacobian[3:]
+        elif goal.turns:
             error = pinocchio.log6(pose.actInv(goal.pose)).vector
         else:
             error, jacobian = matmul(pose.rotation.T, goal.pose.translation - pose.translation), jacobian[:3]
-        if np.abs(error).max() < _PRECISION:
-            return q
-        step = _limited_step(jacobian, error, q, model)
-        q = np.clip(
-            q + step * min(1.0, _LONGEST_STEP / max(float(np.abs(step).max()), 1e-12)), model.lower, model.upper
-        )
-    return None
+        return PoseError(error, jacobian, bool(np.abs(error).max() < _PRECISION))
 
-
-def _limited_step(jacobian: Vector, error: Vector, q: Vector, model: GroupModel) -> Vector:
-    """Return the step of the joints; joints that would leave their limits are held."""
-    damping = _DAMPING * float(matmul(error, error)) * np.eye(len(error)) + 1e-12 * np.eye(len(error))
-    held = np.zeros(len(q), dtype=bool)
-    while True:
-        own = np.where(held, 0.0, jacobian)
-        step: Vector = matmul(own.T, linear_algebra.solve(matmul(own, own.T) + damping, error))
-        out = ~held & (((q <= model.lower) & (step < 0)) | ((q >= model.upper) & (step > 0)))
-        if not out.any():
-            return step
-        held |= out
+    return find_positions(
+        pose_error,
+        np.array(seed, dtype=float),
+        model.lower,
+        model.upper,
+        damping=lambda error: _DAMPING * float(matmul(error, error)) + 1e-12,
+        longest_step=_LONGEST_STEP,
+        steps=_STEPS,
+        holds_limits=True,
+    )

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit import msgs
-from simkit.diagnostics import did_you_mean
+from simkit import ModelPlugin, Params, msgs
+from simkit.extend import Options, OptionsOf, acts, blocks, choice, did_you_mean, number, offers, text
 from simkit.msgs.goal_status import GoalStatus
-from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
-from simkit.plugins.endpoints import acts, offers
-from simkit.plugins.options import Options, OptionsOf, blocks, choice, number, text
 from simkit_motion.plugins.move_group.cartesian_path import follow_line, limit_tip_speed, line_options
 from simkit_motion.plugins.move_group.error_codes import Code, PlanningFailed, check_packages, error_fields
 from simkit_motion.plugins.move_group.execution import Execution, course_of_message, split_trajectory
@@ -36,9 +32,9 @@ from simkit_motion.plugins.move_group.state_copy import copied_state, link_pose_
 from simkit_motion.plugins.play_motion.motion_planning import active_controllers
 
 if TYPE_CHECKING:
+    from simkit import Model
+    from simkit.extend import GoalHandle
     from simkit.msgs import Message
-    from simkit.runtime import Model
-    from simkit.runtime.communication.action_server import GoalHandle
 
 FK: Final = "moveit_msgs/srv/GetPositionFK"
 IK: Final = "moveit_msgs/srv/GetPositionIK"
@@ -63,14 +59,35 @@ class GroupOptions(Options):
     tip_link: str = text()
 
 
+class JointLimitOptions(Options):
+    """Options of a joint, instead of the limits of the robot's file and of all joints; 0 for those."""
+
+    joint: str = text(required=True)
+    max_velocity: float = number(0.0, "rad/s or m/s", minimum=0.0)
+    max_acceleration: float = number(0.0, "rad/s² or m/s²", minimum=0.0)
+
+
+class DisabledCollisionOptions(Options):
+    """Options of two links of the robot that are not checked for collisions with each other."""
+
+    link1: str = text(required=True)
+    link2: str = text(required=True)
+
+
 class MoveGroupOptions(Options):
     """Options of `MoveGroup`.
 
-    With `obstacles` = `world`, the collisions of all other models are obstacles, besides those of the planning scene.
-    `default_robot_padding` is the distance that a plan keeps to obstacles.
+    `robot` is the scoped name of the robot, by default the model of the plugin. `planning_frame` is a further name of
+    its root link, which counts if no frame has this name. With `obstacles` = `world`, the collisions of all other
+    models are obstacles, besides those of the planning scene. `default_robot_padding` is the distance that a plan keeps
+    to obstacles.
     """
 
+    robot: str = text()
+    planning_frame: str = text()
     groups: tuple[GroupOptions, ...] = blocks(GroupOptions, element="group")
+    joint_limits: tuple[JointLimitOptions, ...] = blocks(JointLimitOptions)
+    disable_collisions: tuple[DisabledCollisionOptions, ...] = blocks(DisabledCollisionOptions)
     obstacles: str = choice(("world", "scene"))
     max_acceleration: float = number(2.0, "rad/s²", minimum=1e-3)
     max_linear_acceleration: float = number(0.2, "m/s²", minimum=1e-3)
@@ -90,7 +107,6 @@ class MoveGroup(ModelPlugin):
     filenames = ("libsimkit_move_group.so",)
     names = ("simkit::MoveGroup",)
     options = OptionsOf(MoveGroupOptions)
-    drives = True
     endpoints = (
         offers("compute_fk", FK),
         offers("compute_ik", IK),
@@ -104,27 +120,38 @@ class MoveGroup(ModelPlugin):
     robot: Model
 
     def load(self, parent: Model, params: Params) -> None:
-        self.robot = parent
         self.options.read_all()
+        self.robot = self._declared_robot(parent)
+        parent = self.robot
         self._groups = self._declared_groups()
-        self._limits = Limits(
-            self.options.max_acceleration, self.options.max_linear_acceleration, self.options.default_robot_padding
-        )
+        options = self.options
+        own_limits = {each.joint: (each.max_velocity, each.max_acceleration) for each in options.joint_limits}
+        padding = options.default_robot_padding
+        self._limits = Limits(options.max_acceleration, options.max_linear_acceleration, padding, own_limits)
         self._fingers = tuple(name for name in parent.joints if any(word in name for word in _FINGERS))
-        self._scene = PlanningScene()
+        self._scene = PlanningScene(frozenset(frozenset((o.link1, o.link2)) for o in options.disable_collisions))
         self._executions: list[Execution] = []
         self.offer("compute_fk", FK, self._answers(self._compute_fk))
         self.offer("compute_ik", IK, self._answers(self._compute_ik))
         self.offer("plan_kinematic_path", PLAN, self._plan_kinematic_path)
         self.offer("compute_cartesian_path", LINE, self._answers(self._compute_cartesian_path))
         self.offer("apply_planning_scene", APPLY, self._apply_planning_scene)
-        self.offer("get_planning_scene", SCENE, lambda _: {"scene": self._scene.as_fields(self.robot.name)})
+        self.offer("get_planning_scene", SCENE, lambda _: {"scene": self._scene.as_fields(self.robot)})
         self.act("move_action", MOVE, self._on_move, self._on_cancel)
         self.act("execute_trajectory", EXECUTE, self._on_execute, self._on_cancel)
 
+    def _declared_robot(self, parent: Model) -> Model:
+        """Return the robot of the options, and report a model that does not exist."""
+        name = self.options.robot
+        if not name or name in self.sim.models:
+            return self.sim.model(name) if name else parent
+        near = did_you_mean(name, self.sim.models)
+        self.options.params.error("SK-PLAN-001", f"the world has no model {name!r}", near)
+        return parent
+
     def _declared_groups(self) -> dict[str, Group]:
         """Return the groups of the options, and report joints and links that do not exist."""
-        found, robot = {}, self.robot
+        groups, robot = {}, self.robot
         for options in self.options.groups:
             joints = tuple(options.joints.split())
             unknown = next((name for name in joints if name not in robot.joints), None)
@@ -142,8 +169,8 @@ class MoveGroup(ModelPlugin):
                 what = "is listed twice" if joints.count(unfit) > 1 else "does not have exactly one degree of freedom"
                 options.params.error("SK-PLAN-001", f"joint {unfit!r} of group {options.group_name!r} {what}")
                 continue
-            found[options.group_name] = self._group(options.group_name, joints, options.tip_link)
-        return found
+            groups[options.group_name] = self._group(options.group_name, joints, options.tip_link)
+        return groups
 
     def _group(self, name: str, joints: tuple[str, ...], tip: str = "") -> Group:
         last = self.robot.joints[joints[-1]].scene.child_link
@@ -173,9 +200,12 @@ class MoveGroup(ModelPlugin):
             raise PlanningFailed(Code.INVALID_GROUP_NAME, "the name of the group is empty")
         return self._group(name, tuple(in_tree))
 
+    def _frames(self) -> Frames:
+        return Frames(self.sim, self.robot, self.options.planning_frame)
+
     # ------------------------------------------------------------------ services
 
-    def _answers(self, handler: Callable[[Any], dict[str, object]]) -> Callable[[Any], dict[str, object]]:
+    def _answers(self, handler: Callable[[Message], dict[str, object]]) -> Callable[[Message], dict[str, object]]:
         """Return a handler that answers with an error code instead of an exception."""
 
         def answer(request: Message) -> dict[str, object]:
@@ -190,7 +220,7 @@ class MoveGroup(ModelPlugin):
     def _compute_fk(self, request: Message) -> dict[str, object]:
         state = start_positions(self.robot, request.robot_state)
         frame = request.header.frame_id or root_link(self.robot)
-        inverse = Frames(self.sim, self.robot).pose(frame).inverse()
+        inverse = self._frames().pose(frame).inverse()
         links = [find_link(self.robot, name) for name in request.fk_link_names]
         data = copied_state(self.sim, self.robot, state)
         poses = [inverse @ link_pose_at(self.sim, data, link) for link in links]
@@ -207,11 +237,11 @@ class MoveGroup(ModelPlugin):
         planner = self._planner(group, asked.robot_state)
         stamped = asked.pose_stamped_vector[0] if len(asked.pose_stamped_vector) else asked.pose_stamped
         names = list(asked.ik_link_names) or [asked.ik_link_name or group.tip]
-        pose = Frames(self.sim, self.robot).in_world(stamped.header.frame_id, stamped.pose)
+        pose = self._frames().in_world(stamped.header.frame_id, stamped.pose)
         goal = PoseGoal(find_link(self.robot, names[0]), se3(pose), np.zeros(3))
         first = planner.model.start
-        found = planner.pose_solutions(goal, first, avoids_collisions=bool(asked.avoid_collisions))[0]
-        return {"solution": {"joint_state": {"name": list(group.joints), "position": found.tolist()}}}
+        solution = planner.pose_solutions(goal, first, avoids_collisions=bool(asked.avoid_collisions))[0]
+        return {"solution": {"joint_state": {"name": list(group.joints), "position": solution.tolist()}}}
 
     def _plan_kinematic_path(self, request: Message) -> dict[str, object]:
         asked = request.motion_plan_request
@@ -246,7 +276,7 @@ class MoveGroup(ModelPlugin):
         if not len(asked.goal_constraints):
             raise PlanningFailed(Code.INVALID_GOAL_CONSTRAINTS, "the request has no goal_constraints")
         planner = self._planner(group, asked.start_state)
-        frames = Frames(self.sim, self.robot)
+        frames = self._frames()
         goals, unreachable = [], []
         for constraints in asked.goal_constraints:  # one of them is enough
             try:
@@ -261,7 +291,7 @@ class MoveGroup(ModelPlugin):
         return planner.plan(goals, float(asked.allowed_planning_time), *factors)
 
     def _compute_cartesian_path(self, request: Message) -> dict[str, object]:
-        group, frames = self._find_group(request.group_name), Frames(self.sim, self.robot)
+        group, frames = self._find_group(request.group_name), self._frames()
         planner = self._planner(group, request.start_state)
         link = find_link(self.robot, request.link_name or group.tip)
         poses = [frames.in_world(request.header.frame_id, pose) for pose in request.waypoints]
@@ -280,7 +310,7 @@ class MoveGroup(ModelPlugin):
 
     def _apply_planning_scene(self, request: Message) -> dict[str, object]:
         try:
-            self._scene.apply(request.scene, Frames(self.sim, self.robot))
+            self._scene.apply(request.scene, self._frames())
         except PlanningFailed as error:
             self.log.warning("the planning scene is not changed: %s", error)
             return {"success": False}

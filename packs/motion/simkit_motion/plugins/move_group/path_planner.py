@@ -13,8 +13,8 @@ from typing import Final
 
 import numpy as np
 
+from simkit.extend import Vector
 from simkit.linear_algebra import matmul
-from simkit.pose import Vector
 from simkit_motion.plugins.move_group.group_model import GroupModel
 from simkit_motion.plugins.move_group.inverse_kinematics import finite_limits
 
@@ -122,15 +122,15 @@ class PathPlanner:
 
     def _without_detours(self, path: list[Vector]) -> list[Vector]:
         """Return the path without points that a straight line can skip."""
-        kept, here = [path[0]], 0
+        shortened, here = [path[0]], 0
         try:
             while here < len(path) - 1:
                 following = range(len(path) - 1, here + 1, -1)
                 here = next((k for k in following if self.is_line_free(path[here], path[k])), here + 1)
-                kept.append(path[here])
+                shortened.append(path[here])
         except BudgetSpent:
-            return [*kept, *path[here + 1 :]]
-        return kept
+            return [*shortened, *path[here + 1 :]]
+        return shortened
 
     def _at(self, path: Sequence[Vector], ends: Vector, length: float) -> tuple[int, Vector]:
         """Return the number of the line, and the point on it, at a length along the path [m]."""
@@ -167,8 +167,8 @@ class _Tree:
 
     def branch(self, node: int) -> list[Vector]:
         """Return the positions from a node to its root."""
-        found = []
+        nodes = []
         while node >= 0:
-            found.append(self.nodes[node])
+            nodes.append(self.nodes[node])
             node = self._parents[node]
-        return found
+        return nodes

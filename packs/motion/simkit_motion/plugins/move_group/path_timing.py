@@ -13,8 +13,8 @@ from typing import Final
 
 import numpy as np
 
+from simkit.extend import Vector
 from simkit.linear_algebra import norm
-from simkit.pose import Vector
 
 SAMPLE_TIME: Final = 0.05  # [s] between two points of a trajectory
 _FOR_CURVES: Final = 0.5  # part of the acceleration limit that a curve may use
@@ -123,8 +123,8 @@ def _way_at(times: Vector, at: Vector, way: Vector, rates: Vector) -> Vector:
     """Return the length along the path at each time; the speed along the path changes linearly between samples."""
     k = np.clip(np.searchsorted(at, times, side="right") - 1, 0, len(at) - 2)
     since, period = times - at[k], np.maximum(at[k + 1] - at[k], 1e-12)
-    found: Vector = way[k] + rates[k] * since + (rates[k + 1] - rates[k]) * since**2 / (2 * period)
-    return np.clip(found, 0.0, way[-1])
+    travelled: Vector = way[k] + rates[k] * since + (rates[k + 1] - rates[k]) * since**2 / (2 * period)
+    return np.clip(travelled, 0.0, way[-1])
 
 
 def _within_limits(times: Vector, positions: Vector, velocities: Vector, speeds: Vector, most: Vector) -> TimedPath:

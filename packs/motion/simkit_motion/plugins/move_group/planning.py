@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from simkit import msgs
-from simkit.diagnostics import did_you_mean
+from simkit.extend import Vector, did_you_mean
 from simkit.linear_algebra import matmul
-from simkit.pose import Vector
 from simkit_motion.plugins.move_group.error_codes import Code, PlanningFailed
 from simkit_motion.plugins.move_group.group_model import GroupModel, Obstacle
 from simkit_motion.plugins.move_group.inverse_kinematics import PoseGoal, seeds_of, solutions
@@ -20,8 +19,8 @@ from simkit_motion.plugins.move_group.path_planner import BudgetSpent, PathPlann
 from simkit_motion.plugins.move_group.path_timing import TimedPath, round_corners, time_path
 
 if TYPE_CHECKING:
+    from simkit import Joint, Model, Simulation
     from simkit.msgs import Message
-    from simkit.runtime import Joint, Model, Simulation
 
 CHECKS_PER_SECOND: Final = 10_000
 """Number of collision checks that count as one second of planning time. The wall clock would make plans differ."""
@@ -56,11 +55,13 @@ class Limits:
         acceleration: Largest acceleration of a joint that rotates [rad/s²].
         linear_acceleration: Largest acceleration of a joint that slides [m/s²].
         padding: Distance to obstacles [m].
+        joints: Speed and acceleration of some joints by plain name, instead of the others; 0 for those.
     """
 
     acceleration: float
     linear_acceleration: float
     padding: float
+    joints: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,14 +120,14 @@ def start_positions(robot: Model, state: Message) -> dict[str, float]:
     if len(names) != len(values):
         text = f"the robot state has {len(names)} names and {len(values)} positions"
         raise PlanningFailed(Code.INVALID_ROBOT_STATE, text)
-    found: dict[str, float] = {}
+    positions: dict[str, float] = {}
     for name, value in zip(names, values, strict=True):
         joint = find_joint(robot, name, Code.INVALID_ROBOT_STATE)
         if not np.isfinite(value):
             raise PlanningFailed(Code.INVALID_ROBOT_STATE, f"the position of joint {name!r} is {value}")
         if joint.dof == 1:  # joint states may list fixed joints
-            found[name] = float(value)
-    return found
+            positions[name] = float(value)
+    return positions
 
 
 def find_joint(robot: Model, name: str, code: Code) -> Joint:
@@ -239,21 +240,21 @@ class Planner:
         Raises:
             PlanningFailed: No positions were found, or all of them collide.
         """
-        model, found = self.model, []
+        model, distinct = self.model, []
         colliding: tuple[str, str] | None = None
         for q in solutions(model, goal, seeds_of(model, first, self._random, _IK_SEEDS)):
             if not avoids_collisions or model.is_free(q):
-                found.append(q)
-                if len(found) == _GOALS or not avoids_collisions:
+                distinct.append(q)
+                if len(distinct) == _GOALS or not avoids_collisions:
                     break
             else:
                 colliding = colliding or model.collisions(q)[0]
-        if not found:
+        if not distinct:
             if colliding is None:
                 raise PlanningFailed(Code.NO_IK_SOLUTION, "no joint positions within the limits lead to the pose")
             text = f"the pose is in collision: {' and '.join(colliding)} touch or are too close"
             raise PlanningFailed(Code.GOAL_IN_COLLISION, text)
-        return sorted(found, key=lambda q: float(matmul(model.levers, np.abs(q - model.start))))
+        return sorted(distinct, key=lambda q: float(matmul(model.levers, np.abs(q - model.start))))
 
     # ------------------------------------------------------------------ plans
 
@@ -321,13 +322,18 @@ class Planner:
         return all(self.model.is_free(q) for a, b in steps for q in fine_positions(self.model, a, b))
 
     def _speeds(self, factor: float) -> Vector:
-        limits = [joint.scene.axes[0].velocity for joint in self._joints]
+        own = self._limits.joints
+        limits = [own.get(joint.name, (0.0, 0.0))[0] or joint.scene.axes[0].velocity for joint in self._joints]
         known = np.array([v if v and np.isfinite(v) else 1.0 for v in limits])
         return known * _checked_factor(factor, "max_velocity_scaling_factor")
 
     def _accelerations(self, factor: float) -> Vector:
         most = self._limits
-        known = [most.linear_acceleration if joint.type == "prismatic" else most.acceleration for joint in self._joints]
+        common = [
+            most.linear_acceleration if joint.type == "prismatic" else most.acceleration for joint in self._joints
+        ]
+        own = [most.joints.get(joint.name, (0.0, 0.0))[1] for joint in self._joints]
+        known = [value or default for value, default in zip(own, common, strict=True)]
         return np.array(known) * _checked_factor(factor, "max_acceleration_scaling_factor")
 
 

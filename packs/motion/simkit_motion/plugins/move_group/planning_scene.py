@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from copy import deepcopy
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit import msgs
-from simkit.diagnostics import did_you_mean
+from simkit import Pose, msgs
+from simkit.extend import SharedByCopies, did_you_mean
 from simkit.linear_algebra import norm
-from simkit.plugins.not_deep_copied import SharedByCopies
-from simkit.pose import IDENTITY, Pose
+from simkit.pose import IDENTITY
 from simkit_motion.plugins.move_group.collision_shapes import shape_of_primitive, triangle_mesh, voxels
 from simkit_motion.plugins.move_group.error_codes import Code, PlanningFailed, check_packages
 from simkit_motion.plugins.move_group.goal_constraints import Frames, pose_of_message
@@ -20,6 +20,9 @@ from simkit_motion.plugins.move_group.group_model import Obstacle
 from simkit_motion.plugins.move_group.planning import find_link
 
 if TYPE_CHECKING:
+    from coal import CollisionGeometry
+
+    from simkit import Model
     from simkit.msgs import Message
 
 _MANY_CUBES: Final = 50
@@ -42,14 +45,14 @@ class SceneObject(SharedByCopies):
     link: str = ""
     touches: frozenset[str] = frozenset()
 
-    def shapes(self) -> list[tuple[Any, Pose]]:
+    def shapes(self) -> list[tuple[CollisionGeometry, Pose]]:
         """Return the shapes of the package `coal` with their poses in the object.
 
         Raises:
             PlanningFailed: A shape is invalid or unsupported.
         """
         check_packages()
-        found, m = [], self.message
+        placed, m = [], self.message
         for kind, shapes, poses in (
             ("primitives", m.primitives, m.primitive_poses),
             ("meshes", m.meshes, m.mesh_poses),
@@ -62,11 +65,11 @@ class SceneObject(SharedByCopies):
             items = list(zip(shapes, places, strict=True))
             if kind == "primitives" and len(items) >= _MANY_CUBES:
                 octrees, items = _join_cubes(items)
-                found += octrees
-            found += [(self._shape(kind, shape), place) for shape, place in items]
-        return found
+                placed += octrees
+            placed += [(self._shape(kind, shape), place) for shape, place in items]
+        return placed
 
-    def _shape(self, kind: str, shape: Message) -> Any:
+    def _shape(self, kind: str, shape: Message) -> CollisionGeometry:
         import coal
 
         try:
@@ -87,7 +90,9 @@ class SceneObject(SharedByCopies):
             raise PlanningFailed(Code.INVALID_OBJECT_NAME, f"object {self.message.id!r}: {error}") from None
 
 
-def _join_cubes(items: list[tuple[Message, Pose]]) -> tuple[list[tuple[Any, Pose]], list[tuple[Message, Pose]]]:
+def _join_cubes(
+    items: list[tuple[Message, Pose]],
+) -> tuple[list[tuple[CollisionGeometry, Pose]], list[tuple[Message, Pose]]]:
     """Join the cubes that lie in a grid to one shape for each size; return these shapes and all other items."""
     cubes: dict[float, list[tuple[Message, Pose]]] = {}
     others = []
@@ -100,24 +105,27 @@ def _join_cubes(items: list[tuple[Message, Pose]]) -> tuple[list[tuple[Any, Pose
             others.append((shape, place))
     joined = []
     for side, group in cubes.items():
-        found = voxels(np.array([place.position for _, place in group]), side)
-        if found is None:
+        grid = voxels(np.array([place.position for _, place in group]), side)
+        if grid is None:
             others += group
         else:
-            joined.append((found[0], Pose(found[1], IDENTITY.quaternion)))
+            joined.append((grid[0], Pose(grid[1], IDENTITY.quaternion)))
     return joined, others
 
 
 class PlanningScene:
     """Obstacles, attached objects and allowed contacts of one robot.
 
+    Args:
+        allowed: Pairs of names that may touch in an empty scene.
+
     Attributes:
         allowed: Pairs of names of links, models and objects that may touch; a single name may touch everything.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, allowed: frozenset[frozenset[str]] = frozenset()) -> None:
         self._objects: dict[str, SceneObject] = {}
-        self.allowed: frozenset[frozenset[str]] = frozenset()
+        self._first_allowed = self.allowed = allowed
 
     def apply(self, scene: Message, frames: Frames) -> None:
         """Change the scene by a `moveit_msgs/msg/PlanningScene`; without `is_diff`, it replaces the scene.
@@ -127,15 +135,15 @@ class PlanningScene:
         """
         before = dict(self._objects), self.allowed
         if not scene.is_diff:
-            self._objects, self.allowed = {}, frozenset()
+            self._objects, self.allowed = {}, self._first_allowed
         try:
-            for name, given in (
+            for name, is_given in (
                 ("world.octomap", len(scene.world.octomap.octomap.data)),
                 ("link_padding", len(scene.link_padding)),
                 ("link_scale", len(scene.link_scale)),
                 ("fixed_frame_transforms", len(scene.fixed_frame_transforms)),
             ):
-                if given:
+                if is_given:
                     help_text = (
                         "send the voxels as boxes of a collision object" if "octomap" in name else "leave it empty"
                     )
@@ -159,7 +167,9 @@ class PlanningScene:
                 self._existing(item.id)
                 del self._objects[item.id]
             else:  # as in MoveIt: no name removes all
-                self._objects = {name: found for name, found in self._objects.items() if found.link}
+                self._objects = {
+                    name: scene_object for name, scene_object in self._objects.items() if scene_object.link
+                }
             return
         if not item.id:
             raise PlanningFailed(Code.INVALID_OBJECT_NAME, "a collision object has no id")
@@ -172,20 +182,20 @@ class PlanningScene:
         if operation not in (item.ADD, item.APPEND):
             text = f"operation {operation} of object {item.id!r}; expected 0 (add), 1 (remove) or 3 (move)"
             raise PlanningFailed(Code.INVALID_OBJECT_NAME, text)
-        found = SceneObject(deepcopy(item), pose)  # the client may use its message again
-        if not found.shapes():
+        scene_object = SceneObject(deepcopy(item), pose)  # the client may use its message again
+        if not scene_object.shapes():
             raise PlanningFailed(Code.INVALID_OBJECT_NAME, f"object {item.id!r} has no shapes")
-        self._objects[item.id] = found
+        self._objects[item.id] = scene_object
 
     def _attach(self, attached: Message, frames: Frames) -> None:
         item = attached.object
         if int(item.operation) == item.REMOVE:
-            names = [item.id] if item.id else [name for name, found in self._objects.items() if found.link]
+            names = [item.id] if item.id else self._carried_by(attached.link_name)
             for name in names:  # the object stays in the world where it is
-                held = self._existing(name)
-                if held.link:
-                    pose = frames.sim.link(held.link).pose @ held.pose
-                    self._objects[name] = SceneObject(held.message, pose)
+                before = self._existing(name)
+                if before.link:
+                    pose = frames.sim.link(before.link).pose @ before.pose
+                    self._objects[name] = SceneObject(before.message, pose)
             return
         link = find_link(frames.robot, attached.link_name)
         if not item.id:
@@ -196,9 +206,14 @@ class PlanningScene:
             known = self._existing(item.id)
             message, pose = known.message, known.pose
         touches = frozenset((attached.link_name, *(str(name) for name in attached.touch_links)))
-        found = SceneObject(message, frames.sim.link(link).pose.inverse() @ pose, link, touches)
-        found.shapes()
-        self._objects[item.id] = found
+        scene_object = SceneObject(message, frames.sim.link(link).pose.inverse() @ pose, link, touches)
+        scene_object.shapes()
+        self._objects[item.id] = scene_object
+
+    def _carried_by(self, link: str) -> list[str]:
+        """Return the names of the objects that are attached to a link, by plain name, or to any link."""
+        items = self._objects.items()
+        return [name for name, item in items if item.link and link in ("", item.link.rpartition("::")[2])]
 
     def _existing(self, name: str) -> SceneObject:
         if name not in self._objects:
@@ -209,25 +224,36 @@ class PlanningScene:
     def obstacles(self) -> tuple[Obstacle, ...]:
         """Return the shapes of all objects."""
         return tuple(
-            Obstacle(name, shape, found.pose @ place, found.link, found.touches)
-            for name, found in self._objects.items()
-            for shape, place in found.shapes()
+            Obstacle(name, shape, item.pose @ place, item.link, item.touches)
+            for name, item in self._objects.items()
+            for shape, place in item.shapes()
         )
 
-    def as_fields(self, robot: str) -> dict[str, object]:
-        """Return the objects as the fields of a `moveit_msgs/msg/PlanningScene`; poses are in the frame `world`."""
+    def as_fields(self, robot: Model) -> dict[str, object]:
+        """Return the scene as the fields of a `moveit_msgs/msg/PlanningScene`; poses are in the frame `world`."""
         objects, attached = [], []
-        for found in self._objects.values():
-            link = found.link.rpartition("::")[2]
-            message = found.message
+        for item in self._objects.values():
+            link = item.link.rpartition("::")[2]
+            message = item.message
             fields = {name: getattr(message, name) for name in ("id", "type", *_SHAPE_FIELDS)}
-            fields |= {"header": {"frame_id": link or "world"}, "pose": msgs.pose_message(found.pose)}
+            fields |= {"header": {"frame_id": link or "world"}, "pose": msgs.pose_message(item.pose)}
             if link:
-                attached.append({"link_name": link, "object": fields, "touch_links": sorted(found.touches)})
+                attached.append({"link_name": link, "object": fields, "touch_links": sorted(item.touches)})
             else:
                 objects.append(fields)
-        state = {"attached_collision_objects": attached, "is_diff": bool(attached)}
-        return {"robot_model_name": robot, "world": {"collision_objects": objects}, "robot_state": state}
+        moving = [(name, float(joint.position)) for name, joint in robot.joints.items() if joint.dof == 1]
+        joints = {"name": [name for name, _ in moving], "position": [position for _, position in moving]}
+        state = {"joint_state": joints, "attached_collision_objects": attached}
+        scene: dict[str, object] = {"name": "scene", "robot_model_name": robot.name, "robot_state": state}
+        matrix = self._matrix([*robot.links, *self._objects])
+        return scene | {"world": {"collision_objects": objects}, "allowed_collision_matrix": matrix}
+
+    def _matrix(self, names: Sequence[str]) -> dict[str, object]:
+        """Return the fields of a `moveit_msgs/msg/AllowedCollisionMatrix`."""
+        single = sorted(name for pair in self.allowed if len(pair) == 1 for name in pair)
+        rows = [{"enabled": [frozenset((a, b)) in self.allowed for b in names]} for a in names]
+        defaults = {"default_entry_names": single, "default_entry_values": [True] * len(single)}
+        return {"entry_names": list(names), "entry_values": rows, **defaults}
 
 
 def _object_pose(item: Message) -> Pose:

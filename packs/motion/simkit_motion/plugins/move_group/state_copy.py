@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from simkit.pose import Pose, Vector
+from simkit import Pose
+from simkit.extend import Vector
 
 if TYPE_CHECKING:
-    from simkit.runtime import Model, Simulation
+    from pinocchio import SE3
+
+    from simkit import Model, Simulation
 
 
-def se3(pose: Pose) -> Any:
+def se3(pose: Pose) -> SE3:
     """Convert a pose to Pinocchio's class."""
     import pinocchio
 
@@ -26,9 +29,9 @@ def se3(pose: Pose) -> Any:
 
 def quaternion_of(matrix: npt.NDArray[np.float64]) -> Vector:
     """Return the quaternion (w, x, y, z) of a rotation matrix, shape (3, 3) or (9,)."""
-    found = np.zeros(4)
-    mujoco.mju_mat2Quat(found, np.ascontiguousarray(matrix, dtype=float).ravel())
-    return found
+    quaternion = np.zeros(4)
+    mujoco.mju_mat2Quat(quaternion, np.ascontiguousarray(matrix, dtype=float).ravel())
+    return quaternion
 
 
 def link_pose_at(sim: Simulation, data: mujoco.MjData, link: str) -> Pose:

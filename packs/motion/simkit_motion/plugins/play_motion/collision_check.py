@@ -20,11 +20,12 @@ from typing import TYPE_CHECKING, Final
 import mujoco
 import numpy as np
 
-from simkit.pose import Pose, Vector
+from simkit import Pose
+from simkit.extend import Vector
 from simkit.runtime.contact.collision_contacts import Ints, collision_table
 
 if TYPE_CHECKING:
-    from simkit.runtime import Joint, Model, Simulation
+    from simkit import Joint, Model, Simulation
 
 TOLERANCE: Final = 1e-3  # [m], allowed overlap with the surroundings, because contacts of the engine are soft
 SELF_TOLERANCE: Final = 5e-3  # [m], allowed overlap of two links: collision shapes are larger than the real links
@@ -108,8 +109,8 @@ class CollisionCheck:
     def held_geoms(self) -> dict[int, int]:
         """Geoms of the objects in a gripper, each with the body of the robot that carries it."""
         roots = self._model.body_rootid[self._model.geom_bodyid]
-        held = {int(self._model.dof_bodyid[self._model.jnt_dofadr[h.joint]]): h.carrier for h in self._held}
-        return {geom: held[root] for geom, root in enumerate(roots.tolist()) if root in held}
+        carriers = {int(self._model.dof_bodyid[self._model.jnt_dofadr[h.joint]]): h.carrier for h in self._held}
+        return {geom: carriers[root] for geom, root in enumerate(roots.tolist()) if root in carriers}
 
     def deepest_collision(self, positions: Vector) -> LinkCollision | None:
         """Return the collision with the largest depth at these joint positions; None without a collision.
@@ -118,8 +119,8 @@ class CollisionCheck:
             positions: Position of each joint [rad or m], in the order of the joints.
         """
         self._set_positions(positions)
-        found = [*self._self_collisions(), *self._outside_collisions()]
-        return max(found, key=lambda collision: collision.depth, default=None)
+        collisions = [*self._self_collisions(), *self._outside_collisions()]
+        return max(collisions, key=lambda collision: collision.depth, default=None)
 
     def _self_collisions(self) -> list[LinkCollision]:
         """Return the collisions between links of the robot."""
@@ -127,21 +128,21 @@ class CollisionCheck:
         places = data.geom_xpos
         apart = places[self._first] - places[self._second]
         near = np.nonzero(np.einsum("ij,ij->i", apart, apart) < self._reach2)[0]
-        found = []
+        collisions = []
         for k in near:
             first, second = int(self._first[k]), int(self._second[k])
             dist = mujoco.mj_geomDistance(model, data, first, second, 0.0, None)
             if dist < self._allowed[k]:
-                found.append(LinkCollision(self._name(first), self._name(second), -dist))
-        return found
+                collisions.append(LinkCollision(self._name(first), self._name(second), -dist))
+        return collisions
 
     def _outside_collisions(self) -> list[LinkCollision]:
         """Return the collisions of the robot, or of an object in its gripper, with the surroundings."""
-        found = []
+        collisions = []
         for (mine, other), dist in self._contacts():
             if dist < min(self._initial_contacts.get((mine, other), 0.0), 0.0) - TOLERANCE:
-                found.append(LinkCollision(self._name(mine), self._name(other), -dist))
-        return found
+                collisions.append(LinkCollision(self._name(mine), self._name(other), -dist))
+        return collisions
 
     # ------------------------------------------------------------------ the copy of the state
 
@@ -153,10 +154,10 @@ class CollisionCheck:
                 data.qpos[f.qpos] = self._model.qpos0[f.qpos] + f.offset + f.ratio * value
         mujoco.mj_kinematics(self._model, data)
         if self._held:
-            for held in self._held:
-                carrier = Pose(data.xpos[held.carrier], data.xquat[held.carrier])
-                pose = carrier @ held.pose
-                data.qpos[held.qpos : held.qpos + 3], data.qpos[held.qpos + 3 : held.qpos + 7] = (
+            for item in self._held:
+                carrier = Pose(data.xpos[item.carrier], data.xquat[item.carrier])
+                pose = carrier @ item.pose
+                data.qpos[item.qpos : item.qpos + 3], data.qpos[item.qpos + 3 : item.qpos + 7] = (
                     pose.position,
                     pose.quaternion,
                 )
@@ -173,7 +174,7 @@ class CollisionCheck:
         if not data.ncon:
             return []
         geoms, dist = np.array(data.contact.geom), np.array(data.contact.dist)
-        found: dict[tuple[int, int], float] = {}
+        depths: dict[tuple[int, int], float] = {}
         for (a, b), d in zip(geoms.tolist(), dist.tolist(), strict=True):
             if b >= 0 and self._moves[b] and not self._moves[a]:
                 a, b = b, a
@@ -181,8 +182,8 @@ class CollisionCheck:
                 continue
             if self._is_free[a] and self._is_loose[b]:
                 continue
-            found[a, b] = min(d, found.get((a, b), d))
-        return list(found.items())
+            depths[a, b] = min(d, depths.get((a, b), d))
+        return list(depths.items())
 
     # ------------------------------------------------------------------ preparation
 
@@ -203,12 +204,12 @@ class CollisionCheck:
             parent = model.body_parentid[body]
             self._mover[body] = body if body in moved else self._mover[parent]
             is_free[body] = body in free or is_free[parent]
-        found = collision_table(sim.engine.compiled)
+        table = collision_table(sim.engine.compiled)
         prefix = f"{self._robot.scoped}::"
-        mine = np.array([name.startswith(prefix) for name in found.names] + [False])
+        mine = np.array([name.startswith(prefix) for name in table.names] + [False])
         bodies = model.geom_bodyid
         # the arrays have one entry more than geoms, because index -1 means "no geom"
-        self._is_robot = mine[found.of_geom]
+        self._is_robot = mine[table.of_geom]
         self._moves = np.append(self._is_robot[:-1] & (self._mover[bodies] > 0), False)
         self._is_free = np.append(is_free[bodies], False)
 
@@ -233,7 +234,7 @@ class CollisionCheck:
                     continue
                 root = int(model.body_rootid[model.geom_bodyid[other]])
                 touched.setdefault(root, set()).add(int(model.geom_bodyid[mine]))
-        held = []
+        objects = []
         for root, links in touched.items():
             start = int(model.body_jntadr[root])
             is_free = model.body_jntnum[root] and model.jnt_type[start] == mujoco.mjtJoint.mjJNT_FREE
@@ -241,10 +242,10 @@ class CollisionCheck:
             if len(links) < 2 or not is_free or not self._mover[carrier]:
                 continue
             inside = Pose(now.xpos[carrier], now.xquat[carrier]).inverse() @ Pose(now.xpos[root], now.xquat[root])
-            held.append(_HeldObject(start, int(model.jnt_qposadr[start]), carrier, inside))
+            objects.append(_HeldObject(start, int(model.jnt_qposadr[start]), carrier, inside))
             of_it = np.append(model.body_rootid[model.geom_bodyid] == root, False)
             self._moves |= of_it
-        return held
+        return objects
 
     def _common_carrier(self, bodies: Collection[int]) -> int:
         """Return the nearest body in the kinematic tree that carries all these bodies, or is one of them."""

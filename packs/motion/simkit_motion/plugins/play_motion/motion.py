@@ -10,16 +10,15 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from simkit import msgs
-from simkit.diagnostics import NOWHERE, Where
-from simkit.plugins.not_deep_copied import SharedByCopies
-from simkit.pose import Vector
+from simkit.diagnostics import NOWHERE
+from simkit.extend import SharedByCopies, Vector, Where
 
 LARGEST_NUMBER: Final = 1e15
 """Largest time [s], position and velocity of a motion; the sums and quotients of larger ones would be infinite."""
 
 if TYPE_CHECKING:
+    from simkit import Joint
     from simkit.msgs import Motion as MotionMessage
-    from simkit.runtime import Joint
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +136,7 @@ _ROUNDING: Final = 1e-6  # [rad or m]
 
 def limit_violations(motion: Motion, joints: Mapping[str, Joint]) -> list[str]:
     """Describe each joint limit that a motion exceeds, at the point where it exceeds the limit most."""
-    found = []
+    violations = []
     for column, name in enumerate(motion.joints):
         axis = joints[name].scene.axes[0]
         values = [row[column] for row in motion.positions]
@@ -146,8 +145,8 @@ def limit_violations(motion: Motion, joints: Mapping[str, Joint]) -> list[str]:
         if over[k] > _ROUNDING:
             unit = "m" if joints[name].type == "prismatic" else "rad"
             allowed = f"expected {axis.lower:g} to {axis.upper:g}"
-            found.append(f"{name} would be at {values[k]:g} {unit} at {motion.times[k]:g} s; {allowed}")
-    return found
+            violations.append(f"{name} would be at {values[k]:g} {unit} at {motion.times[k]:g} s; {allowed}")
+    return violations
 
 
 def speed_limits(motion: Motion, joints: Mapping[str, Joint]) -> Vector:

@@ -14,7 +14,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
-from simkit.diagnostics import Diagnostic, Diagnostics, Where, did_you_mean
+from simkit import Diagnostic
+from simkit.extend import Diagnostics, Where, did_you_mean
 from simkit.plugins.ros_parameter_files import Entry, ParameterFile, read_parameter_file
 from simkit_motion.plugins.play_motion.motion import LARGEST_NUMBER, Motion, motion_fault, point_rows
 
@@ -73,26 +74,26 @@ def read_motions(path: Path, diagnostics: Diagnostics) -> MotionFile:
 @lru_cache(maxsize=32)  # reading takes 10 ms, and a process may load a world many times
 def _read_cached(path: Path, _stamp: tuple[int, ...]) -> tuple[MotionFile, tuple[Diagnostic, ...]]:
     """Return the contents and the diagnostics of a file. A changed file has another `_stamp`, so it is read again."""
-    found, reports = MotionFile(), Diagnostics()
+    motion_file, reports = MotionFile(), Diagnostics()
     file = read_parameter_file(path, reports)
     if file is None:
-        return found, tuple(reports)
+        return motion_file, tuple(reports)
     # the warning about an empty file mentions controllers, so it is replaced by a warning about motions
     reports.drop([d for d in reports if d.code == "SK-CONTROL-003"])
     for block in _motion_blocks(file):
         for name, entry in (block.below or {}).items():
             if name == "motions":
-                _read_motions(entry, found, reports)
+                _read_motions(entry, motion_file, reports)
             elif name in _PLANNERS:
-                _read_planner(entry, found, reports)
+                _read_planner(entry, motion_file, reports)
             elif name in _SETTINGS:
-                _read_planner(Entry(block.where, below={name: entry}), found, reports)
+                _read_planner(Entry(block.where, below={name: entry}), motion_file, reports)
             elif near := did_you_mean(name, ("motions", *_PLANNERS, *_SETTINGS)):
                 reports.warning("SK-MOTION-006", f"{name!r} is not used", entry.where, near)
-    if not found.motions and not reports.has_errors:
+    if not motion_file.motions and not reports.has_errors:
         hint = "add a block `motions` below the name of a node"
         reports.warning("SK-MOTION-003", f"{path.name} has no valid motion", Where(str(path)), hint)
-    return found, tuple(reports)
+    return motion_file, tuple(reports)
 
 
 def _motion_blocks(file: ParameterFile) -> Iterator[Entry]:

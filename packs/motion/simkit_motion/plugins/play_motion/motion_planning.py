@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from simkit import msgs
-from simkit.diagnostics import did_you_mean
-from simkit.pose import Vector
+from simkit.extend import Vector, did_you_mean
 from simkit_control.controllers.joint_trajectory import JointTrajectoryController
 from simkit_control.plugins.ros2_control.control_plugin import ControlPlugin
 from simkit_motion.plugins.play_motion.collision_check import CollisionCheck
@@ -18,7 +17,7 @@ from simkit_motion.plugins.play_motion.motion import Motion, limit_violations, s
 from simkit_motion.plugins.play_motion.motion_timing import SHORTEST_INTERVAL, Course, approach_time, time_course
 
 if TYPE_CHECKING:
-    from simkit.runtime import Joint, Model, Simulation
+    from simkit import Joint, Model, Simulation
     from simkit.scene.model import Mimic
 
 MISSING_CONTROLLER: Final = -4
@@ -62,7 +61,7 @@ class TrajectoryController:
 
 def active_controllers(sim: Simulation, robot: Model) -> list[TrajectoryController]:
     """Return the active trajectory controllers of a robot, in the order of loading."""
-    found = []
+    controllers = []
     plugins = (plugin for plugin in sim.engine.structure.all_plugins() if isinstance(plugin, ControlPlugin))
     for plugin in plugins:
         is_within = f"{plugin.scoped}::".startswith(f"{robot.scoped}::")
@@ -75,8 +74,8 @@ def active_controllers(sim: Simulation, robot: Model) -> list[TrajectoryControll
             interfaces = controller.command_interfaces()
             joints = dict.fromkeys(name.rpartition("/")[0] for name in interfaces if "/" in name)
             action = plugin.ros.topic(controller.topic("~/follow_joint_trajectory"))
-            found.append(TrajectoryController(name, action, tuple(joints)))
-    return found
+            controllers.append(TrajectoryController(name, action, tuple(joints)))
+    return controllers
 
 
 def unclaimed_joints(robot: Model, joints: Sequence[str], controllers: Sequence[TrajectoryController]) -> list[str]:
@@ -140,13 +139,13 @@ def plan_motion(
         raise MotionRefused(OTHER_ERROR, f"motion {motion.key!r} exceeds the joint limits: {'; '.join(beyond)}")
     check_mimic_joints(robot, motion)
     start = np.array([float(joint.position) for joint in joints.values()])
-    found = course_from(start, motion, speed_limits(motion, joints), approach)
-    if not found.duration <= _LONGEST_DURATION:
-        text = f"motion {motion.key!r} would take {found.duration:g} s; expected up to {_LONGEST_DURATION:.0f} s"
+    course = course_from(start, motion, speed_limits(motion, joints), approach)
+    if not course.duration <= _LONGEST_DURATION:
+        text = f"motion {motion.key!r} would take {course.duration:g} s; expected up to {_LONGEST_DURATION:.0f} s"
         raise MotionRefused(OTHER_ERROR, text)
     if checks_collisions and not approach.free_joints.issuperset(motion.joints):
-        check_collisions(sim, robot, motion, found, joints, approach.free_joints)
-    return found
+        check_collisions(sim, robot, motion, course, joints, approach.free_joints)
+    return course
 
 
 def find_joints(robot: Model, names: Sequence[str], controllers: Sequence[TrajectoryController]) -> dict[str, Joint]:
@@ -225,8 +224,8 @@ def course_from(start: Vector, motion: Motion, limits: Vector, approach: Approac
     needed = SHORTEST_INTERVAL if is_there else approach_time(start, points[1], approach.speed, approach.shortest)
     needed = min(needed, 2 * _LONGEST_DURATION)  # infinite at a speed near 0; too long in any case
     shifted = np.concatenate([[0.0], times + max(needed - times[0], 0.0)])
-    given = np.array(motion.velocities) if motion.velocities else None
-    return time_course(points, shifted, given, limits)
+    velocities = np.array(motion.velocities) if motion.velocities else None
+    return time_course(points, shifted, velocities, limits)
 
 
 def check_collisions(
@@ -253,7 +252,9 @@ def check_collisions(
             raise MotionRefused(NO_PLAN_FOUND, f"motion {motion.key!r} collides {where}: {collision}")
 
 
-def trajectory_goal(found: Course, motion: Motion, controller: TrajectoryController, robot: Model) -> dict[str, object]:
+def trajectory_goal(
+    course: Course, motion: Motion, controller: TrajectoryController, robot: Model
+) -> dict[str, object]:
     """Return the goal for one controller; a joint that is not in the motion keeps its present position."""
     columns = [motion.joints.index(joint) if joint in motion.joints else None for joint in controller.joints]
     here = [float(robot.joints[joint].position) if joint in robot.joints else 0.0 for joint in controller.joints]
@@ -264,10 +265,10 @@ def trajectory_goal(found: Course, motion: Motion, controller: TrajectoryControl
     at_rest = [0.0] * len(columns)
     points = [
         {
-            "positions": row(found.positions[k], here),
-            "velocities": row(found.velocities[k], at_rest),
-            "time_from_start": msgs.duration(round(float(found.times[k]) * 1e9)),
+            "positions": row(course.positions[k], here),
+            "velocities": row(course.velocities[k], at_rest),
+            "time_from_start": msgs.duration(round(float(course.times[k]) * 1e9)),
         }
-        for k in range(1, len(found.times))
+        for k in range(1, len(course.times))
     ]
     return {"trajectory": {"joint_names": list(controller.joints), "points": points}}

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, SimkitError
+from simkit.extend import did_you_mean
 from simkit_control.plugins.ros2_control.control_plugin import ControlPlugin
 from simkit_motion.plugins.play_motion.motion import Motion
 from simkit_motion.plugins.play_motion.play_motion_plugin import PlayMotion
 
 if TYPE_CHECKING:
-    from simkit.runtime import Simulation
+    from simkit import Simulation
 
 _SLICE: Final = 0.02  # [s], simulated time between two checks whether a motion has ended
 _LONGEST: Final = 10_000.0  # [s], largest duration of a motion
@@ -24,6 +24,7 @@ class MotionError(SimkitError):
     """Error: a motion was refused or did not finish."""
 
     code = "SK-MOTION-012"
+    _shows_class_code = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,13 +78,13 @@ def choose_player(players: Mapping[str, PlayMotion], name: str | None) -> PlayMo
     listed = ", ".join(players) or "none"
     if name is not None and name not in players:
         hint = did_you_mean(name, players) or f"these robots do: {listed}"
-        raise InputError(f"SK-MOTION-010 no robot {name!r} plays motions; {hint}", "SK-MOTION-010")
+        raise InputError("SK-MOTION-010", f"no robot {name!r} plays motions; {hint}")
     if name is None and not players:
         hint = "load motions with --motions FILE.yaml, or use a robot that has some, such as tiago"
-        raise InputError(f"SK-MOTION-010 no robot in this world plays motions; {hint}", "SK-MOTION-010")
+        raise InputError("SK-MOTION-010", f"no robot in this world plays motions; {hint}")
     if name is None and len(players) > 1:
         hint = f"choose one with --model NAME: {listed}"
-        raise InputError(f"SK-MOTION-010 several robots play motions; {hint}", "SK-MOTION-010")
+        raise InputError("SK-MOTION-010", f"several robots play motions; {hint}")
     return players[name] if name is not None else next(iter(players.values()))
 
 
@@ -106,7 +107,7 @@ def play_motions(
     for name in names:
         if name not in motions:
             hint = did_you_mean(name, motions) or "there is " + (", ".join(motions) or "none")
-            raise InputError(f"SK-MOTION-011 there is no motion {name!r}; {hint}", "SK-MOTION-011")
+            raise InputError("SK-MOTION-011", f"there is no motion {name!r}; {hint}")
     for name in names:
         start = sim.time
         goal = sim.send_goal(player.action_name, {"motion_name": name, "skip_planning": skip_planning})
@@ -115,9 +116,9 @@ def play_motions(
             planned = player.planned_duration(goal)
             if planned > _LONGEST:
                 text = f"motion {name!r} would take {planned:g} s; expected up to {_LONGEST:g} s"
-                raise MotionError(f"SK-MOTION-012 {text}")
+                raise MotionError(text)
         if goal.status.name != "SUCCEEDED":
-            raise MotionError(f"SK-MOTION-012 {goal.reason or f'motion {name!r} did not finish'}")
+            raise MotionError(goal.reason or f"motion {name!r} did not finish")
         yield PlayedMotion(motions[name], sim.time - start, _largest_error(player, motions[name]))
 
 

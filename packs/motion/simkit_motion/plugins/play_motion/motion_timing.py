@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from simkit.pose import Vector
+from simkit.extend import Vector
 
 SHORTEST_INTERVAL: Final = 1e-3  # [s], shortest time between two points
 LARGEST_STRETCH: Final = 3.0
@@ -70,8 +70,8 @@ class Course:
             h: Duration of the time interval [s].
         """
         p0, p1, v0, v1 = self.positions[k], self.positions[k + 1], self.velocities[k] * h, self.velocities[k + 1] * h
-        found: Vector = p0 + s * (v0 + s * ((3 * (p1 - p0) - 2 * v0 - v1) + s * (v0 + v1 - 2 * (p1 - p0))))
-        return found
+        positions: Vector = p0 + s * (v0 + s * ((3 * (p1 - p0) - 2 * v0 - v1) + s * (v0 + v1 - 2 * (p1 - p0))))
+        return positions
 
 
 def time_course(points: Vector, times: Vector, given: Vector | None, limits: Vector, approach: int = 1) -> Course:
@@ -145,8 +145,8 @@ def _peak_speeds(points: Vector, velocities: Vector, gaps: Vector) -> Vector:
     flat = np.abs(c) < 1e-12
     s = np.clip(-b / np.where(flat, 1.0, 2 * c), 0.0, 1.0)
     between = np.where(flat, 0.0, np.abs(v0 + s * (b + s * c)))
-    found: Vector = np.maximum(np.maximum(np.abs(v0), np.abs(v1)), between)
-    return found
+    peaks: Vector = np.maximum(np.maximum(np.abs(v0), np.abs(v1)), between)
+    return peaks
 
 
 def approach_time(start: Vector, first: Vector, speed: float, shortest: float) -> float:

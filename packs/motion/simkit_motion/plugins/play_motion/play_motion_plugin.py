@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit import msgs
-from simkit.diagnostics import NOWHERE, Diagnostics, did_you_mean
-from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
-from simkit.plugins.endpoints import acts, offers_all
+from simkit import ModelPlugin, Params, msgs
+from simkit.diagnostics import NOWHERE
+from simkit.extend import Diagnostics, acts, did_you_mean
+from simkit.plugins.endpoints import offers_all
 from simkit.plugins.find_entities import find_plugin_file
 from simkit.plugins.ros_names import RosNames
 from simkit_motion.plugins.play_motion.motion import Motion, limit_violations, motion_of_message, speed_limits
@@ -35,10 +34,8 @@ from simkit_motion.plugins.play_motion.motion_timing import LARGEST_STRETCH
 from simkit_motion.plugins.play_motion.play_motion_services import offer_services
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.runtime import Model
-    from simkit.runtime.communication.action_server import GoalHandle
-    from simkit.scene import SceneModel
+    from simkit import Model
+    from simkit.extend import GoalHandle, SceneModel, SpecBuilder
 
 ROS_2: Final = "play_motion2_msgs/action/PlayMotion2"
 ROS_2_RAW: Final = "play_motion2_msgs/action/PlayMotion2Raw"
@@ -120,11 +117,11 @@ class PlayMotion(ModelPlugin):
         The Python API passes plain paths, in any folder. A value of `--set` or of a scenario does not.
         """
         uri = element.value
-        found = find_plugin_file(self, uri, builder, ("motions", "config", "../motions"))
+        file = find_plugin_file(self, uri, builder, ("motions", "config", "../motions"))
         with suppress(OSError, ValueError):  # the URI is not a valid file name
-            is_own = found is None and self.where == NOWHERE
-            return Path(uri) if is_own and Path(uri).is_file() else found
-        return found
+            is_own = file is None and self.where == NOWHERE
+            return Path(uri) if is_own and Path(uri).is_file() else file
+        return file
 
     # ------------------------------------------------------------------ loading
 
@@ -189,9 +186,9 @@ class PlayMotion(ModelPlugin):
 
     def read(self, path: Path) -> None:
         """Add the motions of another file; its warnings are added to `sim.diagnostics`."""
-        found = read_motions(path, self.sim.engine.reports)
-        self.known.update(found.motions)
-        for motion in found.motions.values():
+        file = read_motions(path, self.sim.engine.reports)
+        self.known.update(file.motions)
+        for motion in file.motions.values():
             self._check(motion, self.sim.engine.reports)
 
     @property
@@ -242,15 +239,15 @@ class PlayMotion(ModelPlugin):
             self._check_idle(goal, names)
             find_joints(self.robot, motion.joints, controllers)
             is_accepted, checked = True, not goal.request.skip_planning
-            found = plan_motion(self.sim, self.robot, motion, controllers, self._approach, checks_collisions=checked)
+            course = plan_motion(self.sim, self.robot, motion, controllers, self._approach, checks_collisions=checked)
         except MotionRefused as refused:
             self._refuse(goal, refused, rejects=not is_accepted)
             return
-        until = self.sim.time_ns + round((2.0 * found.duration + 1.0) * 1e9)
-        run = _RunningMotion(goal, motion.key, names, found.duration, until)
+        until = self.sim.time_ns + round((2.0 * course.duration + 1.0) * 1e9)
+        run = _RunningMotion(goal, motion.key, names, course.duration, until)
         self._runs.append(run)
         for controller in needed:
-            request = trajectory_goal(found, motion, controller, self.robot)
+            request = trajectory_goal(course, motion, controller, self.robot)
             send = self.sim.communication.actions.send
             run.parts[controller.name] = send(controller.action, request, self._on_feedback, self._on_controller_done)
 

@@ -6,11 +6,12 @@ import logging
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Protocol
 
-from simkit.msgs.message_types import Message
+from simkit.msgs import Message
 from simkit_motion.plugins.play_motion.motion import Motion, limit_violations, motion_of_message
 from simkit_motion.plugins.play_motion.motion_planning import MotionRefused, active_controllers, find_joints
 
 if TYPE_CHECKING:
+    from simkit import Model, Simulation
     from simkit.msgs import (
         AddMotion_Request,
         GetMotionInfo_Request,
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
         IsMotionReady_Request,
         RemoveMotion_Request,
     )
-    from simkit.runtime import Model, Simulation
 
 
 class MotionPlayer(Protocol):

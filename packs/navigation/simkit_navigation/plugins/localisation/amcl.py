@@ -9,21 +9,19 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from simkit import msgs
+from simkit import Params, Plugin, Pose, msgs
 from simkit.errors import ArgumentTypeError, ArgumentValueError, TransformError
+from simkit.extend import listens, offers, publishes
 from simkit.linear_algebra import matmul
 from simkit.matrix_decompositions import eigh
-from simkit.params import Params
-from simkit.plugins.base import Plugin
 from simkit.plugins.drives.odometry_messages import TRANSFORMS, transforms
-from simkit.plugins.endpoints import listens, publishes
-from simkit.pose import Pose
+from simkit_navigation.plugins.lifecycle_state import GET_STATE, answer_active
 from simkit_navigation.plugins.localisation.likelihood_field import Hits, LikelihoodMap, Poses
 from simkit_navigation.plugins.localisation.motion_models import MOTION_MODELS, wrapped_angles
 from simkit_navigation.plugins.localisation.particle_filter import Adaptation, Estimate, ParticleFilter
 
 if TYPE_CHECKING:
-    from simkit.runtime import Model, Simulation
+    from simkit import Model, Simulation
     from simkit.runtime.communication.parameter import Parameter
 
 _POSE: Final = "geometry_msgs/msg/PoseWithCovarianceStamped"
@@ -56,6 +54,7 @@ class Amcl(Plugin):
         listens("initialpose", _POSE),
         publishes("amcl_pose", _POSE),
         publishes("particle_cloud", _CLOUD),
+        offers("~/get_state", GET_STATE),
     )
 
     def load(self, parent: Simulation | Model, params: Params) -> None:
@@ -64,7 +63,7 @@ class Amcl(Plugin):
         self._filter: ParticleFilter | None = None
         self._odometry: Pose | None = None  # at the last update of the filter
         self._correction: Pose | None = None  # pose of the odometry's frame in the map
-        self._pending: Any = None  # scan whose transforms are not known yet
+        self._pending: msgs.LaserScan | None = None  # scan whose transforms are not known yet
         self._waits_since = 0.0
         self._is_everywhere = self._is_forced = self._has_reminded = False
         self._updates = self._draws = 0
@@ -80,6 +79,7 @@ class Amcl(Plugin):
         self.subscribe(of_scan.text("scan_topic", "scan"), self._on_scan, keep=0)
         self.listen("initialpose", _POSE, self._on_initial_pose)
         self.offer("reinitialize_global_localization", "std_srvs/srv/Empty", lambda _: self._spread())
+        answer_active(self)
         self.offer("request_nomotion_update", "std_srvs/srv/Empty", lambda _: self._force())
         self.offer("set_initial_pose", "nav2_msgs/srv/SetInitialPose", lambda r: self._on_initial_pose(r.pose))
         if self._value("set_initial_pose"):
@@ -125,7 +125,7 @@ class Amcl(Plugin):
             self.declare("alpha4", 0.2, minimum=0, description="variance of travel by turns [m²/rad²]"),
             self.declare("alpha5", 0.2, minimum=0, description="variance of travel to the side [m²/m²]"),
         ]
-        self._parameters = {one.name: one for one in declared}
+        self._parameters = {parameter.name: parameter for parameter in declared}
         least, most = self._value("min_particles"), self._value("max_particles")
         if least > most:
             message = f"found <min_particles> {least}; expected at most <max_particles>, {most}"
@@ -161,18 +161,18 @@ class Amcl(Plugin):
 
     def _spread(self) -> None:
         """Spread the particles over the free cells of the map; without a map, when it comes."""
-        found = self._map
-        if found is None:
+        known_map = self._map
+        if known_map is None:
             self._is_everywhere = True
-        elif len(found.free):
-            self._restart(found.random_poses(int(self._value("max_particles")), self._generator()))
+        elif len(known_map.free):
+            self._restart(known_map.random_poses(int(self._value("max_particles")), self._generator()))
         else:
             self._once.warn(_CODE, "free", "the map has no free cells, so a robot is nowhere")
 
     def _force(self) -> None:
         self._is_forced = True
 
-    def _on_initial_pose(self, message: Any) -> None:
+    def _on_initial_pose(self, message: msgs.PoseWithCovarianceStamped) -> None:
         frame, expected = message.header.frame_id.lstrip("/"), self._value("global_frame_id")
         if frame not in ("", expected):
             text = f"an initial pose in the frame {frame!r:.60} is ignored; expected the frame {expected!r}"
@@ -191,11 +191,11 @@ class Amcl(Plugin):
             return
         self._begin(np.array([*pose.position[:2], pose.rpy[2]]), covariance)
 
-    def _on_map(self, message: Any) -> None:
+    def _on_map(self, message: msgs.OccupancyGrid) -> None:
         if not self._once.has_type(message, _GRID, "map_topic", _CODE):
             return
-        found = LikelihoodMap.from_message(message)
-        if found is None:
+        new_map = LikelihoodMap.from_message(message)
+        if new_map is None:
             text = "a map is ignored that is empty, or whose size, resolution or origin is not valid"
             self._once.warn(_CODE, "map values", text)
             return
@@ -203,13 +203,13 @@ class Amcl(Plugin):
         if frame != expected:
             text = f"the map is in the frame {frame!r:.60}, <global_frame_id> is {expected!r}"
             self._once.warn(_CODE, "map frame", text, "give both the same name")
-        self._map = found
+        self._map = new_map
         if self._is_everywhere:
             self._spread()
 
     # ------------------------------------------------------------------ scans
 
-    def _on_scan(self, scan: Any) -> None:
+    def _on_scan(self, scan: msgs.LaserScan) -> None:
         if not self._once.has_type(scan, _SCAN, "scan_topic", _CODE):
             return
         if not math.isfinite(scan.angle_min + scan.angle_increment * len(scan.ranges)):
@@ -218,15 +218,15 @@ class Amcl(Plugin):
         if self._pending is None:
             self._waits_since = self.sim.time
         self._pending = scan
-        self._use_pending()
+        self._use_if_known(scan)
 
-    def _on_transforms(self, _: Any) -> None:
+    def _on_transforms(self, _: object) -> None:
         if self._pending is not None:
-            self._use_pending()
+            self._use_if_known(self._pending)
 
-    def _use_pending(self) -> None:
+    def _use_if_known(self, scan: msgs.LaserScan) -> None:
         """Use a scan when its transforms are known, as the message filter of ROS does."""
-        scan, base = self._pending, self._value("base_frame_id")
+        base = self._value("base_frame_id")
         try:
             odometry = self.sim.tf.lookup(self._value("odom_frame_id"), base, scan.header.stamp)
             sensor = self.sim.tf.lookup(base, scan.header.frame_id, scan.header.stamp)
@@ -246,7 +246,9 @@ class Amcl(Plugin):
             return
         self._localise(self._filter, self._map, scan, odometry, sensor)
 
-    def _localise(self, known: ParticleFilter, field: LikelihoodMap, scan: Any, odometry: Pose, sensor: Pose) -> None:
+    def _localise(
+        self, known: ParticleFilter, field: LikelihoodMap, scan: msgs.LaserScan, odometry: Pose, sensor: Pose
+    ) -> None:
         """Update the particles if the robot has moved, and publish the transform."""
         motion = Pose() if self._odometry is None else self._odometry.inverse() @ odometry
         x, y, turn = float(motion.position[0]), float(motion.position[1]), float(motion.rpy[2])
@@ -263,14 +265,14 @@ class Amcl(Plugin):
             if len(points):
                 means = field.mean_terms(known.poses, points, hits)
                 known.weigh(hits.likelihoods(means, len(points)), hits.agreements(means), adaptation)
-            found = known.estimate()
+            estimate = known.estimate()
             if self._updates % self._value("resample_interval") == 0:
                 anywhere = partial(field.random_poses, generator=generator) if len(field.free) else None
                 known.resample(adaptation, anywhere, generator)
             self._updates += 1
-            self._correction = Pose.from_rpy(*found.pose[:2], 0.0, 0.0, 0.0, found.pose[2]) @ odometry.inverse()
+            self._correction = Pose.from_rpy(*estimate.pose[:2], 0.0, 0.0, 0.0, estimate.pose[2]) @ odometry.inverse()
             frame = self._value("global_frame_id")
-            self._publisher.publish_later(partial(_pose_message, scan.header.stamp, frame, found))
+            self._publisher.publish_later(partial(_pose_message, scan.header.stamp, frame, estimate))
             self._publish_particles(scan.header.stamp, known)
         if self._correction is not None and self._value("tf_broadcast"):
             stamp = msgs.stamp_ns(scan.header.stamp) + round(self._value("transform_tolerance") * 1e9)
@@ -283,18 +285,18 @@ class Amcl(Plugin):
         slow, fast = float(self._value("recovery_alpha_slow")), float(self._value("recovery_alpha_fast"))
         return Adaptation(min(least, most), most, error, quantile, slow, fast)
 
-    def _limits(self, scan: Any) -> tuple[float, float]:
+    def _limits(self, scan: msgs.LaserScan) -> tuple[float, float]:
         """Return the shortest and the longest range [m]."""
         low, high = float(self._value("laser_min_range")), float(self._value("laser_max_range"))
         return max(low, float(scan.range_min)), min(high, scan.range_max) if high > 0 else float(scan.range_max)
 
-    def _hits(self, scan: Any) -> Hits:
+    def _hits(self, scan: msgs.LaserScan) -> Hits:
         rand = float(self._value("z_rand")) / max(self._limits(scan)[1], 1e-3)
         sigma, farthest = float(self._value("sigma_hit")), float(self._value("laser_likelihood_max_dist"))
         is_product = self._value("laser_model_type") != _FIELD_MODELS[0]
         return Hits(sigma, float(self._value("z_hit")), rand, farthest, is_product)
 
-    def _end_points(self, scan: Any, sensor: Pose) -> npt.NDArray[np.float64]:
+    def _end_points(self, scan: msgs.LaserScan, sensor: Pose) -> npt.NDArray[np.float64]:
         """Return the end points of the rays that hit something, in the frame of the robot [m], shape (n, 2)."""
         ranges = np.asarray(scan.ranges, float)
         step = max(1, (len(ranges) - 1) // (int(self._value("max_beams")) - 1))
@@ -307,21 +309,21 @@ class Amcl(Plugin):
         flat: npt.NDArray[np.float64] = (matmul(points, sensor.matrix.T) + sensor.position)[:, :2]
         return flat
 
-    def _publish_particles(self, stamp: Any, known: ParticleFilter) -> None:
+    def _publish_particles(self, stamp: msgs.Time, known: ParticleFilter) -> None:
         if self._cloud.wanted:
             poses, weights = known.poses.copy(), known.weights.copy()
             self._cloud.publish_later(partial(_cloud_message, stamp, self._value("global_frame_id"), poses, weights))
 
 
-def _pose_message(stamp: Any, frame: str, found: Estimate) -> msgs.Message:
+def _pose_message(stamp: msgs.Time, frame: str, estimate: Estimate) -> msgs.Message:
     covariance = np.zeros((6, 6))
-    covariance[_PLANE] = found.covariance
-    pose = msgs.pose_message(Pose.from_rpy(*found.pose[:2], 0.0, 0.0, 0.0, found.pose[2]))
+    covariance[_PLANE] = estimate.covariance
+    pose = msgs.pose_message(Pose.from_rpy(*estimate.pose[:2], 0.0, 0.0, 0.0, estimate.pose[2]))
     header = {"stamp": stamp, "frame_id": frame}
     return msgs.make(_POSE, header=header, pose={"pose": pose, "covariance": covariance.reshape(-1)})
 
 
-def _cloud_message(stamp: Any, frame: str, poses: Poses, weights: npt.NDArray[np.float64]) -> msgs.Message:
+def _cloud_message(stamp: msgs.Time, frame: str, poses: Poses, weights: npt.NDArray[np.float64]) -> msgs.Message:
     names = ("nav2_msgs/msg/Particle", "geometry_msgs/msg/Pose", "geometry_msgs/msg/Point")
     particle, pose, point = map(msgs.type_of, names)
     quaternion = msgs.type_of("geometry_msgs/msg/Quaternion")

@@ -15,8 +15,9 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from simkit.extend import Vector
 from simkit.linear_algebra import inverse, matmul
-from simkit.pose import Vector
+from simkit.pose import wrap_angle
 
 SIZE: Final = 15
 POSE, TWIST, ACCELERATION = slice(0, 6), slice(6, 12), slice(12, 15)
@@ -166,4 +167,4 @@ def predict_state(state: Vector, period: float) -> tuple[Vector, Vector]:
 
 def wrapped(angles: Vector) -> Vector:
     """Return angles [rad] between -pi and pi."""
-    return np.array([math.remainder(angle, math.tau) for angle in angles.tolist()])
+    return np.array([wrap_angle(angle) for angle in angles.tolist()])

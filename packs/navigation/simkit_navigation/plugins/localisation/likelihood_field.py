@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -13,8 +13,8 @@ import numpy.typing as npt
 from simkit import msgs
 from simkit.elementary_functions import exp, log
 from simkit.errors import ArgumentTypeError, ArgumentValueError
+from simkit.extend import SharedByCopies
 from simkit.linear_algebra import matmul
-from simkit.plugins.not_deep_copied import SharedByCopies
 
 Poses = npt.NDArray[np.float64]
 """Poses: x, y [m] and yaw [rad], shape (n, 3)."""
@@ -77,7 +77,7 @@ class LikelihoodMap(SharedByCopies):
     origin: tuple[float, float, float]
 
     @classmethod
-    def from_message(cls, message: Any) -> LikelihoodMap | None:
+    def from_message(cls, message: msgs.OccupancyGrid) -> LikelihoodMap | None:
         """Return the map of a `nav_msgs/msg/OccupancyGrid`: cells of 100 are occupied, cells of 0 are free.
 
         None stands for a message that is not valid: without cells, or with a wrong size, resolution or origin.

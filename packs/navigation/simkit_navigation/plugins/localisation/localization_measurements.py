@@ -8,13 +8,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
+from simkit import Pose, msgs
+from simkit.extend import Vector
 from simkit.linear_algebra import matmul, norm
-from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate, quat_to_matrix
+from simkit.pose import quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate, quat_to_matrix
 from simkit.pose import rpy_from_quat as rpy
 from simkit_navigation.plugins.localisation import extended_kalman_filter as ekf
 from simkit_navigation.plugins.localisation.extended_kalman_filter import Measurement
@@ -68,7 +70,7 @@ class PreviousPose:
     time_ns: int
 
 
-def pose_of(message: Any) -> Pose | None:
+def pose_of(message: msgs.Pose) -> Pose | None:
     """Return a pose with a unit quaternion; None for NaN. A quaternion of zeros is the identity."""
     p, q = message.position, message.orientation
     position, quaternion = (float(p.x), float(p.y), float(p.z)), unit_quaternion(q)
@@ -77,44 +79,44 @@ def pose_of(message: Any) -> Pose | None:
     return Pose(position, quaternion)
 
 
-def unit_quaternion(q: Any) -> Vector | None:
+def unit_quaternion(q: msgs.Quaternion) -> Vector | None:
     """Return w, x, y, z of a message's quaternion with length 1; None for NaN."""
-    found = np.array((q.w, q.x, q.y, q.z), np.float64)
+    quaternion = np.array((q.w, q.x, q.y, q.z), np.float64)
     with np.errstate(over="ignore"):
-        length = norm(found)
+        length = norm(quaternion)
     if not math.isfinite(length):
         return None
-    return found / length if length > 0 else np.array((1.0, 0.0, 0.0, 0.0))
+    return quaternion / length if length > 0 else np.array((1.0, 0.0, 0.0, 0.0))
 
 
-def vector_of(message: Any) -> Vector:
+def vector_of(message: msgs.Vector3) -> Vector:
     """Return x, y and z of a message."""
     return np.array((message.x, message.y, message.z), np.float64)
 
 
-def rotated(part: slice, values: Vector, covariance: Any, used: Flags, quaternion: Vector) -> MeasuredBlock:
+def rotated(part: slice, values: Vector, covariance: Vector, used: Flags, quaternion: Vector) -> MeasuredBlock:
     """Return a block of three or six values whose covariance and flags are rotated; the values are used as they are."""
     size = len(values)
-    found = np.asarray(covariance, np.float64).reshape(size, size)
+    matrix = np.asarray(covariance, np.float64).reshape(size, size)
     if quaternion[0] == 1.0:
-        return MeasuredBlock(part, values, found, used)
+        return MeasuredBlock(part, values, matrix, used)
     turn = np.zeros((size, size))
     for k in range(0, size, 3):
         turn[k : k + 3, k : k + 3] = quat_to_matrix(quaternion)
     shares = np.sqrt(matmul(turn**2, used.astype(np.float64)))
     with np.errstate(invalid="ignore", over="ignore"):  # the filter leaves out NaN and infinite numbers
-        turned = matmul(turn, found, turn.T)
+        turned = matmul(turn, matrix, turn.T)
     return MeasuredBlock(part, values, turned, shares >= _LEAST_PART)
 
 
-def pose_block(pose: Pose, covariance: Any, used: Flags, frame: Pose) -> MeasuredBlock:
+def pose_block(pose: Pose, covariance: Vector, used: Flags, frame: Pose) -> MeasuredBlock:
     """Return the block of a pose in a frame whose pose in the world frame is given."""
-    found = frame @ pose
-    return rotated(ekf.POSE, np.concatenate((found.position, found.rpy)), covariance, used, frame.quaternion)
+    in_frame = frame @ pose
+    return rotated(ekf.POSE, np.concatenate((in_frame.position, in_frame.rpy)), covariance, used, frame.quaternion)
 
 
 def pose_difference_block(
-    pose: Pose, covariance: Any, used: Flags, time_ns: int, before: PreviousPose
+    pose: Pose, covariance: Vector, used: Flags, time_ns: int, before: PreviousPose
 ) -> MeasuredBlock | None:
     """Return the mean twist since the last message; None without a time between them.
 
@@ -130,7 +132,7 @@ def pose_difference_block(
 
 
 def twist_block(
-    linear: Vector, angular: Vector, covariance: Any, used: Flags, mount: Pose, rates: Vector
+    linear: Vector, angular: Vector, covariance: Vector, used: Flags, mount: Pose, rates: Vector
 ) -> MeasuredBlock:
     """Return the block of a twist at a place of the robot.
 
@@ -150,7 +152,7 @@ def twist_block(
     return rotated(ekf.TWIST, values, covariance, used, turned)
 
 
-def attitude_block(attitude: Vector, covariance: Any, used: Flags, mount: Pose) -> MeasuredBlock:
+def attitude_block(attitude: Vector, covariance: Vector, used: Flags, mount: Pose) -> MeasuredBlock:
     """Return the block of an IMU's attitude: the attitude of the base that carries it."""
     base = quat_multiply(attitude, quat_conjugate(mount.quaternion))
     yaw = quat_from_rpy(0.0, 0.0, float(mount.rpy[2]))  # roll of an IMU mounted sideways is pitch of the base
@@ -158,7 +160,7 @@ def attitude_block(attitude: Vector, covariance: Any, used: Flags, mount: Pose) 
 
 
 def acceleration_block(
-    acceleration: Vector, covariance: Any, used: Flags, mount: Pose, attitude: Vector | None, gravity: float
+    acceleration: Vector, covariance: Vector, used: Flags, mount: Pose, attitude: Vector | None, gravity: float
 ) -> MeasuredBlock:
     """Return the block of an accelerometer.
 

@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from simkit.pose import wrap_angle
 from simkit_navigation.plugins.localisation.likelihood_field import Poses
 
 Motion = tuple[float, float, float]
@@ -20,7 +21,7 @@ _STANDS: Final = 0.01  # [m]; the direction of a shorter motion is noise
 
 def _unsigned(angle: float) -> float:
     """Return the size of a turn [rad]; a robot that drives backwards has not turned by π."""
-    angle = abs(math.remainder(angle, math.tau))
+    angle = abs(wrap_angle(angle))
     return min(angle, math.pi - angle)
 
 
@@ -39,7 +40,7 @@ def differential(poses: Poses, motion: Motion, alphas: Alphas, generator: np.ran
     x, y, yaw = motion
     travel = math.hypot(x, y)
     first = math.atan2(y, x) if travel >= _STANDS else 0.0
-    second = math.remainder(yaw - first, math.tau)
+    second = wrap_angle(yaw - first)
     a, b = _unsigned(first) ** 2, _unsigned(second) ** 2
     a1, a2, a3, a4, _ = alphas
     noise = generator.standard_normal((3, len(poses)))

@@ -49,8 +49,8 @@ class Adaptation:
         b = 2.0 / (9.0 * k)
         root = 1 - b + np.sqrt(b) * self.quantile
         count = np.ceil(k / (2 * self.error) * (root * root * root))
-        found: npt.NDArray[np.float64] = np.clip(np.where(cells <= 1, self.least, count), self.least, self.most)
-        return found
+        sizes: npt.NDArray[np.float64] = np.clip(np.where(cells <= 1, self.least, count), self.least, self.most)
+        return sizes
 
 
 @dataclass(frozen=True)
@@ -186,8 +186,8 @@ def _clusters(poses: Poses) -> npt.NDArray[np.int64]:
             groups[cell] = cell = groups[groups[cell]]
         return cell
 
-    for one, other in zip(begins.tolist(), at[begins, ways].tolist(), strict=True):
-        a, b = first_of(one), first_of(other)
+    for cell_a, other in zip(begins.tolist(), at[begins, ways].tolist(), strict=True):
+        a, b = first_of(cell_a), first_of(other)
         groups[max(a, b)] = min(a, b)
-    found: npt.NDArray[np.int64] = np.array([first_of(cell) for cell in groups])[inverse]
-    return found
+    clusters: npt.NDArray[np.int64] = np.array([first_of(cell) for cell in groups])[inverse]
+    return clusters

@@ -6,20 +6,16 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit import msgs
+from simkit import Params, Plugin, Pose, msgs
 from simkit.errors import ArgumentValueError, TransformError
+from simkit.extend import Options, OptionsOf, Vector, boolean, listens, number, offers, publishes, text, without_effect
 from simkit.number_text import number_or_nan
-from simkit.params import Params
-from simkit.plugins.base import Plugin
-from simkit.plugins.drives.odometry import BodyTwist
-from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, odometry_message, transforms
-from simkit.plugins.endpoints import listens, offers, publishes
-from simkit.plugins.options import Options, OptionsOf, boolean, number, text, without_effect
-from simkit.pose import Pose, Vector, quat_from_rpy, quat_multiply
+from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, BodyTwist, odometry_message, transforms
+from simkit.pose import quat_from_rpy, quat_multiply
 from simkit_navigation.plugins.localisation import extended_kalman_filter as ekf
 from simkit_navigation.plugins.localisation import localization_measurements as measured
 from simkit_navigation.plugins.localisation.localization_measurements import Flags, MeasuredBlock, PreviousPose
@@ -113,9 +109,9 @@ class EkfNode(Plugin):
     only_publishes = True
 
     def load(self, parent: object, params: Params) -> None:
-        given = self.ros.values_with(None, self.sim.engine.structure.builder)
-        if given is not None:
-            self.params = given.joined(self.params)
+        file_values = self.ros.values_with(None, self.sim.engine.structure.builder)
+        if file_values is not None:
+            self.params = file_values.joined(self.params)
         options = self.options.read_all()
         self._world = options.world_frame
         if self._world not in (options.odom_frame, options.map_frame):
@@ -131,7 +127,7 @@ class EkfNode(Plugin):
         )
         self._queue: list[ekf.Measurement] = []
         self._published_ns = self._set_ns = -1
-        self._inputs = {one.name: one for kind in _INPUTS for one in self._read_inputs(kind)}
+        self._inputs = {item.name: item for kind in _INPUTS for item in self._read_inputs(kind)}
         if not self._inputs:
             message = f"plugin {self.name!r} needs an input: odom0, pose0, twist0 or imu0"
             self.params.error("SK-PARAM-001", message, "such as <odom0>odom</odom0> with <odom0_config>")
@@ -159,20 +155,20 @@ class EkfNode(Plugin):
         if item is None or not words:
             return default
         values = np.array([number_or_nan(word) for word in words])
-        found = np.diag(values) if len(values) == ekf.SIZE else values.reshape(ekf.SIZE, ekf.SIZE)
-        if not np.isfinite(values).all() or (np.diag(found) < 0).any():
+        covariance = np.diag(values) if len(values) == ekf.SIZE else values.reshape(ekf.SIZE, ekf.SIZE)
+        if not np.isfinite(values).all() or (np.diag(covariance) < 0).any():
             item.error("SK-PARAM-002", f"found a value in {name!r} that is no number or a variance below 0")
             return default
-        return found
+        return covariance
 
     def _read_inputs(self, kind: str) -> list[Input]:
         """Read and subscribe to `odom0`, `odom1`, …: the first missing number ends the list, as in ROS."""
-        found: list[Input] = []
-        while self.params.has(name := f"{kind}{len(found)}"):
+        inputs: list[Input] = []
+        while self.params.has(name := f"{kind}{len(inputs)}"):
             topic = self.params.text(name, required=True)
-            found.append(self._read_input(kind, name))
+            inputs.append(self._read_input(kind, name))
             self._subscribe(kind, topic, name)
-        return found
+        return inputs
 
     def _read_input(self, kind: str, name: str) -> Input:
         params, thresholds = self.params, {}
@@ -205,129 +201,136 @@ class EkfNode(Plugin):
         )
 
     def _subscribe(self, kind: str, topic: str, name: str) -> Subscription:
-        take = {"odom": self._take_odometry, "pose": self._take_pose, "twist": self._take_twist, "imu": self._take_imu}
+        take: dict[str, Callable[[Input, msgs.Message], None]] = {
+            "odom": self._take_odometry,
+            "pose": self._take_pose,
+            "twist": self._take_twist,
+            "imu": self._take_imu,
+        }
         # a name, because a restore replaces the inputs
         return self.subscribe(topic, partial(self._take, take[kind], _INPUTS[kind], name))
 
     # ------------------------------------------------------------------ messages
 
-    def _take(self, take: Callable[[Input, Any], None], type_name: str, name: str, message: Any) -> None:
+    def _take(
+        self, take: Callable[[Input, msgs.Message], None], type_name: str, name: str, message: msgs.Message
+    ) -> None:
         """Pass a new message to its function; a message of another type is ignored after a warning."""
         if self._once.has_type(message, type_name, name, "SK-EKF-001"):
-            one = self._inputs[name]
-            if self._is_new(one, message.header):
-                take(one, message)
+            source = self._inputs[name]
+            if self._is_new(source, message.header):
+                take(source, message)
 
-    def _take_odometry(self, one: Input, message: Any) -> None:
-        self._add_pose(one, message.header.stamp, message.header.frame_id, message.pose)
-        self._add_twist(one, message.header.stamp, message.child_frame_id, message.twist)
+    def _take_odometry(self, source: Input, message: msgs.Odometry) -> None:
+        self._add_pose(source, message.header.stamp, message.header.frame_id, message.pose)
+        self._add_twist(source, message.header.stamp, message.child_frame_id, message.twist)
 
-    def _take_pose(self, one: Input, message: Any) -> None:
-        self._add_pose(one, message.header.stamp, message.header.frame_id, message.pose)
+    def _take_pose(self, source: Input, message: msgs.PoseWithCovarianceStamped) -> None:
+        self._add_pose(source, message.header.stamp, message.header.frame_id, message.pose)
 
-    def _take_twist(self, one: Input, message: Any) -> None:
-        self._add_twist(one, message.header.stamp, message.header.frame_id, message.twist)
+    def _take_twist(self, source: Input, message: msgs.TwistWithCovarianceStamped) -> None:
+        self._add_twist(source, message.header.stamp, message.header.frame_id, message.twist)
 
-    def _take_imu(self, one: Input, message: Any) -> None:
-        mount = self._mount(one, message.header.frame_id)
+    def _take_imu(self, source: Input, message: msgs.Imu) -> None:
+        mount = self._mount(source, message.header.frame_id)
         if mount is None:
             return
         time_ns = msgs.stamp_ns(message.header.stamp)
         is_oriented = abs(message.orientation_covariance[0] + 1.0) > 1e-9
         attitude = measured.unit_quaternion(message.orientation) if is_oriented else None
-        if is_oriented and attitude is None and one.used[ekf.ANGLES].any():
-            self._warn_of_numbers(one)
-        if attitude is not None and one.used[ekf.ANGLES].any():
-            covariance, used = message.orientation_covariance, one.used[ekf.ANGLES]
+        if is_oriented and attitude is None and source.used[ekf.ANGLES].any():
+            self._warn_of_numbers(source)
+        if attitude is not None and source.used[ekf.ANGLES].any():
+            covariance, used = message.orientation_covariance, source.used[ekf.ANGLES]
             block = measured.attitude_block(attitude, covariance, used, mount)
-            self._add_angles(one, time_ns, block)
+            self._add_angles(source, time_ns, block)
         rates = measured.vector_of(message.angular_velocity)
-        if one.used[ekf.RATES].any():
+        if source.used[ekf.RATES].any():
             covariance = np.zeros((6, 6))
             covariance[3:, 3:] = np.reshape(message.angular_velocity_covariance, (3, 3))
-            used = one.used[ekf.TWIST] & (np.arange(6) >= 3)
+            used = source.used[ekf.TWIST] & (np.arange(6) >= 3)
             block = measured.twist_block(np.zeros(3), rates, covariance, used, mount, self._filter.state[ekf.RATES])
-            self._add(one, time_ns, block, one.twist_threshold)
-        if one.used[ekf.ACCELERATION].any():
+            self._add(source, time_ns, block, source.twist_threshold)
+        if source.used[ekf.ACCELERATION].any():
             force, gravity = measured.vector_of(message.linear_acceleration), self.options.gravitational_acceleration
             if attitude is None:
                 attitude = quat_multiply(quat_from_rpy(*self._filter.state[ekf.ANGLES].tolist()), mount.quaternion)
             block = measured.acceleration_block(
                 force,
                 message.linear_acceleration_covariance,
-                one.used[ekf.ACCELERATION],
+                source.used[ekf.ACCELERATION],
                 mount,
-                attitude if one.removes_gravity else None,
+                attitude if source.removes_gravity else None,
                 gravity,
             )
-            self._add(one, time_ns, block, one.acceleration_threshold)
+            self._add(source, time_ns, block, source.acceleration_threshold)
 
-    def _is_new(self, one: Input, header: Any) -> bool:
+    def _is_new(self, source: Input, header: msgs.Header) -> bool:
         """Check whether a message is not older than the last one of its topic, and newer than the last `set_pose`."""
         time_ns = msgs.stamp_ns(header.stamp)
-        is_new = time_ns >= one.newest_ns and time_ns > self._set_ns
-        one.newest_ns = max(time_ns, one.newest_ns)
+        is_new = time_ns >= source.newest_ns and time_ns > self._set_ns
+        source.newest_ns = max(time_ns, source.newest_ns)
         return is_new
 
-    def _add_pose(self, one: Input, stamp: Any, frame: str, message: Any) -> None:
+    def _add_pose(self, source: Input, stamp: msgs.Time, frame: str, message: msgs.PoseWithCovariance) -> None:
         pose, time_ns = measured.pose_of(message.pose), msgs.stamp_ns(stamp)
-        used = one.used[ekf.POSE]
+        used = source.used[ekf.POSE]
         if pose is None or not used.any():
             if used.any():
-                self._warn_of_numbers(one)
+                self._warn_of_numbers(source)
             return
         covariance = np.array(message.covariance, np.float64).reshape(6, 6)
-        if one.is_differential:
-            self._add_difference(one, time_ns, pose, covariance, used)
+        if source.is_differential:
+            self._add_difference(source, time_ns, pose, covariance, used)
             return
-        if one.is_relative:
-            one.first = one.first or pose
-            pose = one.first.inverse() @ pose
-        world = self._pose_of_frame(one.name, self._world, frame)
+        if source.is_relative:
+            source.first = source.first or pose
+            pose = source.first.inverse() @ pose
+        world = self._pose_of_frame(source.name, self._world, frame)
         if world is not None:
-            self._add(one, time_ns, measured.pose_block(pose, covariance, used, world), one.pose_threshold)
+            self._add(source, time_ns, measured.pose_block(pose, covariance, used, world), source.pose_threshold)
 
-    def _add_angles(self, one: Input, time_ns: int, block: MeasuredBlock) -> None:
+    def _add_angles(self, source: Input, time_ns: int, block: MeasuredBlock) -> None:
         """Add the attitude of an IMU, or its change."""
         attitude = Pose((0.0, 0.0, 0.0), quat_from_rpy(*block.values.tolist()))
-        if one.is_differential:
+        if source.is_differential:
             covariance, used = np.zeros((6, 6)), np.zeros(6, bool)
             covariance[3:, 3:], used[3:] = block.covariance, block.used
-            self._add_difference(one, time_ns, attitude, covariance, used)
+            self._add_difference(source, time_ns, attitude, covariance, used)
             return
-        if one.is_relative:
-            one.first = one.first or attitude
-            block.values = (one.first.inverse() @ attitude).rpy
-        self._add(one, time_ns, block, one.pose_threshold)
+        if source.is_relative:
+            source.first = source.first or attitude
+            block.values = (source.first.inverse() @ attitude).rpy
+        self._add(source, time_ns, block, source.pose_threshold)
 
-    def _add_difference(self, one: Input, time_ns: int, pose: Pose, covariance: Vector, used: Flags) -> None:
+    def _add_difference(self, source: Input, time_ns: int, pose: Pose, covariance: Vector, used: Flags) -> None:
         """Add the mean twist since the last message."""
-        before, one.before = one.before, PreviousPose(pose, covariance, time_ns)
+        before, source.before = source.before, PreviousPose(pose, covariance, time_ns)
         block = None if before is None else measured.pose_difference_block(pose, covariance, used, time_ns, before)
         if block is not None:
-            self._add(one, time_ns, block, one.pose_threshold)
+            self._add(source, time_ns, block, source.pose_threshold)
 
-    def _add_twist(self, one: Input, stamp: Any, frame: str, message: Any) -> None:
-        used = one.used[ekf.TWIST]
-        mount = self._mount(one, frame) if used.any() else None
+    def _add_twist(self, source: Input, stamp: msgs.Time, frame: str, message: msgs.TwistWithCovariance) -> None:
+        used = source.used[ekf.TWIST]
+        mount = self._mount(source, frame) if used.any() else None
         if mount is not None:
             linear, angular = measured.vector_of(message.twist.linear), measured.vector_of(message.twist.angular)
             rates = self._filter.state[ekf.RATES]
             block = measured.twist_block(linear, angular, message.covariance, used, mount, rates)
-            self._add(one, msgs.stamp_ns(stamp), block, one.twist_threshold)
+            self._add(source, msgs.stamp_ns(stamp), block, source.twist_threshold)
 
-    def _add(self, one: Input, time_ns: int, block: MeasuredBlock, threshold: float) -> None:
+    def _add(self, source: Input, time_ns: int, block: MeasuredBlock, threshold: float) -> None:
         if not block.is_finite:
-            self._warn_of_numbers(one)
+            self._warn_of_numbers(source)
         self._queue.append(block.measurement(time_ns, threshold, is_planar=self.options.two_d_mode))
 
-    def _warn_of_numbers(self, one: Input) -> None:
-        text = f"a measurement of {one.name} has NaN or infinite numbers, which are not used"
-        self._once.warn("SK-EKF-001", f"{one.name} finite", text, "check the plugin that publishes it")
+    def _warn_of_numbers(self, source: Input) -> None:
+        text = f"a measurement of {source.name} has NaN or infinite numbers, which are not used"
+        self._once.warn("SK-EKF-001", f"{source.name} finite", text, "check the plugin that publishes it")
 
-    def _mount(self, one: Input, frame: str) -> Pose | None:
+    def _mount(self, source: Input, frame: str) -> Pose | None:
         """Return the pose of a sensor's frame in the base."""
-        return self._pose_of_frame(one.name, self.options.base_link_frame, frame)
+        return self._pose_of_frame(source.name, self.options.base_link_frame, frame)
 
     def _pose_of_frame(self, owner: str, target: str, frame: str) -> Pose | None:
         """Return the pose of a frame in another one; None if it is not known, so that the message is not used."""
@@ -341,7 +344,7 @@ class EkfNode(Plugin):
             self._once.warn("SK-EKF-001", f"{owner} {target} {frame}", message, hint)
             return None
 
-    def _set_pose(self, message: Any) -> None:
+    def _set_pose(self, message: msgs.PoseWithCovarianceStamped) -> None:
         """Set the pose; the velocities and accelerations become zero."""
         pose = measured.pose_of(message.pose.pose)
         world = self._pose_of_frame("set_pose", self._world, message.header.frame_id)
@@ -357,13 +360,13 @@ class EkfNode(Plugin):
         self._filter.covariance[ekf.POSE, ekf.POSE] = block.covariance
         self._filter.time_ns = self._set_ns = self.sim.time_ns
         self._queue.clear()
-        for one in self._inputs.values():
-            one.before = one.first = None
+        for source in self._inputs.values():
+            source.before = source.first = None
 
     # ------------------------------------------------------------------ output
 
     def after_step(self) -> None:
-        queue, self._queue = sorted(self._queue, key=lambda one: one.time_ns), []
+        queue, self._queue = sorted(self._queue, key=lambda measurement: measurement.time_ns), []
         for measurement in queue:
             self._filter.take(measurement)
         now, time_ns = self.sim.time_ns, self._filter.time_ns

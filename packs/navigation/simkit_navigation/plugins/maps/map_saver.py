@@ -8,22 +8,19 @@ import math
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import numpy.typing as npt
 
+from simkit import WorldPlugin
 from simkit.errors import SimkitError
+from simkit.extend import Options, OptionsOf, SharedByCopies, listens, number, offers, text
 from simkit.input_file import open_input
-from simkit.plugins.base import WorldPlugin
-from simkit.plugins.endpoints import listens, offers
-from simkit.plugins.not_deep_copied import SharedByCopies
-from simkit.plugins.options import Options, OptionsOf, number, text
 from simkit.save_path import SAVE_PATH_VARIABLE, allowed_folder
 
 if TYPE_CHECKING:
-    from simkit.params import Params
-    from simkit.runtime import Simulation
+    from simkit import Params, Simulation, msgs
 
 _GRID: Final = "nav_msgs/msg/OccupancyGrid"
 _MODES: Final = ("trinary", "scale", "raw")
@@ -48,7 +45,7 @@ class MapNotSaved(Exception):
 class _ReceivedMap(SharedByCopies):
     """Newest message of a topic, which never changes; snapshots share it."""
 
-    message: Any
+    message: msgs.OccupancyGrid
 
 
 class MapSaverOptions(Options):
@@ -80,11 +77,11 @@ class MapSaver(WorldPlugin):
         self.subscribe(self.options.map_topic, self._on_map)
         self.offer("~/save_map", "nav2_msgs/srv/SaveMap", self._on_save_map)
 
-    def _on_map(self, message: Any) -> None:
+    def _on_map(self, message: msgs.OccupancyGrid) -> None:
         if self._once.has_type(message, _GRID, "map_topic"):
             self._newest = _ReceivedMap(message)
 
-    def _on_save_map(self, request: Any) -> dict[str, bool]:
+    def _on_save_map(self, request: msgs.nav2_msgs__srv__SaveMap_Request) -> dict[str, bool]:
         """Save a map; the log has the reason if that is not possible."""
         try:
             written = self._save(request)
@@ -94,46 +91,63 @@ class MapSaver(WorldPlugin):
         self.log.info("saved %s", written)
         return {"result": True}
 
-    def _save(self, request: Any) -> Path:
+    def _save(self, request: msgs.nav2_msgs__srv__SaveMap_Request) -> Path:
         """Write the files of a request and return the YAML file."""
         free = request.free_thresh or self.options.free_thresh_default  # zero means the default, as in Nav2
         occupied = request.occupied_thresh or self.options.occupied_thresh_default
-        if not 0.0 < free < occupied <= 1.0:
-            raise MapNotSaved(f"expected 0 < free_thresh < occupied_thresh <= 1, found {free:g} and {occupied:g}")
         mode, ending = request.map_mode or "trinary", request.image_format or "pgm"
-        if mode not in _MODES:
-            raise MapNotSaved(f"map_mode {mode!r:.60} is not one of {', '.join(_MODES)}")
-        if ending not in _FORMATS:
-            raise MapNotSaved(f"image_format {ending!r:.60} is not one of {', '.join(_FORMATS)}")
         if mode == "scale" and ending != "png":
             self.log.warning("map_mode scale needs transparent pixels; the image is a PNG file")
-            ending = "png"
-        stem = _target(request.map_url or "map")
         message = self._map_on(request.map_topic or self.options.map_topic)
-        cells = _cells(message)
-        image, file = (stem.with_name(f"{stem.name}.{end}") for end in (ending, "yaml"))
-        _check_is_map(image, ending)
-        _check_is_map(file, "yaml")
-        _write(image, _encode(_pixels(cells[::-1], mode, free, occupied), _FORMATS[ending]))
-        _write(file, _description(message.info, image.name, mode, free, occupied).encode())
-        return file
+        return write_map(message, _target(request.map_url or "map"), mode, ending, (free, occupied))
 
-    def _map_on(self, topic: str) -> Any:
+    def _map_on(self, topic: str) -> msgs.OccupancyGrid:
         """Return the newest map of a topic: of `<map_topic>`, or of another topic if it is latched."""
         name = self.ros.topic(topic)
         if name == self._topic:
             newest = self._newest
         else:
             subscription = self.subscribe(topic, keep=1)
-            kept = subscription.latest
+            latest = subscription.latest
             subscription.close()
-            newest = _ReceivedMap(kept) if kept is not None and kept.__msgtype__ == _GRID else None
+            newest = _ReceivedMap(latest) if latest is not None and latest.__msgtype__ == _GRID else None
         if newest is None:
             raise MapNotSaved(f"no map has been published on {name!r:.200}")
         return newest.message
 
 
-def _cells(message: Any) -> npt.NDArray[np.int8]:
+def write_map(message: msgs.OccupancyGrid, stem: Path, mode: str, ending: str, thresholds: tuple[float, float]) -> Path:
+    """Write the image and the YAML file of a map; return the YAML file.
+
+    Args:
+        message: map.
+        stem: path of both files without ending.
+        mode: "trinary", "scale" or "raw".
+        ending: ending of the image: "pgm", "png" or "bmp"; the mode "scale" always writes "png".
+        thresholds: occupancies below which a cell is free, and above which it is occupied.
+
+    Raises:
+        MapNotSaved: a value or the map is not valid, or a file is not a map.
+        OSError: a file cannot be written.
+    """
+    free, occupied = thresholds
+    if not 0.0 < free < occupied <= 1.0:
+        raise MapNotSaved(f"expected 0 < free_thresh < occupied_thresh <= 1, found {free:g} and {occupied:g}")
+    if mode not in _MODES:
+        raise MapNotSaved(f"map_mode {mode!r:.60} is not one of {', '.join(_MODES)}")
+    if ending not in _FORMATS:
+        raise MapNotSaved(f"image_format {ending!r:.60} is not one of {', '.join(_FORMATS)}")
+    ending = "png" if mode == "scale" else ending
+    cells = _cells(message)
+    image, file = (stem.with_name(f"{stem.name}.{end}") for end in (ending, "yaml"))
+    _check_is_map(image, ending)
+    _check_is_map(file, "yaml")
+    _write(image, _encode(_pixels(cells[::-1], mode, free, occupied), _FORMATS[ending]))
+    _write(file, _description(message.info, image.name, mode, free, occupied).encode())
+    return file
+
+
+def _cells(message: msgs.OccupancyGrid) -> npt.NDArray[np.int8]:
     """Return the cells of a map by row and column, and check the numbers that a YAML file contains."""
     info, origin = message.info, message.info.origin
     data = np.asarray(message.data, np.int8)
@@ -145,7 +159,7 @@ def _cells(message: Any) -> npt.NDArray[np.int8]:
     return data.reshape(info.height, info.width)
 
 
-def _yaw(turn: Any) -> float:
+def _yaw(turn: msgs.Quaternion) -> float:
     """Return the yaw of a quaternion [rad]; 0 for one that is not set."""
     return math.atan2(2 * (turn.w * turn.z + turn.x * turn.y), 1 - 2 * (turn.y**2 + turn.z**2))
 
@@ -184,7 +198,7 @@ def _encode(pixels: npt.NDArray[np.uint8], file_format: str) -> bytes:
     return content.getvalue()
 
 
-def _description(info: Any, image: str, mode: str, free: float, occupied: float) -> str:
+def _description(info: msgs.MapMetaData, image: str, mode: str, free: float, occupied: float) -> str:
     """Return the YAML file of `map_server`.
 
     A trinary image has only three values; the limit of free cells in its file keeps the unknown ones unknown.

@@ -7,29 +7,23 @@ import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import numpy.typing as npt
 
-from simkit import msgs
+from simkit import Params, Plugin, Pose, msgs
 from simkit.errors import InputError
+from simkit.extend import Options, OptionsOf, SharedByCopies, boolean, number, offers, publishes, text
 from simkit.input_file import TEXT_LIMIT, read_input
-from simkit.params import Params
-from simkit.plugins.base import Plugin
-from simkit.plugins.endpoints import offers, publishes
 from simkit.plugins.find_entities import find_plugin_file
-from simkit.plugins.not_deep_copied import SharedByCopies
-from simkit.plugins.options import Options, OptionsOf, boolean, number, text
-from simkit.pose import Pose
 from simkit.sensors.occupancy_map import OccupancyMap, make_map
 from simkit.trusted_folders import TrustedFolders, join_within
 from simkit.yaml_reader import NotYaml, finite_number, read_yaml
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.runtime import Model, Simulation
-    from simkit.scene import SceneModel, SceneWorld
+    from simkit import Model, Simulation
+    from simkit.extend import SceneModel, SceneWorld, SpecBuilder
 
 _LARGEST_IMAGE: Final = 256 << 20  # [bytes]
 _MOST_CELLS: Final = 100_000_000
@@ -57,7 +51,7 @@ class MapFileError(Exception):
 class _PublishedMap(SharedByCopies):
     """Map as a message, which never changes; snapshots share it."""
 
-    message: Any
+    message: msgs.OccupancyGrid
 
 
 class MapServerOptions(Options):
@@ -94,7 +88,7 @@ class MapServer(Plugin):
         """Values that `load` reads: the true map depends on the shapes and poses of the static collisions."""
         return () if self.options.yaml_filename else ("geometry", "pose_link", "pose_world")
 
-    def set_state(self, state: Mapping[str, Any]) -> None:
+    def set_state(self, state: Mapping[str, object]) -> None:
         before = self._map
         super().set_state(state)
         if self._map is not before:
@@ -124,42 +118,41 @@ class MapServer(Plugin):
             transform = {"header": header, "child_frame_id": "world", "transform": {"rotation": {"w": 1.0}}}
             tf = self.advertise("/tf_static", "tf2_msgs/msg/TFMessage", latched=True)
             tf.publish(msgs.from_dict(["tf2_msgs/msg/TFMessage"], {"transforms": [transform]}))
-        found = self._file
-        if found is None:
+        grid = self._file
+        if grid is None:
             data = self.sim.engine.physics.fresh()
             try:
-                found = make_map(self.sim.mj_model, data, self.options.height, self.options.resolution)
+                grid = make_map(self.sim.mj_model, data, self.options.height, self.options.resolution)
             except InputError as error:
-                problem = str(error).partition("\n")[0].removeprefix(f"{error.code} ")
                 hint = "change <height> or <resolution>, or use the file of a map: <yaml_filename>"
-                params.diagnostics.error("SK-MAP-001", f"plugin {self.name!r}: {problem}", self.where, hint)
-                found = OccupancyMap(np.zeros((0, 0), np.int8), self.options.resolution, Pose())
+                params.diagnostics.error("SK-MAP-001", f"plugin {self.name!r}: {error.message}", self.where, hint)
+                grid = OccupancyMap(np.zeros((0, 0), np.int8), self.options.resolution, Pose())
         self._file = None
-        self._publish(found)
+        self._publish(grid)
 
-    def _publish(self, found: OccupancyMap) -> None:
-        rows, columns = found.cells.shape
+    def _publish(self, occupancy: OccupancyMap) -> None:
+        rows, columns = occupancy.cells.shape
         stamp = msgs.time(self.sim.time_ns)
-        info = {"map_load_time": stamp, "resolution": found.resolution, "width": columns, "height": rows}
-        values: dict[str, Any] = {
+        info = {"map_load_time": stamp, "resolution": occupancy.resolution, "width": columns, "height": rows}
+        values: dict[str, object] = {
             "header": msgs.header(self.sim.time_ns, self.options.frame_id),
-            "info": {**info, "origin": msgs.pose_message(found.origin)},
-            "data": found.cells.reshape(-1),
+            "info": {**info, "origin": msgs.pose_message(occupancy.origin)},
+            "data": occupancy.cells.reshape(-1),
         }
         self._map = _PublishedMap(msgs.from_dict(["nav_msgs/msg/OccupancyGrid"], values))
         self._publisher.publish(self._map.message)
 
-    def _on_load_map(self, request: Any) -> dict[str, Any]:
+    def _on_load_map(self, request: msgs.nav2_msgs__srv__LoadMap_Request) -> dict[str, object]:
         """Replace the map by that of a file; the files are those that a world may use."""
         path = find_plugin_file(self, request.map_url, self.sim.engine.structure.builder)
         try:
             if path is None:
                 raise MapFileError(f"there is no file {request.map_url!r:.200} in the folders of the world", _NOT_FOUND)
-            found = read_map(path)
+            grid = read_map(path)
         except MapFileError as error:
             self.log.error("%s", error)
             return {"result": error.result}
-        self._publish(found)
+        self._publish(grid)
         return {"map": self._map.message, "result": 0}
 
 

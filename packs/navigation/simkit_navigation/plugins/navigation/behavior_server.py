@@ -5,20 +5,19 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
-from simkit import msgs
-from simkit.params import Params
-from simkit.plugins.base import NEVER
-from simkit.plugins.endpoints import listens
-from simkit.plugins.options import Options, OptionsOf, number, text
+from simkit import Params, msgs
+from simkit.extend import NEVER, Options, OptionsOf, boolean, listens, number, text
+from simkit.pose import wrap_angle
 from simkit_navigation.plugins.navigation.costmap_reader import COSTMAP, CostmapReader
 from simkit_navigation.plugins.navigation.footprint import Footprint, read_footprint
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose, look_up
+from simkit_navigation.plugins.navigation.velocity_command import VelocityCommand
 
 if TYPE_CHECKING:
-    from simkit.runtime import Model, Simulation
-    from simkit.runtime.communication.action_server import GoalHandle
+    from simkit import Model, Simulation
+    from simkit.extend import GoalHandle
 
 _TIMEOUT, _TF_ERROR, _COLLISION, _INVALID = 1, 2, 3, 4  # added to the base below
 _CODES: Final = {"spin": 700, "backup": 710, "drive_on_heading": 720, "wait": 740}
@@ -39,6 +38,7 @@ class BehaviorServerOptions(Options):
     rotational_acc_lim: float = number(3.2, "rad/s^2", minimum=0.001)
     robot_radius: float = number(0.1, "m", minimum=0)
     footprint: str = text("")
+    enable_stamped_cmd_vel: bool = boolean(False)
 
 
 @dataclass(eq=False)
@@ -87,7 +87,7 @@ class BehaviorServer(CostmapReader):
         self._footprint: Footprint = read_footprint(self, options.footprint, options.robot_radius)
         self._motion: _Motion | None = None
         self.read_costmap(options.costmap_topic)
-        self._command = self.advertise("cmd_vel", "geometry_msgs/msg/Twist")
+        self._command = VelocityCommand(self, options.robot_base_frame if options.enable_stamped_cmd_vel else None)
         for name, kind in _TYPES.items():
             self.act(name, f"nav2_msgs/action/{kind}", partial(self._begin, name), self._on_cancel)
 
@@ -133,12 +133,12 @@ class BehaviorServer(CostmapReader):
         if motion is None:
             return
         elapsed = (self.sim.time_ns - motion.begin_ns) * 1e-9
-        found = self._pose()
-        if found is None and motion.name != "wait":
+        pose_now = self._pose()
+        if pose_now is None and motion.name != "wait":
             self._end(motion, elapsed, _TF_ERROR, "the pose of the robot is not known any more")
             return
-        pose = found or motion.last
-        motion.turned += math.remainder(pose.yaw - motion.last.yaw, math.tau)
+        pose = pose_now or motion.last
+        motion.turned += wrap_angle(pose.yaw - motion.last.yaw)
         motion.last = pose
         done = {
             "wait": elapsed,
@@ -186,7 +186,7 @@ class BehaviorServer(CostmapReader):
             motion.goal.succeed(result)
 
     def _publish(self, speeds: tuple[float, float]) -> None:
-        self._command.publish(msgs.make("geometry_msgs/msg/Twist", linear={"x": speeds[0]}, angular={"z": speeds[1]}))
+        self._command.publish(speeds)
 
     def _stop(self) -> None:
         if self._motion is not None and self._motion.name != "wait":
@@ -200,7 +200,7 @@ def _abort(goal: GoalHandle, code: int, reason: str, **result: object) -> None:
     goal.abort({**result, "error_code": code, "error_msg": reason}, reason)
 
 
-def _target(name: str, request: Any) -> float:
+def _target(name: str, request: msgs.Message) -> float:
     """Return the angle [rad], the distance [m] or the duration [s] of a goal; backwards is negative."""
     if name == "spin":
         return float(request.target_yaw)
@@ -210,11 +210,11 @@ def _target(name: str, request: Any) -> float:
     return -way if name == "backup" else math.copysign(way, request.target.x)
 
 
-def _feedback(name: str, done: float, remaining: float) -> dict[str, Any]:
+def _feedback(name: str, done: float, remaining: float) -> dict[str, object]:
     if name == "wait":
         return {"time_left": _duration(max(remaining, 0.0))}
     return {"angular_distance_traveled" if name == "spin" else "distance_traveled": done}
 
 
-def _duration(seconds: float) -> Any:
+def _duration(seconds: float) -> msgs.Duration:
     return msgs.duration(round(seconds * 1e9))

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit import msgs
+from simkit import Params, Plugin, msgs
 from simkit.errors import InputError, TransformError
+from simkit.extend import NEVER, Options, OptionsOf, integer, number, offers, text
 from simkit.msgs.goal_status import GoalStatus
-from simkit.params import Params
-from simkit.plugins.base import NEVER, Plugin
-from simkit.plugins.options import Options, OptionsOf, integer, number, text
+from simkit_navigation.plugins.lifecycle_state import GET_STATE, answer_active
 from simkit_navigation.plugins.navigation.planar_pose import (
     Floats,
     PlanarPose,
@@ -25,8 +25,8 @@ from simkit_navigation.plugins.navigation.planar_pose import (
 )
 
 if TYPE_CHECKING:
-    from simkit.runtime import Model, Simulation
-    from simkit.runtime.communication.action_server import GoalHandle
+    from simkit import Model, Simulation
+    from simkit.extend import GoalHandle
 
 _POSE: Final = "geometry_msgs/msg/PoseStamped"
 _RECOVERIES: Final = ("clear", "spin", "wait", "backup")
@@ -74,13 +74,13 @@ class _Task:
     """
 
     goal: GoalHandle
-    targets: list[Any]
+    targets: list[msgs.PoseStamped]
     begin_ns: int
     plan: GoalHandle | None = None
     follow: GoalHandle | None = None
     recovery: GoalHandle | None = None
     path: Floats = field(default_factory=_NO_PATH.copy)
-    path_message: Any = None
+    path_message: msgs.Path | None = None
     next_plan_ns: int = 0
     next_feedback_ns: int = 0
     recoveries: int = 0
@@ -100,6 +100,7 @@ class BtNavigator(Plugin):
     names = ("simkit::BtNavigator", "nav2_bt_navigator::BtNavigator")
     parent_kind = ("world", "model")
     options = OptionsOf(BtNavigatorOptions)
+    endpoints = (offers("~/get_state", GET_STATE),)
     before_step_rate = NEVER
 
     def load(self, parent: Simulation | Model, params: Params) -> None:
@@ -110,10 +111,11 @@ class BtNavigator(Plugin):
         self.act("navigate_to_pose", "nav2_msgs/action/NavigateToPose", self._on_goal, self._on_cancel)
         self.act("navigate_through_poses", "nav2_msgs/action/NavigateThroughPoses", self._on_goal, self._on_cancel)
         self.listen("goal_pose", _POSE, self._on_goal_pose)
+        answer_active(self)
 
     # ------------------------------------------------------------------ goals
 
-    def _on_goal_pose(self, message: Any) -> None:
+    def _on_goal_pose(self, message: msgs.PoseStamped) -> None:
         self.sim.send_goal(self.ros.topic("navigate_to_pose"), {"pose": message})
 
     def _on_goal(self, goal: GoalHandle) -> None:
@@ -142,7 +144,7 @@ class BtNavigator(Plugin):
         self.log.error("Goal rejected: %s", reason)  # the topic goal_pose has no other answer
         goal.reject(reason)
 
-    def _in_map(self, stamped: Any) -> Any:
+    def _in_map(self, stamped: msgs.PoseStamped) -> msgs.PoseStamped:
         """Return a stamped pose in the frame of the map.
 
         Raises:
@@ -255,7 +257,7 @@ class BtNavigator(Plugin):
                 task.recovery = self._send(task, name, self._request(name))
                 return
 
-    def _request(self, name: str) -> dict[str, Any]:
+    def _request(self, name: str) -> dict[str, object]:
         """Return the goal of a recovery."""
         options = self.options
         if name == "spin":
@@ -267,7 +269,7 @@ class BtNavigator(Plugin):
 
     # ------------------------------------------------------------------ helpers
 
-    def _send(self, task: _Task, action: str, request: dict[str, Any]) -> GoalHandle | None:
+    def _send(self, task: _Task, action: str, request: Mapping[str, object]) -> GoalHandle | None:
         """Send a goal to a server; abort the task if there is no such server."""
         try:
             return self.sim.send_goal(self.ros.topic(action), request)
@@ -310,7 +312,7 @@ class BtNavigator(Plugin):
         remaining = _remaining(task.path, pose)
         speed = task.follow.feedback.speed if task.follow is not None and task.follow.feedback is not None else 0.0
         left = remaining / speed if speed > 1e-2 else 0.0
-        found: dict[str, Any] = {
+        feedback: dict[str, object] = {
             "current_pose": stamped_pose(pose, msgs.header(self.sim.time_ns, self.options.global_frame)),
             "navigation_time": msgs.duration(elapsed),
             "estimated_time_remaining": msgs.duration(round(left * _SECOND)),
@@ -318,8 +320,8 @@ class BtNavigator(Plugin):
             "distance_remaining": remaining,
         }
         if hasattr(task.goal.request, "poses"):
-            found["number_of_poses_remaining"] = len(task.targets)
-        task.goal.publish_feedback(found)
+            feedback["number_of_poses_remaining"] = len(task.targets)
+        task.goal.publish_feedback(feedback)
 
 
 def _remaining(path: Floats, pose: PlanarPose) -> float:

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Final, Protocol
+from typing import TYPE_CHECKING, Final, Protocol
 
 import numpy as np
 
-from simkit import msgs
-from simkit.params import Params
-from simkit.plugins.base import NEVER
+from simkit import Params, msgs
+from simkit.extend import NEVER, Options, OptionsOf, block, boolean, listens, number, text, texts
 from simkit.plugins.drives.odometry_messages import ODOMETRY
-from simkit.plugins.endpoints import listens
-from simkit.plugins.options import Options, OptionsOf, block, boolean, number, text, texts
+from simkit.pose import wrap_angle
 from simkit_navigation.plugins.navigation.cost_grid import CostGrid
 from simkit_navigation.plugins.navigation.costmap_reader import COSTMAP, CostmapReader
 from simkit_navigation.plugins.navigation.footprint import Footprint, read_footprint
@@ -20,10 +18,11 @@ from simkit_navigation.plugins.navigation.nodes import ControllerNode
 from simkit_navigation.plugins.navigation.planar_pose import Floats, PlanarPose, look_up, poses_of_path
 from simkit_navigation.plugins.navigation.pure_pursuit import PurePursuit, PurePursuitOptions, Speeds
 from simkit_navigation.plugins.navigation.user_classes import ServerPlugin
+from simkit_navigation.plugins.navigation.velocity_command import VelocityCommand
 
 if TYPE_CHECKING:
-    from simkit.runtime import Model, Simulation
-    from simkit.runtime.communication.action_server import GoalHandle
+    from simkit import Model, Simulation
+    from simkit.extend import GoalHandle
 
 _INVALID_CONTROLLER: Final = 101  # error codes of nav2_msgs/action/FollowPath
 _TF_ERROR: Final = 102
@@ -31,7 +30,7 @@ _INVALID_PATH: Final = 103
 _PATIENCE_EXCEEDED: Final = 104
 _FAILED_TO_MAKE_PROGRESS: Final = 105
 _NO_VALID_CONTROL: Final = 106
-_CONTROLLERS: Final[dict[str, type[Any]]] = {
+_CONTROLLERS: Final[dict[str, type[Controller]]] = {
     "nav2_regulated_pure_pursuit_controller::RegulatedPurePursuitController": PurePursuit,
 }
 _METHODS: Final = ("compute_velocity_commands", "set_plan")
@@ -91,6 +90,7 @@ class ControllerServerOptions(Options):
     robot_base_frame: str = text("base_footprint")
     robot_radius: float = number(0.1, "m", minimum=0)
     footprint: str = text("")
+    enable_stamped_cmd_vel: bool = boolean(False)
 
 
 class ControllerServer(CostmapReader, ServerPlugin):
@@ -129,12 +129,12 @@ class ControllerServer(CostmapReader, ServerPlugin):
         self._moved = 0, self._end  # time [ns] and pose from which progress is measured
         self.read_costmap(options.costmap_topic)
         self.subscribe(options.odom_topic, self._on_odometry)
-        self._command = self.advertise("cmd_vel", "geometry_msgs/msg/Twist")
+        self._command = VelocityCommand(self, options.robot_base_frame if options.enable_stamped_cmd_vel else None)
         self.act("follow_path", "nav2_msgs/action/FollowPath", self._on_goal, self._on_cancel)
 
     # ------------------------------------------------------------------ messages
 
-    def _on_odometry(self, message: Any) -> None:
+    def _on_odometry(self, message: msgs.Odometry) -> None:
         if not self._once.has_type(message, ODOMETRY, "odom_topic"):
             return
         twist = message.twist.twist
@@ -219,15 +219,13 @@ class ControllerServer(CostmapReader, ServerPlugin):
         checker, end = self.options.general_goal_checker, self._end
         is_near = math.hypot(end.x - pose.x, end.y - pose.y) <= checker.xy_goal_tolerance
         self.is_at_goal_position = is_near or (checker.stateful and self.is_at_goal_position)
-        return (
-            self.is_at_goal_position and abs(math.remainder(end.yaw - pose.yaw, math.tau)) <= checker.yaw_goal_tolerance
-        )
+        return self.is_at_goal_position and abs(wrap_angle(end.yaw - pose.yaw)) <= checker.yaw_goal_tolerance
 
     def _makes_progress(self, pose: PlanarPose) -> bool:
         begin, before = self._moved
         checker = self.options.progress_checker
         if self.is_at_goal_position:
-            moves = abs(math.remainder(pose.yaw - before.yaw, math.tau)) > checker.required_movement_angle
+            moves = abs(wrap_angle(pose.yaw - before.yaw)) > checker.required_movement_angle
         else:
             moves = math.hypot(pose.x - before.x, pose.y - before.y) > checker.required_movement_radius
         if moves:
@@ -235,7 +233,7 @@ class ControllerServer(CostmapReader, ServerPlugin):
         return moves or self.sim.time_ns - begin <= checker.movement_time_allowance * 1e9
 
     def _publish(self, speeds: Speeds) -> None:
-        self._command.publish(msgs.make("geometry_msgs/msg/Twist", linear={"x": speeds[0]}, angular={"z": speeds[1]}))
+        self._command.publish(speeds)
 
     def _fail(self, goal: GoalHandle, code: int, reason: str) -> None:
         self._stop()
@@ -247,16 +245,16 @@ class ControllerServer(CostmapReader, ServerPlugin):
         self._set_before_step_rate(NEVER)
 
 
-def _checked(found: Any) -> Speeds | None:
+def _checked(result: object) -> Speeds | None:
     """Return the result of a controller.
 
     Raises:
         ValueError: the result is neither None nor two finite numbers.
     """
-    if found is None:
+    if result is None:
         return None
     try:
-        speeds = np.asarray(found, np.float64)
+        speeds = np.asarray(result, np.float64)
     except (TypeError, ValueError):
         speeds = np.zeros(0)
     if speeds.shape != (2,) or not np.isfinite(speeds).all():

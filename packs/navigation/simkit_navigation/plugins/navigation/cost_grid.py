@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -21,6 +21,7 @@ _LEAST_SIDE: Final = 1e-6  # [m] of a cell
 
 Cells = npt.NDArray[np.uint8]
 Mask = npt.NDArray[np.bool_]
+Indices = npt.NDArray[np.int64]
 
 _BETWEEN = np.arange(1, INSCRIBED, dtype=np.int64)
 _OCCUPANCY: Final = np.zeros(256, np.int8)
@@ -55,7 +56,7 @@ class CostGrid:
         """Return the distance of a point from the corner of row 0 and column 0 [m]."""
         return math.hypot(x - self.origin.x, y - self.origin.y)
 
-    def indices(self, points: Floats) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], Mask]:
+    def indices(self, points: Floats) -> tuple[Indices, Indices, Mask]:
         """Return rows and columns of points [m], shape (n, 2), and which of the points are within the grid."""
         local = self.origin.inverse().transform(points) / self.resolution
         columns, rows = np.floor(np.clip(local, -1e9, 1e9)).astype(np.int64).T
@@ -75,15 +76,15 @@ class CostGrid:
     def costs(self, points: Floats) -> Cells:
         """Return the costs at points [m], shape (n, 2); a point outside of the grid has the cost UNKNOWN."""
         rows, columns, inside = self.indices(points)
-        found = np.full(len(rows), UNKNOWN, np.uint8)
-        found[inside] = self.cells[rows[inside], columns[inside]]
-        return found
+        costs = np.full(len(rows), UNKNOWN, np.uint8)
+        costs[inside] = self.cells[rows[inside], columns[inside]]
+        return costs
 
     def is_blocked(self, points: Floats) -> Mask:
         """Check for each point [m], shape (n, 2), whether the cost is INSCRIBED or LETHAL; unknown cells are free."""
         costs = self.costs(points)
-        found: Mask = (costs >= INSCRIBED) & (costs < UNKNOWN)
-        return found
+        blocked: Mask = (costs >= INSCRIBED) & (costs < UNKNOWN)
+        return blocked
 
     def cost(self, x: float, y: float) -> int:
         """Return the cost at a point [m]; UNKNOWN outside of the grid."""
@@ -101,7 +102,7 @@ class CostGrid:
 
     # ------------------------------------------------------------------ messages
 
-    def occupancy_message(self, time_ns: int) -> Any:
+    def occupancy_message(self, time_ns: int) -> msgs.Message:
         """Return a `nav_msgs/msg/OccupancyGrid`."""
         rows, columns = self.cells.shape
         info = {"map_load_time": msgs.time(time_ns), "resolution": self.resolution, "width": columns, "height": rows}
@@ -112,7 +113,7 @@ class CostGrid:
             data=_OCCUPANCY[self.cells].reshape(-1),
         )
 
-    def raw_message(self, time_ns: int) -> Any:
+    def raw_message(self, time_ns: int) -> msgs.Message:
         """Return a `nav2_msgs/msg/Costmap`."""
         rows, columns = self.cells.shape
         times = dict.fromkeys(("map_load_time", "update_time"), msgs.time(time_ns))
@@ -125,13 +126,13 @@ class CostGrid:
         )
 
 
-def grid_of_message(message: Any) -> CostGrid | None:
+def grid_of_message(message: msgs.Costmap) -> CostGrid | None:
     """Return the grid of a `nav2_msgs/msg/Costmap`; None if the message is not valid."""
     info, data = message.metadata, np.asarray(message.data, np.uint8)
     return _grid(data, info.size_y, info.size_x, info, message.header.frame_id)
 
 
-def grid_of_map(message: Any, lethal_threshold: int, unknown: int) -> CostGrid | None:
+def grid_of_map(message: msgs.OccupancyGrid, lethal_threshold: int, unknown: int) -> CostGrid | None:
     """Return the grid of a `nav_msgs/msg/OccupancyGrid`; None if the message is not valid.
 
     Args:
@@ -144,7 +145,9 @@ def grid_of_map(message: Any, lethal_threshold: int, unknown: int) -> CostGrid |
     return _grid(costs, info.height, info.width, info, message.header.frame_id)
 
 
-def _grid(costs: Cells, rows: int, columns: int, info: Any, frame: str) -> CostGrid | None:
+def _grid(
+    costs: Cells, rows: int, columns: int, info: msgs.MapMetaData | msgs.CostmapMetaData, frame: str
+) -> CostGrid | None:
     origin, resolution = pose_of_message(info.origin), float(f"{info.resolution:.7g}")  # it has 32 bits
     if origin is None or not _LEAST_SIDE <= resolution < math.inf or not rows * columns or costs.size != rows * columns:
         return None

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit.params import Params
-from simkit.plugins.endpoints import listens, offers, publishes
-from simkit.plugins.options import Options, OptionsOf, boolean, integer, number, text, texts
+from simkit import Params
+from simkit.extend import Options, OptionsOf, boolean, integer, listens, number, offers, publishes, text, texts
 from simkit_navigation.plugins.navigation.cost_grid import FREE, UNKNOWN, Cells, CostGrid
 from simkit_navigation.plugins.navigation.costmap_layers import (
     DEFAULT_LAYERS,
@@ -25,7 +24,7 @@ from simkit_navigation.plugins.navigation.planar_pose import PlanarPose, look_up
 from simkit_navigation.plugins.navigation.user_classes import ServerPlugin
 
 if TYPE_CHECKING:
-    from simkit.runtime import Model, Simulation
+    from simkit import Model, Simulation
 
 _MOST_CELLS: Final = 25_000_000
 _CLEARS: Final = {
@@ -111,9 +110,9 @@ class Costmap2D(ServerPlugin):
         if not options.rolling_window:
             for layer in self.parts.values():
                 if isinstance(layer, StaticLayer) and layer.map is not None:
-                    found = layer.map
-                    cells: Cells = np.full(found.cells.shape, self.default_cost, np.uint8)
-                    return CostGrid(cells, found.resolution, found.origin, found.frame)
+                    known = layer.map
+                    cells: Cells = np.full(known.cells.shape, self.default_cost, np.uint8)
+                    return CostGrid(cells, known.resolution, known.origin, known.frame)
         rows, columns = (max(round(side / options.resolution), 1) for side in (options.height, options.width))
         cells = np.full((rows, columns), self.default_cost, np.uint8)
         origin = PlanarPose(options.origin_x, options.origin_y, 0.0)
@@ -154,7 +153,7 @@ class Costmap2D(ServerPlugin):
         if self._robot is not None and self._outline.wanted:
             self._outline.publish(self.footprint.message(self._robot, self.grid.frame, now))
 
-    def _clear(self, _: Any) -> dict[str, Any]:
+    def _clear(self, _: object) -> dict[str, object]:
         """Let the layers forget what they have seen; then update the costmap.
 
         In Nav2, two of the services clear a square around the robot, or everything outside of it. Here, the layers

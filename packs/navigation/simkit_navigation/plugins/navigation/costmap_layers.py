@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final, Protocol
+from typing import TYPE_CHECKING, Final, Protocol
 
 import numpy as np
 
+from simkit import Params, msgs
 from simkit.elementary_functions import exp
-from simkit.params import Params
-from simkit.plugins.options import Options, boolean, number, text
+from simkit.extend import Options, boolean, number, text
 from simkit_navigation.plugins.navigation.cost_grid import (
     FREE,
     INSCRIBED,
@@ -18,6 +18,7 @@ from simkit_navigation.plugins.navigation.cost_grid import (
     UNKNOWN,
     Cells,
     CostGrid,
+    Indices,
     grid_of_map,
 )
 from simkit_navigation.plugins.navigation.planar_pose import Floats, PlanarPose, look_up
@@ -71,7 +72,7 @@ class StaticLayer:
         if self._options.enabled:
             node.receive(self._options.map_topic, _MAP, "map_topic", self._on_map)
 
-    def _on_map(self, message: Any) -> None:
+    def _on_map(self, message: msgs.OccupancyGrid) -> None:
         grid = grid_of_map(message, self._node.lethal_cost_threshold, self._node.default_cost)
         if grid is None:
             if not self._has_reported:
@@ -128,27 +129,27 @@ class ObstacleLayer:
         self._options, self._node = ObstacleLayerOptions(params).read_all(), node
         names = self._options.observation_sources.split() if self._options.enabled else []
         self._sources = {name: SourceOptions(params.block(name)).read_all() for name in names}
-        self._scans: dict[str, Any] = {}  # newest scan of each source
+        self._scans: dict[str, msgs.LaserScan] = {}  # newest scan of each source
         for name, source in self._sources.items():
             node.receive(source.topic, _SCAN, f"{name}.topic", partial(self._on_scan, name))
         self._seen: Cells = np.zeros((0, 0), np.uint8)
         self._origin = PlanarPose(0.0, 0.0, 0.0)
 
-    def _on_scan(self, source: str, message: Any) -> None:
+    def _on_scan(self, source: str, message: msgs.LaserScan) -> None:
         if math.isfinite(message.angle_min + message.angle_increment):
             self._scans[source] = message
 
     def update_costs(self, grid: CostGrid, robot: PlanarPose) -> None:
         """Update the obstacles by the newest scans, and write them."""
         self._match(grid)
-        own = CostGrid(self._seen, grid.resolution, grid.origin, grid.frame)
+        seen = CostGrid(self._seen, grid.resolution, grid.origin, grid.frame)
         for name, scan in self._scans.items():
-            self._add_scan(own, scan, self._sources[name])
+            self._add_scan(seen, scan, self._sources[name])
         if self._options.footprint_clearing_enabled:
-            radius = min(self._node.inscribed_radius, own.diagonal)
+            radius = min(self._node.inscribed_radius, seen.diagonal)
             reach = np.arange(-radius, radius + grid.resolution, grid.resolution / 2)
             around = np.stack(np.meshgrid(reach, reach), axis=-1).reshape(-1, 2)
-            rows, columns, inside = own.indices(around[np.hypot(*around.T) <= radius] + (robot.x, robot.y))
+            rows, columns, inside = seen.indices(around[np.hypot(*around.T) <= radius] + (robot.x, robot.y))
             self._seen[rows[inside], columns[inside]] = FREE
         grid.cells[self._seen == LETHAL] = LETHAL
         grid.cells[(self._seen == FREE) & (grid.cells == UNKNOWN)] = FREE
@@ -163,28 +164,28 @@ class ObstacleLayer:
             self._seen = shifted(self._seen, up, right)
         self._origin = grid.origin
 
-    def _add_scan(self, own: CostGrid, scan: Any, options: SourceOptions) -> None:
-        sensor = look_up(self._node.sim, own.frame, scan.header.frame_id, scan.header.stamp)
+    def _add_scan(self, grid: CostGrid, scan: msgs.LaserScan, options: SourceOptions) -> None:
+        sensor = look_up(self._node.sim, grid.frame, scan.header.frame_id, scan.header.stamp)
         if sensor is None:  # the newest transform is older than the scan
-            sensor = look_up(self._node.sim, own.frame, scan.header.frame_id)
+            sensor = look_up(self._node.sim, grid.frame, scan.header.frame_id)
         if sensor is None:
             return
         ranges = np.asarray(scan.ranges, np.float64)
-        angles = scan.angle_min + scan.angle_increment * np.arange(len(ranges))
+        angles = np.asarray(scan.angle_min + scan.angle_increment * np.arange(len(ranges)), np.float64)
         hits = np.isfinite(ranges) & (ranges >= scan.range_min) & (ranges <= scan.range_max)
         if options.clearing:
             reach = np.where(hits, ranges, 0.0)
             if options.inf_is_valid:
                 reach = np.where(ranges == math.inf, options.raytrace_max_range, reach)
             longest = min(
-                options.raytrace_max_range, own.diagonal + own.distance(sensor.x, sensor.y) + 2 * own.resolution
+                options.raytrace_max_range, grid.diagonal + grid.distance(sensor.x, sensor.y) + 2 * grid.resolution
             )
-            rows, columns = _cells_before(own, sensor, np.minimum(reach, longest), angles)
-            own.cells[rows, columns] = FREE
+            rows, columns = _cells_before(grid, sensor, np.minimum(reach, longest), angles)
+            grid.cells[rows, columns] = FREE
         if options.marking:
             is_near = hits & (ranges >= options.obstacle_min_range) & (ranges <= options.obstacle_max_range)
-            rows, columns, inside = own.indices(_ends(sensor, ranges[is_near], angles[is_near]))
-            own.cells[rows[inside], columns[inside]] = LETHAL
+            rows, columns, inside = grid.indices(_ends(sensor, ranges[is_near], angles[is_near]))
+            grid.cells[rows[inside], columns[inside]] = LETHAL
 
     def reset(self) -> None:
         """Forget all obstacles."""
@@ -197,25 +198,25 @@ def _ends(sensor: PlanarPose, ranges: Floats, angles: Floats) -> Floats:
     return sensor.transform(np.column_stack((ranges * np.cos(angles), ranges * np.sin(angles))))
 
 
-def _cells_before(own: CostGrid, sensor: PlanarPose, reach: Floats, angles: Floats) -> tuple[Any, Any]:
+def _cells_before(grid: CostGrid, sensor: PlanarPose, reach: Floats, angles: Floats) -> tuple[Indices, Indices]:
     """Return rows and columns of the cells that beams cross before their ends."""
-    step = own.resolution * _HALF_CELL
+    step = grid.resolution * _HALF_CELL
     along = np.arange(0.0, max(float(reach.max(initial=0.0)), 0.0), step)
     distances, directions = np.broadcast_arrays(along[:, None], angles)
-    is_before = distances < reach - own.resolution
-    rows, columns, inside = own.indices(_ends(sensor, distances[is_before], directions[is_before]))
+    is_before = distances < reach - grid.resolution
+    rows, columns, inside = grid.indices(_ends(sensor, distances[is_before], directions[is_before]))
     return rows[inside], columns[inside]
 
 
 def shifted(cells: Cells, up: int, right: int) -> Cells:
     """Return cells of a window that has moved by some cells; new cells are unknown."""
-    found = np.full(cells.shape, UNKNOWN, np.uint8)
+    moved = np.full(cells.shape, UNKNOWN, np.uint8)
     (rows, columns), (y, x) = cells.shape, (up, right)
     if abs(y) < rows and abs(x) < columns:
-        found[max(-y, 0) : rows - max(y, 0), max(-x, 0) : columns - max(x, 0)] = cells[
+        moved[max(-y, 0) : rows - max(y, 0), max(-x, 0) : columns - max(x, 0)] = cells[
             max(y, 0) : rows - max(-y, 0), max(x, 0) : columns - max(-x, 0)
         ]
-    return found
+    return moved
 
 
 class InflationLayerOptions(Options):
@@ -260,7 +261,7 @@ class InflationLayer:
         """Keep nothing, because the layer has no memory."""
 
 
-LAYERS: Final[dict[str, type[Any]]] = {
+LAYERS: Final[dict[str, type[CostmapLayer]]] = {
     "nav2_costmap_2d::StaticLayer": StaticLayer,
     "nav2_costmap_2d::ObstacleLayer": ObstacleLayer,
     "nav2_costmap_2d::InflationLayer": InflationLayer,

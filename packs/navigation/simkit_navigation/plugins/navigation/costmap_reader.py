@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Final
 
-from simkit.plugins.base import Plugin
+from simkit import Plugin, msgs
 from simkit_navigation.plugins.navigation.cost_grid import CostGrid, grid_of_message
 
 COSTMAP: Final = "nav2_msgs/msg/Costmap"
@@ -24,12 +24,12 @@ class CostmapReader(Plugin):
         self.grid = None
         self.subscribe(topic, self._on_costmap)
 
-    def _on_costmap(self, message: Any) -> None:
+    def _on_costmap(self, message: msgs.Costmap) -> None:
         if not self._once.has_type(message, COSTMAP, "costmap_topic"):
             return
-        found = grid_of_message(message)
-        if found is None:
+        grid = grid_of_message(message)
+        if grid is None:
             text = "a costmap is ignored that is empty, or whose size, resolution or origin is not valid"
             self._once.left_out("costmap", text)
         else:
-            self.grid = found
+            self.grid = grid

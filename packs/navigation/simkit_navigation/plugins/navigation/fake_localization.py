@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from simkit import msgs
+from simkit import Params, Plugin, msgs
 from simkit.errors import ArgumentValueError, InputError, TransformError
-from simkit.params import Params
-from simkit.plugins.base import Plugin
+from simkit.extend import Options, OptionsOf, number, text
 from simkit.plugins.drives.odometry_messages import TRANSFORMS, transforms
-from simkit.plugins.options import Options, OptionsOf, number, text
 
 if TYPE_CHECKING:
-    from simkit.runtime import Link, Model, Simulation
+    from simkit import Link, Model, Simulation
 
 
 class FakeLocalizationOptions(Options):
@@ -51,10 +49,10 @@ class FakeLocalization(Plugin):
             return self._link  # a search takes longer than all the rest
         robot, _, name = self.options.base_frame_id.rpartition("/")
         candidates = [model for model in self.sim.models.values() if robot in ("", model.name)]
-        found = [model.links[name] for model in candidates if name in model.links]
-        self._models, self._link = models, found[0] if len(found) == 1 else None
+        links = [model.links[name] for model in candidates if name in model.links]
+        self._models, self._link = models, links[0] if len(links) == 1 else None
         if self._link is None:
-            message = f"{len(found)} models have a link {self.options.base_frame_id!r}, so there is no true pose"
+            message = f"{len(links)} models have a link {self.options.base_frame_id!r}, so there is no true pose"
             self._once.warn("SK-PLUGIN-132", "link", message, "set <base_frame_id> to LINK, or to MODEL/LINK")
         return self._link
 

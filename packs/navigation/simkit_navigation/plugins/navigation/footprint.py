@@ -5,17 +5,17 @@ from __future__ import annotations
 import ast
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from simkit import msgs
-from simkit.plugins.not_deep_copied import SharedByCopies
+from simkit.extend import SharedByCopies
 from simkit_navigation.plugins.navigation.cost_grid import INSCRIBED, LETHAL, UNKNOWN, CostGrid
 from simkit_navigation.plugins.navigation.planar_pose import Floats, PlanarPose
 
 if TYPE_CHECKING:
-    from simkit.plugins.base import Plugin
+    from simkit import Plugin
 
 _ROUND: Final = 16  # corners of a circle
 _LEVER: Final = 0.5  # [m] from the robot's origin to a point that turns with it
@@ -37,7 +37,7 @@ class Footprint(SharedByCopies):
     inscribed_radius: float
     circumscribed_radius: float
 
-    def message(self, robot: PlanarPose, frame: str, time_ns: int) -> Any:
+    def message(self, robot: PlanarPose, frame: str, time_ns: int) -> msgs.Message:
         """Return a `geometry_msgs/msg/PolygonStamped` of the outline at a pose."""
         points = [{"x": x, "y": y} for x, y in robot.transform(self.corners).tolist()]
         return msgs.make(

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
-from simkit.params import Params
-from simkit.plugins.options import Options, boolean, number
+from simkit import Params
+from simkit.extend import Options, boolean, number
 from simkit_navigation.plugins.navigation.cost_grid import INSCRIBED, UNKNOWN, Cells, CostGrid, Mask
 from simkit_navigation.plugins.navigation.planar_pose import Floats, PlanarPose
 
 if TYPE_CHECKING:
-    from simkit.plugins.base import Plugin
+    from simkit import Plugin
 
 _NEUTRAL: Final = 50.0  # weight of a free cell
 _FACTOR: Final = 0.8  # weight of a cost; both as in NavFn
@@ -71,8 +71,8 @@ class GridPlanner:
         points[0] = start.x, start.y
         if is_exact:
             points[-1] = goal.x, goal.y
-        found: list[list[float]] = _smooth(points, grid).tolist()
-        return found
+        plan: list[list[float]] = _smooth(points, grid).tolist()
+        return plan
 
 
 def _nearest(grid: CostGrid, allowed: Mask, pose: PlanarPose, reach: float) -> tuple[int, int] | None:
@@ -93,14 +93,14 @@ def _search(cells: Cells, number_of: npt.NDArray[np.int32], begin: int) -> tuple
     weights = _NEUTRAL + _FACTOR * np.where(cells == UNKNOWN, 0, cells)
     (rows, columns), firsts, seconds, lengths = cells.shape, [], [], []
     for up, right in _STEPS:
-        one = slice(0, rows - up), slice(max(-right, 0), columns - max(right, 0))
+        here = slice(0, rows - up), slice(max(-right, 0), columns - max(right, 0))
         other = slice(up, rows), slice(max(right, 0), columns - max(-right, 0))
-        both = (number_of[one] >= 0) & (number_of[other] >= 0)
+        both = (number_of[here] >= 0) & (number_of[other] >= 0)
         if up and right:  # a diagonal step must not cut the corner of an obstacle
-            both &= (number_of[one[0], other[1]] >= 0) & (number_of[other[0], one[1]] >= 0)
-        firsts.append(number_of[one][both])
+            both &= (number_of[here[0], other[1]] >= 0) & (number_of[other[0], here[1]] >= 0)
+        firsts.append(number_of[here][both])
         seconds.append(number_of[other][both])
-        lengths.append((weights[one][both] + weights[other][both]) * (0.5 * np.hypot(up, right)))
+        lengths.append((weights[here][both] + weights[other][both]) * (0.5 * np.hypot(up, right)))
     count = int(number_of.max()) + 1
     pairs = np.concatenate(firsts), np.concatenate(seconds)
     graph = csr_matrix((np.concatenate(lengths), pairs), (count, count))
@@ -110,14 +110,14 @@ def _search(cells: Cells, number_of: npt.NDArray[np.int32], begin: int) -> tuple
 
 def _smooth(points: Floats, grid: CostGrid) -> Floats:
     """Return a path without the corners of the grid; where it would touch an obstacle, it keeps its points."""
-    found = points.copy()
+    smooth = points.copy()
     for _ in range(_SMOOTHING):
-        middle = (found[:-2] + found[2:]) / 2
-        found[1:-1] = (1.0 - _KEPT) * (found[1:-1] + middle) / 2 + _KEPT * points[1:-1]
+        middle = (smooth[:-2] + smooth[2:]) / 2
+        smooth[1:-1] = (1.0 - _KEPT) * (smooth[1:-1] + middle) / 2 + _KEPT * points[1:-1]
     for _ in range(_REPAIRS):
-        middle = (found[:-1] + found[1:]) / 2
-        bad = np.flatnonzero(grid.is_blocked(middle) | grid.is_blocked(found[:-1]) | grid.is_blocked(found[1:]))
+        middle = (smooth[:-1] + smooth[1:]) / 2
+        bad = np.flatnonzero(grid.is_blocked(middle) | grid.is_blocked(smooth[:-1]) | grid.is_blocked(smooth[1:]))
         if not len(bad):
-            return found
-        found[bad], found[bad + 1] = points[bad], points[bad + 1]
+            return smooth
+        smooth[bad], smooth[bad + 1] = points[bad], points[bad + 1]
     return points

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from simkit.runtime import Simulation
+    from simkit import Simulation
+    from simkit.msgs import Message
     from simkit.runtime.communication.publisher import Publisher
     from simkit.runtime.communication.subscription import Subscription
     from simkit.topic_logger import TopicLogger
@@ -25,11 +26,11 @@ class Node(Protocol):
     log: TopicLogger
 
     def subscribe(
-        self, topic: str, callback: Callable[[Any], None] | None = None, keep: int | None = None
+        self, topic: str, callback: Callable[[Message], None] | None = None, keep: int | None = None
     ) -> Subscription:
         """Receive each message on a topic; see `Plugin.subscribe`."""
 
-    def receive(self, topic: str, type_name: str, parameter: str, callback: Callable[[Any], None]) -> Subscription:
+    def receive(self, topic: str, type_name: str, parameter: str, callback: Callable[[Message], None]) -> Subscription:
         """Receive the messages of a type on a topic; see `ServerPlugin.receive`."""
 
     def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Publisher:

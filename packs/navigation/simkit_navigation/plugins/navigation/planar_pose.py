@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from simkit import msgs
+from simkit import Pose, msgs
 from simkit.errors import ArgumentValueError, TransformError
 from simkit.linear_algebra import matmul
-from simkit.pose import Pose, rpy_from_quat
+from simkit.pose import rpy_from_quat, wrap_angle
 
 if TYPE_CHECKING:
-    from simkit.runtime import Simulation
+    from simkit import Simulation
 
 Floats = npt.NDArray[np.float64]
 
@@ -30,7 +30,7 @@ class PlanarPose(NamedTuple):
         """Return a pose that is given relative to this one in the frame of this one."""
         cos, sin = math.cos(self.yaw), math.sin(self.yaw)
         x, y = self.x + cos * other.x - sin * other.y, self.y + sin * other.x + cos * other.y
-        return PlanarPose(x, y, math.remainder(self.yaw + other.yaw, math.tau))
+        return PlanarPose(x, y, wrap_angle(self.yaw + other.yaw))
 
     def inverse(self) -> PlanarPose:
         """Return the pose of this pose's frame relative to this pose."""
@@ -40,8 +40,8 @@ class PlanarPose(NamedTuple):
     def transform(self, points: Floats) -> Floats:
         """Return points of this pose's frame, shape (n, 2) [m], in the frame in which this pose is given."""
         cos, sin = math.cos(self.yaw), math.sin(self.yaw)
-        found: Floats = matmul(points, np.array([[cos, sin], [-sin, cos]])) + np.array((self.x, self.y))
-        return found
+        moved: Floats = matmul(points, np.array([[cos, sin], [-sin, cos]])) + np.array((self.x, self.y))
+        return moved
 
 
 def planar_of(pose: Pose) -> PlanarPose:
@@ -50,7 +50,7 @@ def planar_of(pose: Pose) -> PlanarPose:
     return PlanarPose(x, y, float(pose.rpy[2]))
 
 
-def pose_of_message(message: Any) -> PlanarPose | None:
+def pose_of_message(message: msgs.Pose) -> PlanarPose | None:
     """Return the part of a `geometry_msgs/msg/Pose` in the plane; None if a number is NaN or infinite."""
     place, turn = message.position, message.orientation
     quaternion = (turn.w, turn.x, turn.y, turn.z)
@@ -60,29 +60,29 @@ def pose_of_message(message: Any) -> PlanarPose | None:
     return PlanarPose(float(place.x), float(place.y), yaw)
 
 
-def stamped_pose(pose: PlanarPose, header: msgs.Header) -> Any:
+def stamped_pose(pose: PlanarPose, header: msgs.Header) -> msgs.PoseStamped:
     """Return a `geometry_msgs/msg/PoseStamped`."""
     return msgs.PoseStamped(header, pose_message(pose))
 
 
-def pose_message(pose: PlanarPose) -> Any:
+def pose_message(pose: PlanarPose) -> msgs.Pose:
     """Return a `geometry_msgs/msg/Pose`."""
     turn = msgs.Quaternion(0.0, 0.0, math.sin(pose.yaw / 2), math.cos(pose.yaw / 2))
     return msgs.Pose(msgs.Point(pose.x, pose.y, 0.0), turn)
 
 
-def path_message(poses: Floats, header: msgs.Header) -> Any:
+def path_message(poses: Floats, header: msgs.Header) -> msgs.Path:
     """Return a `nav_msgs/msg/Path` of poses: x, y [m] and yaw [rad], shape (n, 3)."""
     return msgs.Path(header, [stamped_pose(PlanarPose(*row), header) for row in poses.tolist()])
 
 
-def poses_of_path(path: Any) -> Floats | None:
+def poses_of_path(path: msgs.Path) -> Floats | None:
     """Return x, y [m] and yaw [rad] of the poses of a path, shape (n, 3); None if a number is NaN or infinite."""
-    found = [pose_of_message(stamped.pose) for stamped in path.poses]
-    return None if None in found else np.array(found, np.float64).reshape(-1, 3)
+    poses = [pose_of_message(stamped.pose) for stamped in path.poses]
+    return None if None in poses else np.array(poses, np.float64).reshape(-1, 3)
 
 
-def look_up(sim: Simulation, target: str, source: str, stamp: Any = None) -> PlanarPose | None:
+def look_up(sim: Simulation, target: str, source: str, stamp: msgs.Time | None = None) -> PlanarPose | None:
     """Return the pose of the frame `source` in the frame `target`; None if it is not known.
 
     Args:

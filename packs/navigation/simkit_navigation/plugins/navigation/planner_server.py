@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, Protocol
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final, Protocol, TypeAlias
 
 import numpy as np
 
-from simkit import msgs
+from simkit import Params, Plugin, msgs
 from simkit.elementary_functions import arctan2
-from simkit.params import Params
-from simkit.plugins.base import Plugin
-from simkit.plugins.endpoints import listens
-from simkit.plugins.options import Options, OptionsOf, text, texts
+from simkit.extend import Options, OptionsOf, listens, text, texts
 from simkit_navigation.plugins.navigation.cost_grid import CostGrid
 from simkit_navigation.plugins.navigation.costmap_reader import COSTMAP, CostmapReader
 from simkit_navigation.plugins.navigation.grid_planner import GridPlanner, GridPlannerOptions
@@ -26,18 +24,22 @@ from simkit_navigation.plugins.navigation.planar_pose import (
 from simkit_navigation.plugins.navigation.user_classes import ServerPlugin
 
 if TYPE_CHECKING:
-    from simkit.runtime import Model, Simulation
-    from simkit.runtime.communication.action_server import GoalHandle
+    from simkit import Model, Simulation
+    from simkit.extend import GoalHandle
 
 _INVALID_PLANNER: Final = 201  # error codes of nav2_msgs/action/ComputePathToPose
 _TF_ERROR: Final = 202
 _START_OUTSIDE_MAP: Final = 203
 _GOAL_OUTSIDE_MAP: Final = 204
 _NO_VALID_PATH: Final = 208
-_PLANNERS: Final[dict[str, type[Any]]] = {
+_PLANNERS: Final[dict[str, type[GlobalPlanner]]] = {
     "nav2_navfn_planner::NavfnPlanner": GridPlanner,
 }
 _DEFAULT: Final = {"GridBased": "nav2_navfn_planner::NavfnPlanner"}
+
+
+PlannedPath: TypeAlias = Floats | Sequence[Sequence[float]]
+"""Poses of a path: (x, y) or (x, y, yaw) [m, rad] for each pose."""
 
 
 class GlobalPlanner(Protocol):
@@ -51,7 +53,7 @@ class GlobalPlanner(Protocol):
             params: block of parameters with the name of the planner.
         """
 
-    def create_plan(self, grid: CostGrid, start: PlanarPose, goal: PlanarPose) -> Any:
+    def create_plan(self, grid: CostGrid, start: PlanarPose, goal: PlanarPose) -> PlannedPath | None:
         """Return the poses of a path: (x, y) or (x, y, yaw) [m, rad] for each pose; None or empty if there is no path.
 
         Args:
@@ -115,7 +117,7 @@ class PlannerServer(CostmapReader, ServerPlugin):
         self._plan.publish(path)
         goal.succeed({"path": path})
 
-    def _path_for(self, request: Any) -> tuple[Floats, str]:
+    def _path_for(self, request: msgs.ComputePathToPose_Goal) -> tuple[Floats, str]:
         """Return the path of a request, shape (n, 3) [m, rad], and its frame.
 
         Raises:
@@ -143,13 +145,13 @@ class PlannerServer(CostmapReader, ServerPlugin):
             raise _NoPlanError(_NO_VALID_PATH, f"{name} found no path to ({end.x:.4g}, {end.y:.4g})")
         return poses, grid.frame
 
-    def _in_frame_of(self, grid: CostGrid, stamped: Any) -> PlanarPose | None:
+    def _in_frame_of(self, grid: CostGrid, stamped: msgs.PoseStamped) -> PlanarPose | None:
         """Return a stamped pose in the frame of the costmap; None if it is not known there."""
         pose = pose_of_message(stamped.pose)
         frame = look_up(self.sim, grid.frame, stamped.header.frame_id or grid.frame)
         return None if pose is None or frame is None else frame.compose(pose)
 
-    def _on_is_path_valid(self, request: Any) -> dict[str, Any]:
+    def _on_is_path_valid(self, request: msgs.IsPathValid_Request) -> dict[str, object]:
         """Check whether a path touches no obstacle."""
         poses = poses_of_path(request.path)
         if self.grid is None or poses is None or not len(poses):
@@ -158,7 +160,7 @@ class PlannerServer(CostmapReader, ServerPlugin):
         return {"is_valid": not len(invalid), "invalid_pose_indices": invalid.astype(np.int32)}
 
 
-def _as_poses(found: Any, last: float) -> Floats | None:
+def _as_poses(path: PlannedPath | None, last: float) -> Floats | None:
     """Return what a planner has returned as poses, shape (n, 3) [m, rad]; None if there is no path.
 
     Poses without yaw look at their next pose, and the last one has a given yaw.
@@ -167,7 +169,7 @@ def _as_poses(found: Any, last: float) -> Floats | None:
         ValueError: the planner returned something else.
     """
     try:
-        poses = np.array([] if found is None else [tuple(pose) for pose in found], np.float64)
+        poses = np.array([] if path is None else [tuple(pose) for pose in path], np.float64)
     except (TypeError, ValueError):
         poses = np.zeros((1, 0))
     if not len(poses):

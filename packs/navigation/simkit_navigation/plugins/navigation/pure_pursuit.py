@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit import Params
+from simkit.extend import Options, boolean, number
 from simkit.linear_algebra import matmul
-from simkit.params import Params
-from simkit.plugins.options import Options, boolean, number
+from simkit.pose import wrap_angle
 from simkit_navigation.plugins.navigation.cost_grid import CostGrid
 from simkit_navigation.plugins.navigation.planar_pose import Floats, PlanarPose
 
@@ -63,12 +64,12 @@ class PurePursuit:
     def compute_velocity_commands(self, pose: PlanarPose, velocity: Speeds, grid: CostGrid | None) -> Speeds | None:
         """Return forward speed [m/s] and turning rate [rad/s]; None if the robot would touch an obstacle."""
         options = self._options
-        found = self._speeds(pose, velocity)
+        speeds = self._speeds(pose, velocity)
         if options.use_collision_detection and grid is not None:
             time, footprint = options.max_allowed_time_to_collision_up_to_carrot, self._node.footprint
-            if footprint.collides_ahead(grid, pose, found, time):
+            if footprint.collides_ahead(grid, pose, speeds, time):
                 return None
-        return found
+        return speeds
 
     def _speeds(self, pose: PlanarPose, velocity: Speeds) -> Speeds:
         options = self._options
@@ -100,7 +101,7 @@ class PurePursuit:
 
     def _turning(self, angle: float, present: float) -> float:
         """Return the turning rate [rad/s] towards an angle [rad], with limited acceleration and without overshoot."""
-        angle, options = math.remainder(angle, math.tau), self._options
+        angle, options = wrap_angle(angle), self._options
         wanted = math.copysign(
             min(options.rotate_to_heading_angular_vel, math.sqrt(2.0 * options.max_angular_accel * abs(angle)) / 2),
             angle,

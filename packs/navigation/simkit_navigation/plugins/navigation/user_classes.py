@@ -6,11 +6,11 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from simkit.params import Params
+from simkit import Params, Plugin
+from simkit.extend import SharedByCopies
+from simkit.msgs import Message
 from simkit.plugins.attribute_state import copy_attributes, restore_attributes
-from simkit.plugins.base import Plugin
 from simkit.plugins.discovery.user_plugins import find_user_class
-from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit.scene import ScenePlugin
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ class ServerPlugin(Plugin):
         self,
         names: tuple[str, ...],
         defaults: Mapping[str, str],
-        known: Mapping[str, type[Any]],
+        known: Mapping[str, type[object]],
         methods: tuple[str, ...],
         begin: str,
     ) -> None:
@@ -68,7 +68,7 @@ class ServerPlugin(Plugin):
             if callable(getattr(part, begin, None)):
                 getattr(part, begin)(self, block)
 
-    def receive(self, topic: str, type_name: str, parameter: str, callback: Callable[[Any], None]) -> Subscription:
+    def receive(self, topic: str, type_name: str, parameter: str, callback: Callable[[Message], None]) -> Subscription:
         """Call a function with each message of a type; messages of another type are ignored after a warning.
 
         Args:
@@ -79,7 +79,7 @@ class ServerPlugin(Plugin):
         """
         return self.subscribe(topic, partial(self._pass_on, type_name, parameter, callback))
 
-    def _pass_on(self, type_name: str, parameter: str, callback: Callable[[Any], None], message: Any) -> None:
+    def _pass_on(self, type_name: str, parameter: str, callback: Callable[[Message], None], message: Message) -> None:
         if self._once.has_type(message, type_name, parameter):
             callback(message)
 
@@ -88,13 +88,13 @@ class ServerPlugin(Plugin):
         """Objects by name."""
         return self._parts.by_name
 
-    def get_state(self) -> dict[str, Any]:
+    def get_state(self) -> dict[str, object]:
         self._part_states = {
             name: dict(copy_attributes(part, (), self._report_uncopied)) for name, part in self.parts.items()
         }
         return super().get_state()
 
-    def set_state(self, state: Mapping[str, Any]) -> None:
+    def set_state(self, state: Mapping[str, object]) -> None:
         super().set_state(state)
         for name, part in self.parts.items():
             restore_attributes(part, (), self._part_states[name])
@@ -106,8 +106,8 @@ def _split(texts: tuple[str, ...]) -> list[str]:
 
 
 def _user_class(
-    node: Plugin, name: str, wanted: str, known: Mapping[str, type[Any]], block: Params
-) -> type[Any] | None:
+    node: Plugin, name: str, wanted: str, known: Mapping[str, type[object]], block: Params
+) -> type[object] | None:
     allowed = f"file.py:Class, or one of {', '.join(known)}"
     if ":" not in wanted.replace("::", ""):
         node.params.diagnostics.error(

@@ -17,10 +17,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from simkit.diagnostics import did_you_mean
-from simkit.params import Params
+from simkit import Params, msgs
+from simkit.extend import Options, OptionsOf, block, boolean, did_you_mean
 from simkit.plugins.one_time_warnings import are_usable
-from simkit.plugins.options import Options, OptionsOf, block, boolean
 from simkit.plugins.ros_parameter_files import Entry, ParameterFile
 from simkit_control.plugins.ros2_control.control_plugin import ControlOptions, GazeboRosControl
 from simkit_control.plugins.ros2_control.hardware_description import (
@@ -64,10 +63,9 @@ from simkit_robots.plugins.baxter.inverse_kinematics import IK_SERVICE, IK_TYPE,
 from simkit_robots.plugins.baxter.robot_states import BaxterStates, tip_of
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
+    from simkit import Model
+    from simkit.extend import SceneModel, SpecBuilder
     from simkit.msgs import Bool, EndEffectorCommand, Float64, HeadPanCommand, JointCommand
-    from simkit.runtime import Model
-    from simkit.scene import SceneModel
 
 COMMAND_TIMEOUT: Final = 0.2
 """Time after the last command at which an arm leaves the velocity or torque mode [s]."""
@@ -130,29 +128,29 @@ class BaxterControl(GazeboRosControl):
         self._sides = [side for side in SIDES if present.issuperset(limb_joints(side))]
         self._gripper_sides = [side for side in self._sides if finger_joint(side) in present]
         self._has_head = "head_pan" in present
-        own = [joint for side in self._sides for joint in limb_joints(side)] + ["head_pan"] * self._has_head
-        own += [name for side in self._gripper_sides for name in _fingers(side) if name in present]
+        joint_names = [joint for side in self._sides for joint in limb_joints(side)] + ["head_pan"] * self._has_head
+        joint_names += [name for side in self._gripper_sides for name in _fingers(side) if name in present]
         if not self._sides:
             message = f"model {scene.scoped!r} has no arm of Baxter: its joints have other names"
             params.warning("SK-CONTROL-008", message, f"an arm needs the joints {', '.join(limb_joints('left'))}")
         described = scene.controls or scene.transmissions or params.has("ros2_control")
         components = describe_hardware(scene, params) if described else []
-        components = [replace(c, joints=tuple(j for j in c.joints if j.name not in own)) for c in components]
-        initial = self._initial_positions(scene, own)
+        components = [replace(c, joints=tuple(j for j in c.joints if j.name not in joint_names)) for c in components]
+        initial = self._initial_positions(scene, joint_names)
         joints = tuple(
             JointDescription(name, MOTION_INTERFACES, MOTION_INTERFACES, initial=initial.get(name, math.nan))
-            for name in own
+            for name in joint_names
         )
         return [*components, ComponentDescription(scene.name, "system", "baxter", joints)]
 
     def _initial_positions(self, scene: SceneModel, own: Sequence[str]) -> dict[str, float]:
         """Return the positions in `<initial_positions>` [rad or m] by joint."""
-        found = {}
+        positions = {}
         scenes = {joint.name: joint for joint in scene.all_joints()}
         for element in self.params.block("initial_positions").children:
             text = element.value
             if element.name in own:
-                found[element.name] = parse_initial_position(
+                positions[element.name] = parse_initial_position(
                     text, scenes[element.name], element, self.params.diagnostics
                 )
             else:
@@ -160,7 +158,7 @@ class BaxterControl(GazeboRosControl):
                 message = f"<initial_positions> names joint {element.name!r}, which Baxter does not have"
                 self.params.diagnostics.warning("SK-CONTROL-008", message, element.where, near)
         self.params.block("initial_positions").mark_all_read()
-        return found
+        return positions
 
     def read_files(self, params: Params, builder: SpecBuilder, *, has_other_files: bool) -> Iterator[ParameterFile]:
         """Yield the declarations of the robot's controllers, and the parameter files that the element names."""
@@ -178,16 +176,16 @@ class BaxterControl(GazeboRosControl):
 
     def read_pids(self) -> Mapping[str, Mapping[str, PidGains]]:
         """Return the gains in the controllers' parameters; joints without gains have servos."""
-        found = {joint: dict(gains) for joint, gains in super().read_pids().items()}
-        own = self.files.of_node(self.ros.namespace)
-        for name, entry in ((own.below or {}) if own is not None else {}).items():
+        gains_by_joint = {joint: dict(gains) for joint, gains in super().read_pids().items()}
+        of_node = self.files.of_node(self.ros.namespace)
+        for name, entry in ((of_node.below or {}) if of_node is not None else {}).items():
             interface = _GAINS.get(kind_of(name))
             if interface is not None and name in self._own_controllers:
                 for element in entry.block(name, self.params.diagnostics).block("joints").children:
                     joint = element.text("joint", "")
                     if element.has("pid") and joint in self.hardware.joints:
-                        found.setdefault(joint, {})[interface] = read_pid_gains(element.block("pid"))
-        return found
+                        gains_by_joint.setdefault(joint, {})[interface] = read_pid_gains(element.block("pid"))
+        return gains_by_joint
 
     def controllers_to_start(self, declared: Mapping[str, str]) -> list[str]:
         """Return the controllers that no enabling starts; of other controllers in files, only the joint states'."""
@@ -216,7 +214,7 @@ class BaxterControl(GazeboRosControl):
 
     def _open_topics(self) -> None:
         for side in self._sides:
-            limb: dict[str, tuple[str, Callable[[str, Any], None]]] = {
+            limb: dict[str, tuple[str, Callable[[str, msgs.Message], None]]] = {
                 "joint_command": (JOINT_COMMAND, self._on_joint_command),
                 "joint_command_timeout": (FLOAT, self._on_timeout),
                 "set_speed_ratio": (FLOAT, self._on_speed_ratio),

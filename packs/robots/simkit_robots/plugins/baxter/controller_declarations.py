@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final
 
-from simkit.diagnostics import Where
-from simkit.plugins.endpoints import Endpoint, acts, listens, offers, publishes
+from simkit.extend import Where, acts, listens, offers, publishes
+from simkit.plugins.endpoints import Endpoint
 from simkit.plugins.ros_parameter_files import Entry
 from simkit_robots.controllers.baxter_controllers import limb_joints
 from simkit_robots.plugins.baxter.inverse_kinematics import IK_SERVICE, IK_TYPE

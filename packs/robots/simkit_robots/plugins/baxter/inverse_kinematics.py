@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING, Final
 import mujoco
 import numpy as np
 
-from simkit.linear_algebra import matmul, norm, solve
-from simkit.plugins.not_deep_copied import SharedByCopies
-from simkit.pose import Pose, Vector
+from simkit import Pose
+from simkit.extend import SharedByCopies, Vector
+from simkit.linear_algebra import norm
+from simkit.plugins.joints.inverse_kinematics import PoseError, find_positions
 from simkit_robots.controllers.baxter_controllers import limb_joints
 
 if TYPE_CHECKING:
+    from simkit import Link, Model, Simulation
     from simkit.msgs import PoseStamped, SolvePositionIK_Request
-    from simkit.runtime import Link, Model, Simulation
     from simkit_control.plugins.ros2_control.hardware_joint import HardwareJoint
 
 IK_SERVICE: Final = "ExternalTools/{}/PositionKinematicsNode/IKService"
@@ -64,8 +65,8 @@ class ArmInverseKinematics(SharedByCopies):
             target = self._target(stamped) if index < _MOST_POSES else None
             seed = request.seed_angles[index] if index < len(request.seed_angles) else None
             user = {} if seed is None else dict(zip(map(str, seed.name), map(float, seed.position), strict=False))
-            found, kind = self._first_solution(target, self._seeds(user, int(request.seed_mode)))
-            angles.append({} if found is None else {"name": list(self._names), "position": found})
+            solution, kind = self._first_solution(target, self._seeds(user, int(request.seed_mode)))
+            angles.append({} if solution is None else {"name": list(self._names), "position": solution})
             kinds.append(kind)
         return {"joints": angles, "is_valid": [kind > 0 for kind in kinds], "result_type": kinds}
 
@@ -74,9 +75,9 @@ class ArmInverseKinematics(SharedByCopies):
         if target is None:
             return None, 0
         for kind, seed in seeds:
-            found = self._solve(target, seed)
-            if found is not None:
-                return found, kind
+            solution = self._solve(target, seed)
+            if solution is not None:
+                return solution, kind
         return None, 0
 
     def _target(self, stamped: PoseStamped) -> Pose | None:
@@ -111,9 +112,9 @@ class ArmInverseKinematics(SharedByCopies):
         bindings = [names.joint(joint.scoped) for joint in self._joints]
         qpos, dofs = [b.qpos[0] for b in bindings], [b.dofs[0] for b in bindings]
         tip, jacobian = names.link(self._tip.scoped), np.zeros((6, model.nv))
-        angles = np.clip(seed, self._low, self._high)
         wanted = np.array([target.transform(axis) for axis in np.eye(3)]) - target.position
-        for _ in range(_STEPS):
+
+        def pose_error(angles: Vector) -> PoseError:
             data.qpos[qpos] = angles
             mujoco.mj_kinematics(model, data)
             mujoco.mj_comPos(model, data)
@@ -121,10 +122,16 @@ class ArmInverseKinematics(SharedByCopies):
             axes = np.array([pose.transform(axis) for axis in np.eye(3)]) - pose.position
             turn = 0.5 * np.cross(axes, wanted).sum(axis=0)
             error = np.concatenate([np.asarray(target.position) - pose.position, turn])
-            if np.abs(error).max() < _PRECISION and np.einsum("ij,ij", axes, wanted) > 0.0:
-                return angles
             mujoco.mj_jac(model, data, jacobian[:3], jacobian[3:], np.array(pose.position, float), tip.body)
-            own = jacobian[:, dofs]
-            step = matmul(own.T, solve(matmul(own, own.T) + _DAMPING * np.eye(6), error))
-            angles = np.clip(angles + step * min(1.0, _LONGEST_STEP / np.abs(step).max()), self._low, self._high)
-        return None
+            is_reached = np.abs(error).max() < _PRECISION and np.einsum("ij,ij", axes, wanted) > 0.0
+            return PoseError(error, jacobian[:, dofs], bool(is_reached))
+
+        return find_positions(
+            pose_error,
+            np.clip(seed, self._low, self._high),
+            self._low,
+            self._high,
+            damping=lambda _: _DAMPING,
+            longest_step=_LONGEST_STEP,
+            steps=_STEPS,
+        )

@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING, Any, Final, Protocol
 import mujoco
 import numpy as np
 
-from simkit import msgs
+from simkit import Pose, msgs
+from simkit.extend import SharedByCopies, Vector
 from simkit.matrix_decompositions import lstsq
-from simkit.plugins.not_deep_copied import SharedByCopies
-from simkit.pose import Pose, Vector
 from simkit_control.plugins.ros2_control.gravity_efforts import GravityEfforts
 from simkit_control.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION, VELOCITY
 from simkit_robots.controllers.baxter_controllers import (
@@ -26,8 +25,9 @@ from simkit_robots.controllers.baxter_controllers import (
 )
 
 if TYPE_CHECKING:
-    from simkit.msgs.message_types import Message
-    from simkit.runtime import Link, Model, Publisher, Simulation
+    from simkit import Link, Model, Simulation
+    from simkit.msgs import Message
+    from simkit.runtime import Publisher
     from simkit_control.plugins.ros2_control.controller_manager import ControllerManager
     from simkit_control.plugins.ros2_control.hardware import Hardware
 

@@ -8,24 +8,27 @@ from __future__ import annotations
 
 import abc
 import math
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit import msgs
-from simkit.params import Params
-from simkit.plugins.base import ModelPlugin, SensorPlugin
-from simkit.plugins.endpoints import publishes
-from simkit.plugins.find_entities import SensorFrameOptions, find_link, find_named_joint
-from simkit.plugins.options import Options, OptionsOf, number, text
-from simkit.plugins.publish_on_demand import publish_while_subscribed
+from simkit import ModelPlugin, Params, SensorPlugin, msgs
+from simkit.extend import (
+    Options,
+    OptionsOf,
+    find_link,
+    find_named_joint,
+    number,
+    publish_while_subscribed,
+    publishes,
+    text,
+)
+from simkit.plugins.find_entities import SensorFrameOptions
 from simkit.pose import quat_conjugate, quat_rotate
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.runtime import Model
-    from simkit.scene import SceneModel
-    from simkit.sensors.inertial.imu_measurement import ImuMeasurement
+    from simkit import Model
+    from simkit.extend import SceneModel, Sensor, SpecBuilder
 
 HAZARD: Final = "irobot_create_msgs/msg/HazardDetection"
 INTENSITY: Final = "irobot_create_msgs/msg/IrIntensity"
@@ -56,7 +59,7 @@ class CreateSensor(SensorPlugin):
     kinds: tuple[str, ...]
     message_type: str
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Sensor, params: Params) -> None:
         self._frame = self.options.read_all().frame_of(parent)
         if parent.kind not in self.kinds:
             self.refuse(parent, self.kinds[0])
@@ -76,8 +79,8 @@ class CreateSensor(SensorPlugin):
         if scan is None:
             return math.inf
         ranges = np.asarray(scan.ranges)
-        found = ranges[np.isfinite(ranges)]
-        return float(min(found.min(initial=scan.range_max), scan.range_max))
+        finite = ranges[np.isfinite(ranges)]
+        return float(min(finite.min(initial=scan.range_max), scan.range_max))
 
 
 class CreateBumper(CreateSensor):
@@ -97,14 +100,14 @@ class CreateBumper(CreateSensor):
         if contacts is None:
             return
         into_robot = self.sim.model(self.scoped.split("::")[0]).pose.inverse()
-        found: set[str] = set()
+        zones: set[str] = set()
         for contact in contacts.contacts:
             for point in contact.positions:
                 x, y, _ = into_robot.transform((point.x, point.y, point.z))
                 angle = math.atan2(y, x)
-                found.update(name for low, high, name in _ZONES if low <= angle < high)
+                zones.update(name for low, high, name in _ZONES if low <= angle < high)
         for _, _, name in _ZONES:
-            if name in found:
+            if name in zones:
                 self._out.publish(msgs.make(HAZARD, header=msgs.header(self.sim.time_ns, name), type=_BUMP))
 
 
@@ -154,7 +157,7 @@ class CreateImu(CreateSensor):
     filenames = ("libgazebo_ros_create_imu.so",)
     kinds, message_type = ("imu",), IMU
 
-    def load(self, parent: ImuMeasurement, params: Params) -> None:
+    def load(self, parent: Sensor, params: Params) -> None:
         super().load(parent, params)
         if hasattr(parent, "set_orientation_reference"):
             parent.frame_id = self._frame

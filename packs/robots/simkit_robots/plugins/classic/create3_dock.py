@@ -9,19 +9,22 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final
 
-from simkit import msgs
-from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
-from simkit.plugins.endpoints import publishes
-from simkit.plugins.find_entities import find_named_link
-from simkit.plugins.options import Options, OptionsOf, number, text, without_effect
-from simkit.plugins.publish_on_demand import publish_while_subscribed, watch_while_subscribed
+from simkit import ModelPlugin, Params, msgs
+from simkit.extend import (
+    Options,
+    OptionsOf,
+    find_named_link,
+    number,
+    publish_while_subscribed,
+    publishes,
+    text,
+    without_effect,
+)
+from simkit.plugins.publish_on_demand import watch_while_subscribed
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.pose import Pose
-    from simkit.runtime import Model
-    from simkit.scene import SceneModel
+    from simkit import Model, Pose
+    from simkit.extend import SceneModel, SpecBuilder
 
 OPCODE: Final = "irobot_create_msgs/msg/IrOpcode"
 STATUS: Final = "irobot_create_msgs/msg/DockStatus"
@@ -165,9 +168,9 @@ class CreateDockingStatus(CreateDockPlugin):
             return None
         (distance, direction), (_, bearing) = places
         aligned = abs(direction) < _DOCKED_ANGLE and abs(bearing) < _DOCKED_ANGLE
-        own = self.scoped.split("::")[0]
+        model_name = self.scoped.split("::")[0]
         plugins = (p for p in self.sim.engine.structure.all_plugins() if isinstance(p, CreateIrOpcode))
-        is_visible = any(p.signals() for p in plugins if p.scoped.split("::")[0] == own)
+        is_visible = any(p.signals() for p in plugins if p.scoped.split("::")[0] == model_name)
         return is_visible, distance < _DOCKED_DISTANCE and aligned
 
     def begin(self) -> None:

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit import Params
 from simkit.elementary_functions import exp
-from simkit.params import LARGEST, Params
-from simkit.pose import Vector
+from simkit.extend import LARGEST, Vector
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.random_streams import RandomStream
@@ -82,8 +82,8 @@ def _axes(params: Params, name: str, size: int, default: float) -> Vector:
     child = params.child(name)
     least = -LARGEST if name.lower().endswith("offset") else 0.0
     if size > 1 and child is not None and len(child.value.split()) == size:
-        found = np.array(params.vector(name, size, (default,) * size))
-        if found.min() < least:
+        values = np.array(params.vector(name, size, (default,) * size))
+        if values.min() < least:
             child.error("SK-PARAM-002", f"<{name}>: found {child.value!r}; expected numbers of at least 0")
-        return found
+        return values
     return np.full(size, params.number(name, default, minimum=least, maximum=LARGEST))

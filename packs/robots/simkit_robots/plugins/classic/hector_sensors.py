@@ -9,24 +9,33 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit import msgs
+from simkit import ModelPlugin, Params, SensorPlugin, msgs
+from simkit.extend import (
+    Options,
+    OptionsOf,
+    Vector,
+    boolean,
+    find_named_link,
+    integer,
+    number,
+    offers,
+    publish_while_subscribed,
+    publishes,
+    text,
+    vector3,
+    without_effect,
+)
 from simkit.linear_algebra import matmul, norm
-from simkit.params import Params
-from simkit.plugins.base import ModelPlugin, SensorPlugin
-from simkit.plugins.endpoints import offers, publishes
-from simkit.plugins.find_entities import find_named_link
-from simkit.plugins.options import Options, OptionsOf, boolean, integer, number, text, vector3, without_effect
-from simkit.plugins.publish_on_demand import count_instants, publish_while_subscribed
-from simkit.pose import Vector, quat_multiply
+from simkit.plugins.publish_on_demand import count_instants
+from simkit.pose import quat_multiply
 from simkit.scene import SphericalCoordinates
 from simkit.sensors.environment.geodesy import WorldOnPlanet
 from simkit_robots.plugins.classic.hector_error import HectorError
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.runtime import Model
+    from simkit import Model
+    from simkit.extend import SceneModel, SpecBuilder
     from simkit.runtime.communication.publisher import Publisher
-    from simkit.scene import SceneModel
     from simkit.sensors.rays.lidar import Lidar
 
 IMU: Final = "sensor_msgs/msg/Imu"
@@ -159,8 +168,8 @@ class HectorImu(HectorSensor):
         attitude = quat_multiply((math.cos(turn / 2), 0.0, 0.0, math.sin(turn / 2)), link.pose.quaternion)
         w, x, y, z = quat_multiply(attitude, _tilt(gravity, acceleration_error)).tolist()
         noise = self._acceleration.noise**2
-        own = float(matmul(gravity, gravity))
-        spread = (noise[0] / own, noise[1] / own) if own > 0 else (-1.0, -1.0)
+        square = float(matmul(gravity, gravity))
+        spread = (noise[0] / square, noise[1] / square) if square > 0 else (-1.0, -1.0)
         return msgs.make(
             IMU,
             header=msgs.header(self.sim.time_ns, self._frame),
@@ -207,14 +216,14 @@ class HectorGps(HectorSensor):
     def load(self, parent: Model, params: Params) -> None:
         super().load(parent, params)
         options = self.options
-        own = self.sim.world.spherical_coordinates or SphericalCoordinates()
+        reference = self.sim.world.spherical_coordinates or SphericalCoordinates()
         has = params.has
         self._place = replace(
-            own,
-            latitude=math.radians(options.latitude) if has("referenceLatitude") else own.latitude,
-            longitude=math.radians(options.longitude) if has("referenceLongitude") else own.longitude,
-            heading=math.pi / 2 - math.radians(options.heading) if has("referenceHeading") else own.heading,
-            elevation=options.altitude if has("referenceAltitude") else own.elevation,
+            reference,
+            latitude=math.radians(options.latitude) if has("referenceLatitude") else reference.latitude,
+            longitude=math.radians(options.longitude) if has("referenceLongitude") else reference.longitude,
+            heading=math.pi / 2 - math.radians(options.heading) if has("referenceHeading") else reference.heading,
+            elevation=options.altitude if has("referenceAltitude") else reference.elevation,
         )
         self._planet = WorldOnPlanet(self._place)
         self._position, self._velocity = self.error(""), self.error("velocity")
@@ -277,8 +286,8 @@ class HectorMagnetic(HectorSensor):
     def load(self, parent: Model, params: Params) -> None:
         super().load(parent, params)
         options, place = self.options, self.sim.world.spherical_coordinates
-        own = math.pi / 2 - (0.0 if place is None else place.heading)
-        heading = math.radians(options.heading) if params.has("referenceHeading") else own
+        reference = math.pi / 2 - (0.0 if place is None else place.heading)
+        heading = math.radians(options.heading) if params.has("referenceHeading") else reference
         turn, down = heading - math.radians(options.declination), math.radians(options.inclination)
         across = math.cos(down)
         field = np.array((across * math.cos(turn), across * math.sin(turn), -math.sin(down)))
@@ -347,5 +356,5 @@ def _tilt(gravity: Vector, error: Vector) -> Vector:
         return np.array((1.0, 0.0, 0.0, 0.0))
     half = np.array((scale + float(matmul(gravity, measured)), *np.cross(gravity, measured)))
     length = norm(half)
-    found: Vector = half / length if length > 0 else np.array((0.0, 1.0, 0.0, 0.0))
-    return found
+    tilt: Vector = half / length if length > 0 else np.array((0.0, 1.0, 0.0, 0.0))
+    return tilt

@@ -11,8 +11,9 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from simkit.plugins.options import Options, number, text
-from simkit.pose import Pose
+from simkit import Pose
+from simkit.extend import Options, number, text
+from simkit.pose import wrap_angle
 
 RECEIVERS: Final = (-math.pi / 3, 0.0, math.pi / 3)
 """Directions of the right, the middle and the left receiver about the robot's z axis [rad]."""
@@ -46,12 +47,12 @@ def signals(robot: Pose, options: KobukiDockOptions) -> list[int]:
         options: ranges and angles of the station.
     """
     heading = float(robot.rpy[2])
-    found = []
+    received = []
     for direction in RECEIVERS:
         x, y, _ = robot.transform((_RADIUS * math.cos(direction), _RADIUS * math.sin(direction), 0.0)).tolist()
-        bearing = math.remainder(math.atan2(-y, -x) - heading - direction, 2 * math.pi)
-        found.append(_signal(math.hypot(x, y), math.atan2(y, x), options) if abs(bearing) <= _VIEW else 0)
-    return found
+        bearing = wrap_angle(math.atan2(-y, -x) - heading - direction)
+        received.append(_signal(math.hypot(x, y), math.atan2(y, x), options) if abs(bearing) <= _VIEW else 0)
+    return received
 
 
 def _signal(distance: float, angle: float, options: KobukiDockOptions) -> int:
@@ -76,6 +77,6 @@ def is_docked(robot: Pose) -> bool:
         robot: pose of the robot in the frame of the station.
     """
     x, y, _ = robot.position.tolist()
-    error = math.remainder(float(robot.rpy[2]) - math.pi, 2 * math.pi)
+    error = wrap_angle(float(robot.rpy[2]) - math.pi)
     largest, angle = _ASIDE
     return abs(y) <= largest and abs(error) <= angle and x - _REACH <= _GAP

@@ -10,25 +10,22 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit import Params
+from simkit.extend import boolean, listens, number, publishes, text
 from simkit.float_sum import float_sum
-from simkit.params import Params
 from simkit.plugins.classic.diff_drive import CommonDiffDriveOptions, GazeboRosDiffDrive, Pair
-from simkit.plugins.drives.odometry import COMMAND_TYPES, BodyTwist, DeadReckoning
-from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS
-from simkit.plugins.endpoints import listens, publishes
+from simkit.plugins.drives.odometry import COMMAND_TYPES, DeadReckoning
+from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, BodyTwist
 from simkit.plugins.find_entities import find_joint
 from simkit.plugins.joint_states import JOINT_STATE
-from simkit.plugins.options import boolean, number, text
 from simkit_robots.plugins.classic.kobuki_sensors import PACKAGES, PREFIX, KobukiSensorOptions, KobukiSensors
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from simkit.compiler import SpecBuilder
+    from simkit import Model, Pose
+    from simkit.extend import SceneModel, SpecBuilder
     from simkit.msgs import Empty, MotorPower, Twist, TwistStamped
-    from simkit.pose import Pose
-    from simkit.runtime import Model
-    from simkit.scene import SceneModel
 
 _EMPTY: Final = "std_msgs/msg/Empty"
 _MOTOR_POWER: Final = tuple(f"{package}/msg/MotorPower" for package in PACKAGES)

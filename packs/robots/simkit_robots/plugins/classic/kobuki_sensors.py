@@ -15,26 +15,22 @@ from __future__ import annotations
 import abc
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 
-from simkit import msgs
-from simkit.diagnostics import did_you_mean
-from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
-from simkit.plugins.endpoints import publishes
+from simkit import ModelPlugin, Params, msgs
+from simkit.extend import choice, did_you_mean, number, publish_while_subscribed, publishes, text
 from simkit.plugins.find_entities import find_named_sensor
-from simkit.plugins.options import choice, number, text
-from simkit.plugins.publish_on_demand import publish_while_subscribed, watch_while_subscribed
+from simkit.plugins.publish_on_demand import watch_while_subscribed
+from simkit.pose import wrap_angle
 from simkit.runtime.contact.collision_contacts import Bools, collision_table, find_contacts
 from simkit_robots.plugins.classic.kobuki_docking import CHARGING, RECEIVERS, KobukiDockOptions, is_docked, signals
 
 if TYPE_CHECKING:
-    from simkit.pose import Pose
-    from simkit.runtime import Model, Publisher
-    from simkit.scene import SceneModel
-    from simkit.sensors.base import Sensor
+    from simkit import Model, Pose
+    from simkit.extend import SceneModel, Sensor
+    from simkit.runtime import Publisher
     from simkit.sensors.rays.lidar_measurement import LidarMeasurement
 
 PACKAGES: Final = ("kobuki_ros_interfaces", "kobuki_msgs")
@@ -203,12 +199,12 @@ class KobukiSensors(ModelPlugin):
         direction of its normal, and only at the height of the bumper.
         """
         pressed = [False] * 3
-        found = None if self._bumper is None else self._bumper.latest
-        if found is None or not found.contacts:
+        message = None if self._bumper is None else self._bumper.latest
+        if message is None or not message.contacts:
             return pressed
         pose = self._model.pose
         heading, height = float(pose.rpy[2]), float(pose.position[2])
-        for contact in found.contacts:
+        for contact in message.contacts:
             for point, normal in zip(contact.positions, contact.normals, strict=True):
                 if not _BUMPER_HEIGHTS[0] <= point.z - height <= _BUMPER_HEIGHTS[1]:
                     continue
@@ -285,7 +281,7 @@ def bumper_zone(angle: float) -> int | None:
 
     0 is left, 1 is the middle and 2 is right, as in `BumperEvent`.
     """
-    angle = math.remainder(angle, 2 * math.pi)
+    angle = wrap_angle(angle)
     if abs(angle) > math.pi / 2:
         return None
     if abs(angle) <= _ZONE:
@@ -304,7 +300,7 @@ def _bits(states: Sequence[bool]) -> int:
     return sum(1 << place for place, state in enumerate(reversed(states)) if state)
 
 
-def _first_range(sensor: Any) -> float | None:
+def _first_range(sensor: Sensor | None) -> float | None:
     """Return the first ray's range [m], at most the maximum range; None before the first reading."""
     scan = None if sensor is None else sensor.latest
     if scan is None or not len(scan.ranges):

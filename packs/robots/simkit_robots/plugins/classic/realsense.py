@@ -5,16 +5,13 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from simkit.diagnostics import did_you_mean
-from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
+from simkit import ModelPlugin, Params
+from simkit.extend import Options, OptionsOf, boolean, did_you_mean, number, publishes, text
 from simkit.plugins.classic import camera_settings
-from simkit.plugins.endpoints import publishes
-from simkit.plugins.options import Options, OptionsOf, boolean, number, text
 
 if TYPE_CHECKING:
+    from simkit import Model
     from simkit.msgs import Image
-    from simkit.runtime import Model
     from simkit.sensors.cameras.rgbd_camera import RgbdCamera
 
 _STREAMS = {"color": "color", "infrared1": "ired1", "infrared2": "ired2", "depth": "depth"}

@@ -6,8 +6,8 @@ import abc
 import socket
 from typing import TYPE_CHECKING
 
+from simkit.extend import SharedByCopies
 from simkit.interrupts import stop_requests
-from simkit.plugins.not_deep_copied import SharedByCopies
 from simkit_water_and_air.plugins.autopilots.bounded_wait import WaitLimit
 
 if TYPE_CHECKING:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from simkit.plugins.base import ModelPlugin
+from simkit import ModelPlugin
 from simkit.plugins.joints.joint_commands import ControlledJoints
 
 if TYPE_CHECKING:
@@ -65,11 +65,11 @@ class AutopilotPlugin(ControlledJoints, ModelPlugin):
 
     # ------------------------------------------------------------------ snapshots
 
-    def get_state(self) -> dict[str, Any]:
+    def get_state(self) -> dict[str, object]:
         """Return the state of the plugin; the connection is not part of it."""
         return {name: value for name, value in super().get_state().items() if name not in _KEPT}
 
-    def set_state(self, state: Mapping[str, Any]) -> None:
+    def set_state(self, state: Mapping[str, object]) -> None:
         """Restore a state; the autopilot then receives the state of the vehicle at the new time."""
         self._connection.break_time()
         super().set_state({**state, **{name: value for name, value in vars(self).items() if name in _KEPT}})

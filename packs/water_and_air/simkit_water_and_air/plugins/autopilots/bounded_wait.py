@@ -9,9 +9,9 @@ import time
 from collections.abc import Sequence
 from typing import Final
 
+from simkit import Params
+from simkit.extend import Options, number
 from simkit.interrupts import stop_requests
-from simkit.params import Params
-from simkit.plugins.options import Options, number
 
 ADDRESS_VARIABLE: Final = "SIMKIT_AUTOPILOT_ADDRESS"
 """Environment variable with the address at which simkit listens for autopilots."""
@@ -67,8 +67,8 @@ class WaitLimit:
 
 def _with_data(sockets: Sequence[socket.socket], seconds: float) -> list[socket.socket]:
     with _Selector() as selector:
-        for one in sockets:
-            selector.register(one, selectors.EVENT_READ, one)
+        for connection in sockets:
+            selector.register(connection, selectors.EVENT_READ, connection)
         return [key.data for key, _ in selector.select(seconds)]
 
 

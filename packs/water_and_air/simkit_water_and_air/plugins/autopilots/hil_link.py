@@ -108,10 +108,10 @@ class HilLink(AutopilotLink):
         if self._is_lock_step and self._is_answer_due:
             seconds = self._timeout if self._has_commands else self._pace
         limit = self.limit(seconds)
-        found = self._read(limit)
-        if found is None and self._has_commands and seconds and self._peer is not None and not limit.is_stopped:
+        controls = self._read(limit)
+        if controls is None and self._has_commands and seconds and self._peer is not None and not limit.is_stopped:
             self.lose(f"no {CONTROLS} for {self._timeout:g} s")
-        return found
+        return controls
 
     def _accept(self) -> None:
         if self._socket is None:

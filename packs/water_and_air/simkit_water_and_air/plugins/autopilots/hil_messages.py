@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit.extend import Vector
 from simkit.linear_algebra import matmul, norm
-from simkit.pose import Vector, quat_multiply
+from simkit.pose import quat_multiply
 from simkit_water_and_air.plugins.autopilots.mavlink import Value
 
 if TYPE_CHECKING:
-    from simkit.runtime import Link
+    from simkit import Link
 
 _MOTION, _FIELD, _PRESSURE = 0b111111, 0b111 << 6, 0b1101 << 9  # bits of fields_updated
 _NED_OF_ENU: Final = (0.0, math.sqrt(0.5), math.sqrt(0.5), 0.0)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
-    from simkit.plugins.joints.joint_axis import JointAxis
+    from simkit.extend import JointAxis
     from simkit.plugins.joints.pid import Pid
 
 ChannelKind = Literal["velocity", "position", "effort"]

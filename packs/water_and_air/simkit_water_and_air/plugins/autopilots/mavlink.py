@@ -110,12 +110,12 @@ def checksum(data: bytes, crc: int = 0xFFFF) -> int:
 
 def _parse(fields: str) -> list[tuple[str, str, int]]:
     """Return type, name and number of values of each field; the number is 0 for a single value."""
-    found = []
+    layout = []
     for field in filter(None, fields.split(", ")):
         kind, name = field.split()
         kind, _, count = kind.rstrip("]").partition("[")
-        found.append((kind, name, int(count or 0)))
-    return found
+        layout.append((kind, name, int(count or 0)))
+    return layout
 
 
 def _layout(name: str) -> _Layout:
@@ -147,8 +147,8 @@ def encode(name: str, fields: Mapping[str, Value], sequence: int, system: int = 
     layout = _LAYOUTS[name]
     values: list[float] = []
     for field, letter, count in layout.fields:
-        given = fields.get(field, (0,) * count if count else 0)
-        listed = list(given) if isinstance(given, Sequence) else [given]
+        field_value = fields.get(field, (0,) * count if count else 0)
+        listed = list(field_value) if isinstance(field_value, Sequence) else [field_value]
         values += listed if letter == "f" else [_integer(value, letter) for value in listed]
     payload = layout.payload.pack(*values).rstrip(b"\0") or b"\0"  # zeros at the end are not sent
     head = struct.pack("<BBBBBB", len(payload), 0, 0, sequence & 0xFF, system, component)

@@ -43,11 +43,11 @@ def decode_servo_packet(data: bytes, channels: int) -> ServoPacket | str:
     magic, layout = _LAYOUTS[channels]
     if len(data) < 2:
         return f"found {len(data)} bytes; expected {layout.size}"
-    found = int.from_bytes(data[:2], "little")
-    if found != magic:
-        other = next((n for n, (number, _) in _LAYOUTS.items() if number == found), None)
+    number_found = int.from_bytes(data[:2], "little")
+    if number_found != magic:
+        other = next((n for n, (number, _) in _LAYOUTS.items() if number == number_found), None)
         named = f" (of packets with {other} channels)" if other else ""
-        return f"found the magic number {found}{named}; expected {magic}"
+        return f"found the magic number {number_found}{named}; expected {magic}"
     if len(data) != layout.size:
         return f"found {len(data)} bytes; expected {layout.size}"
     _, rate, frame, *pulse_widths = layout.unpack(data)

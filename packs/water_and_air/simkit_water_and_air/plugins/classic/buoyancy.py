@@ -7,18 +7,15 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
-from simkit.plugins.find_entities import find_link
-from simkit.plugins.options import Options, OptionsOf, blocks, number, text, vector3
+from simkit import ModelPlugin, Params
+from simkit.extend import Options, OptionsOf, blocks, find_link, number, text, vector3
 from simkit_water_and_air.plugins.fluids.buoyant_force import Fluid
 from simkit_water_and_air.plugins.fluids.collision_volumes import Hull
 from simkit_water_and_air.plugins.fluids.floating_links import BuoyancyBase
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.runtime import Model
-    from simkit.scene import SceneModel
+    from simkit import Model
+    from simkit.extend import SceneModel, SpecBuilder
 
 WATER: Final = 999.1026
 """Density of water at 15 °C [kg/m³]."""

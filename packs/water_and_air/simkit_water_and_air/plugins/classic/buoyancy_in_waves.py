@@ -11,18 +11,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
-from simkit.plugins.find_entities import find_named_link
-from simkit.plugins.options import Options, OptionsOf, blocks, number, text, vector3
-from simkit.pose import Vector
+from simkit import ModelPlugin, Params
+from simkit.extend import Options, OptionsOf, Vector, blocks, find_named_link, number, text, vector3
 from simkit_water_and_air.plugins.classic.ocean_waves import waves_of
 from simkit_water_and_air.plugins.fluids.link_forces import PushedLinks, cross, moving_data
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.runtime import Model
-    from simkit.scene import SceneModel
+    from simkit import Model
+    from simkit.extend import SceneModel, SpecBuilder
 
 
 class FloatingLinkOptions(Options):

@@ -7,19 +7,13 @@ difference: the sensors are sent after a step, not before the next one. Commands
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 
-from simkit import msgs
-from simkit.linear_algebra import matmul
-from simkit.msgs.topic_names import valid_topic
-from simkit.params import Params
-from simkit.plugins.endpoints import publishes
-from simkit.plugins.joints.joint_axis import JointAxis
-from simkit.plugins.joints.joint_commands import DOUBLE
-from simkit.plugins.joints.pid import Pid
-from simkit.plugins.options import (
+from simkit import Params, msgs
+from simkit.extend import (
+    JointAxis,
     Options,
     OptionsOf,
     block,
@@ -28,9 +22,14 @@ from simkit.plugins.options import (
     choice,
     integer,
     number,
+    publishes,
     text,
     without_effect,
 )
+from simkit.linear_algebra import matmul
+from simkit.msgs import valid_topic
+from simkit.plugins.joints.joint_commands import DOUBLE
+from simkit.plugins.joints.pid import Pid
 from simkit.sensors.environment.geodesy import WorldOnPlanet
 from simkit_water_and_air.plugins.autopilots.autopilot_plugin import AutopilotPlugin
 from simkit_water_and_air.plugins.autopilots.bounded_wait import ConnectionOptions, listen_address
@@ -43,17 +42,19 @@ from simkit_water_and_air.plugins.classic.px4_sensors import (
     Px4Gps,
     Px4Imu,
     Px4Magnetometer,
-    Px4Sensor,
     find_sensor_plugin,
     home_of,
 )
 from simkit_water_and_air.plugins.gz.multicopter_motor_model import MulticopterMotorModel
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.runtime import Model
+    from collections.abc import Mapping
+
+    from simkit import Model
+    from simkit.extend import SceneModel, SpecBuilder, Vector
     from simkit.runtime.communication.publisher import Publisher
-    from simkit.scene import SceneModel
+    from simkit_water_and_air.plugins.autopilots.mavlink import Value
+    from simkit_water_and_air.plugins.classic.px4_sensors import AnySensor
 
 _CHANNELS: Final = 16
 _ARMED: Final = 128  # flag MAV_MODE_FLAG_SAFETY_ARMED
@@ -137,8 +138,8 @@ class GazeboMavlinkInterface(AutopilotPlugin):
             params.child(element)
         self._place = listen_address(options.address, params, "mavlink_addr"), options.port
         if options.serial or options.hil_mode or (params.has("use_tcp") and not options.use_tcp):
-            found = "a serial port" if options.serial else "UDP" if not options.hil_mode else "<hil_mode>"
-            message = f"{found} is not supported; simkit waits for a TCP connection of PX4"
+            choice = "a serial port" if options.serial else "UDP" if not options.hil_mode else "<hil_mode>"
+            message = f"{choice} is not supported; simkit waits for a TCP connection of PX4"
             params.warning("SK-PILOT-005", message, "set <use_tcp> to 1, <serialEnabled> and <hil_mode> to 0")
         self._base = scene.canonical_link
         joints = {joint.scoped: joint for joint in scene.all_joints()}
@@ -241,11 +242,11 @@ class GazeboMavlinkInterface(AutopilotPlugin):
 
     # ------------------------------------------------------------------ messages
 
-    def _sensor(self, kind: type[Any]) -> Any:
-        found: Px4Sensor | None = self.sim.engine.names.shared(
+    def _sensor(self, kind: type[AnySensor]) -> AnySensor | None:
+        sensor: AnySensor | None = self.sim.engine.names.shared(
             f"{kind.__name__} {id(self)}", lambda: find_sensor_plugin(self.sim, kind, self.scoped)
         )
-        return found
+        return sensor
 
     def _state(self) -> bytes:
         """Return the frames for PX4; empty without a connection or before the first reading of the IMU."""
@@ -276,7 +277,7 @@ class GazeboMavlinkInterface(AutopilotPlugin):
         truth = state_message(time, self._link, self._planet.geodetic(self._link.pose.position))
         return frames + self._encode("HIL_STATE_QUATERNION", truth)
 
-    def _true_motion(self) -> tuple[Any, Any]:
+    def _true_motion(self) -> tuple[Vector, Vector]:
         """Return the true rate and force of a model without `libgazebo_imu_plugin.so`."""
         message = "the model has no libgazebo_imu_plugin.so; PX4 receives true rates and accelerations"
         self._once.warn("SK-PILOT-005", "imu", message)
@@ -293,7 +294,7 @@ class GazeboMavlinkInterface(AutopilotPlugin):
             self._sent_baro, pressure = barometer.number, barometer.reading
         return sensor_message(time, gyro, force, field, pressure)
 
-    def _encode(self, name: str, fields: Any) -> bytes:
+    def _encode(self, name: str, fields: Mapping[str, Value]) -> bytes:
         self._sequence = (self._sequence + 1) & 0xFF
         return encode(name, fields, self._sequence)
 

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
-from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
-from simkit.plugins.endpoints import listens
+from simkit import ModelPlugin, Params
+from simkit.extend import Options, OptionsOf, boolean, listens, text, without_effect
 from simkit.plugins.joints.joint_commands import ACTUATORS
-from simkit.plugins.options import Options, OptionsOf, boolean, text, without_effect
 from simkit_water_and_air.plugins.gz.multicopter_motor_model import MotorModelOptions, MulticopterMotorModel
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.scene import SceneModel
+    from simkit import Model
+    from simkit.extend import SceneModel, SpecBuilder
 
 _NO_THRUST: Final = 25.0  # [m/s] along the axis, from `gazebo_motor_model.cpp`
 
@@ -67,5 +65,5 @@ class MultirotorBase(ModelPlugin):
     options = OptionsOf(MultirotorBaseOptions)
     filenames = ("libgazebo_multirotor_base_plugin.so",)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.options.read_all()

@@ -5,16 +5,13 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from simkit.diagnostics import did_you_mean
-from simkit.params import Params
-from simkit.plugins.base import ModelPlugin, Plugin
-from simkit.plugins.options import Options, OptionsOf, block, choice, number, without_effect
+from simkit import ModelPlugin, Params, Plugin
+from simkit.extend import Options, OptionsOf, block, choice, did_you_mean, number, without_effect
 from simkit_water_and_air.plugins.fluids.wave_field import WaveField, WaveOptions
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.runtime import Model
-    from simkit.scene import SceneModel
+    from simkit import Model
+    from simkit.extend import SceneModel, SpecBuilder
 
 
 class ClassicWaveOptions(WaveOptions):

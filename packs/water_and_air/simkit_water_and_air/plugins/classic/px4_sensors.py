@@ -13,20 +13,26 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
 
+from simkit import ModelPlugin, Params, Plugin
+from simkit.extend import (
+    LARGEST,
+    Options,
+    OptionsOf,
+    SceneSensor,
+    Vector,
+    boolean,
+    find_named_link,
+    number,
+    without_effect,
+)
 from simkit.linear_algebra import matmul, norm
-from simkit.params import LARGEST, Params
-from simkit.plugins.base import ModelPlugin, Plugin
-from simkit.plugins.find_entities import find_named_link
-from simkit.plugins.options import Options, OptionsOf, boolean, number, without_effect
-from simkit.pose import Vector
 from simkit.scene import SphericalCoordinates
 from simkit.sensors.environment.geodesy import WorldOnPlanet, east_north_up
 from simkit.sensors.environment.magnetic_field import DEFAULT_DATE, MagneticModel
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.runtime import Link, Simulation
-    from simkit.scene import SceneModel
+    from simkit import Link, Model, Simulation
+    from simkit.extend import SceneModel, Sensor, SpecBuilder
 
 AnySensor = TypeVar("AnySensor", bound="Px4Sensor")
 
@@ -138,7 +144,7 @@ class Px4Imu(Px4Sensor, ModelPlugin):
         self.options.read_all()
         self._name = find_named_link(scene, "linkName", params)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.begin(self.sim.link(self._name), 0.0)
         options, first = self.options, self.random("turn on", 6)
         drawn = np.asarray(first.normal(0))
@@ -175,7 +181,7 @@ class Px4Magnetometer(Px4Sensor, ModelPlugin):
         self.options.read_all()
         self._name = scene.canonical_link
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         options = self.options
         self.begin(self.sim.link(self._name), options.rate)
         planet = WorldOnPlanet(home_of(self.sim))
@@ -208,7 +214,7 @@ class Px4Barometer(Px4Sensor, ModelPlugin):
         self.options.read_all()
         self._name = scene.canonical_link
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.begin(self.sim.link(self._name), self.options.rate)
         self._home = home_of(self.sim).elevation
         self._stream = self.random("noise", 1)
@@ -249,14 +255,14 @@ class Px4Gps(Px4Sensor):
     options = OptionsOf(GpsOptions)
     filenames = ("libgazebo_gps_plugin.so",)
 
-    def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
+    def prepare(self, scene: SceneModel | SceneSensor, params: Params, builder: SpecBuilder) -> None:
         self.options.read_all()
-        self._name = scene.parent if hasattr(scene, "pose_link") else scene.canonical_link
+        self._name = scene.parent if isinstance(scene, SceneSensor) else scene.canonical_link
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model | Sensor, params: Params) -> None:
         options = self.options
-        own = 0.0 if params.has("update_rate") else float(getattr(parent, "update_rate", 0.0))
-        self.begin(self.sim.link(self._name), own or options.update_rate)
+        sensor_rate = 0.0 if params.has("update_rate") else float(getattr(parent, "update_rate", 0.0))
+        self.begin(self.sim.link(self._name), sensor_rate or options.update_rate)
         self._planet = WorldOnPlanet(home_of(self.sim))
         home = home_of(self.sim)
         self._to_enu = matmul(east_north_up(home.latitude, home.longitude).T, self._planet.axes)
@@ -288,7 +294,7 @@ class Px4GroundTruth(ModelPlugin):
     options = OptionsOf(NamespaceOptions)
     filenames = ("libgazebo_groundtruth_plugin.so",)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.options.read_all()
 
 

@@ -10,17 +10,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from simkit.params import Params
-from simkit.plugins.find_entities import find_link
-from simkit.plugins.options import OptionsOf, integer, number, text
+from simkit import Params
+from simkit.extend import OptionsOf, find_link, integer, number, text
 from simkit_water_and_air.plugins.classic.ocean_waves import waves_of
 from simkit_water_and_air.plugins.fluids.boat_drag import BoatDragBase, DragOptions, report_negative
 from simkit_water_and_air.plugins.fluids.hull_points import hull_wrench
 from simkit_water_and_air.plugins.fluids.link_forces import moving_data
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.scene import SceneModel
+    from simkit.extend import SceneModel, SpecBuilder
 
 
 class UsvDynamicsOptions(DragOptions):

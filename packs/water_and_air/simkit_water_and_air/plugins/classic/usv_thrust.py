@@ -15,22 +15,18 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
-from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
-from simkit.plugins.endpoints import listens
-from simkit.plugins.find_entities import find_axis_joint, find_link, read_required_name
+from simkit import ModelPlugin, Params
+from simkit.extend import JointAxis, Options, OptionsOf, blocks, boolean, find_link, integer, listens, number, text
+from simkit.plugins.find_entities import find_axis_joint, read_required_name
 from simkit.plugins.joint_states import JOINT_STATE, joint_readings, joint_state_message
-from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.plugins.one_time_warnings import are_usable
-from simkit.plugins.options import Options, OptionsOf, blocks, boolean, integer, number, text
 from simkit_water_and_air.plugins.fluids.link_forces import PushedLinks, moving_data
 from simkit_water_and_air.plugins.fluids.tuple_vectors import to_world_axes
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
+    from simkit import Model
+    from simkit.extend import SceneModel, SpecBuilder
     from simkit.msgs import Float32
-    from simkit.runtime import Model
-    from simkit.scene import SceneModel
 
 _FLOAT: Final = "std_msgs/msg/Float32"
 _MOST: Final = 1e9

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from simkit.pose import Vector
-from simkit.scene import SceneLink
+from simkit.extend import SceneLink, Vector
 
 
 class SmoothedAcceleration:
@@ -16,12 +15,12 @@ class SmoothedAcceleration:
     this: a body in open water accelerates as one with the mass m + M, from the second step on.
 
     Args:
-        own: Mass [kg] three times, then the moments of inertia [kg·m²] of the link; shape (6,).
+        inertia: Mass [kg] three times, then the moments of inertia [kg·m²] of the link; shape (6,).
         added: Added masses and moments of inertia, shape (6,).
     """
 
-    def __init__(self, own: Vector, added: Vector) -> None:
-        self._factors = own / (own + np.maximum(added, 0.0))
+    def __init__(self, inertia: Vector, added: Vector) -> None:
+        self._factors = inertia / (inertia + np.maximum(added, 0.0))
         self._last: Vector | None = None  # velocity of the last step
         self._acceleration = np.zeros(6)
 

@@ -11,17 +11,15 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit import ModelPlugin, Params
+from simkit.extend import LARGEST, Options, Vector, number
 from simkit.linear_algebra import matmul
-from simkit.params import LARGEST, Params
-from simkit.plugins.base import ModelPlugin
-from simkit.plugins.options import Options, number
-from simkit.pose import Vector
 from simkit_water_and_air.plugins.fluids.added_mass import SmoothedAcceleration, own_inertia
 from simkit_water_and_air.plugins.fluids.link_forces import PushedLinks, cross, moving_data
 
 if TYPE_CHECKING:
-    from simkit.runtime import Model
-    from simkit.scene import SceneModel
+    from simkit import Model
+    from simkit.extend import SceneModel
 
 MOST: Final = 1e12
 """Largest coefficient that is accepted."""
@@ -50,10 +48,10 @@ def report_negative(options: DragOptions) -> None:
         if not name.startswith(("linear_", "quadratic_")) or getattr(options, name) >= 0:
             continue
         element = options.params.block(field.element)
-        found = f"<{element.name}>{element.value}</{element.name}> is negative"
+        text = f"<{element.name}>{element.value}</{element.name}> is negative"
         effect = "the water accelerates the link along its velocity instead of braking it"
         hint = f"write a positive number: <{element.name}>{element.value.lstrip('-')}</{element.name}>"
-        element.warning("SK-PLUGIN-118", f"{found}: {effect}", hint)
+        element.warning("SK-PLUGIN-118", f"{text}: {effect}", hint)
 
 
 class BoatDragBase(ModelPlugin):

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from simkit.extend import SharedByCopies, Vector
 from simkit.linear_algebra import matmul
-from simkit.plugins.not_deep_copied import SharedByCopies
-from simkit.pose import Vector
 from simkit_water_and_air.plugins.fluids.collision_volumes import Hull
 from simkit_water_and_air.plugins.fluids.link_forces import PushedLinks, cross
 from simkit_water_and_air.plugins.fluids.submerged_volume import Solid
@@ -20,7 +19,7 @@ from simkit_water_and_air.plugins.fluids.submerged_volume import Solid
 if TYPE_CHECKING:
     import mujoco
 
-    from simkit.runtime import Simulation
+    from simkit import Simulation
 
 _ZERO: Final = np.zeros(3)
 _SAME: Final = 1e-9  # [m], largest distance between centre of volume and centre of mass that counts as zero
@@ -150,8 +149,8 @@ class BuoyantForces(SharedByCopies):
             if lowest != highest or layers.setdefault(owner, lowest) != lowest:
                 steady[owner] = False
         masses = [
-            densities[layers[owner]] * whole if is_steady else 0.0
-            for owner, (is_steady, whole) in enumerate(zip(steady, self._wholes, strict=True))
+            densities[layers[owner]] * volume if is_steady else 0.0
+            for owner, (is_steady, volume) in enumerate(zip(steady, self._wholes, strict=True))
         ]
         return Immersion(low, high, tuple(steady), tuple(masses))
 
@@ -177,7 +176,7 @@ class BuoyantForces(SharedByCopies):
         bodies = self.links.bodies
         axes, origins, masses = data.xmat[bodies].tolist(), data.xpos[bodies].tolist(), data.xipos[bodies].tolist()
         gx, gy, gz = gravity
-        found: dict[int, list[float]] = {}
+        wrenches: dict[int, list[float]] = {}
         for part, low, high in zip(self._parts, immersion.low, immersion.high, strict=True):
             owner = part.owner
             if immersion.steady[owner]:
@@ -193,9 +192,9 @@ class BuoyantForces(SharedByCopies):
             ox, oy, oz = masses[owner]
             x, y, z = x - ox, y - oy, z - oz
             wrench = [fx, fy, fz, y * fz - z * fy, z * fx - x * fz, x * fy - y * fx]
-            before = found.get(owner)
-            found[owner] = wrench if before is None else [p + q for p, q in zip(before, wrench, strict=True)]
-        return found
+            before = wrenches.get(owner)
+            wrenches[owner] = wrench if before is None else [p + q for p, q in zip(before, wrench, strict=True)]
+        return wrenches
 
     def _cut_few(self, part: _Part, axes: list[float], origin: list[float], low: int, high: int) -> tuple[float, Three]:
         """Return the mass [kg] and the world centre [m] of the fluid that a hull in several layers displaces."""
@@ -262,14 +261,14 @@ class BuoyantForces(SharedByCopies):
         turned = matmul(axes[places], self._solid_axes[hulls])
         starts = origins[places] + (axes[places] * self._solid_origins[hulls][:, None, :]).sum(axis=2)
         depths = self._heights[layers] - starts[:, 2]
-        found = np.array(
+        cut_parts = np.array(
             [
                 solid.cut(*normal, depth)
                 for row, normal, depth in zip(hulls, turned[:, 2].tolist(), depths.tolist(), strict=True)
                 if (solid := self._hulls[row].solid) is not None
             ]
         )
-        volumes, moments = found[:, 0], found[:, 1:]
+        volumes, moments = cut_parts[:, 0], cut_parts[:, 1:]
         more = self._densities[layers] - self._densities[layers + 1]
         total, first = np.zeros(len(masses)), np.zeros((len(masses), 3))
         np.add.at(total, places, more * volumes)
@@ -278,17 +277,17 @@ class BuoyantForces(SharedByCopies):
         top = np.zeros(len(masses), dtype=np.intp)
         np.maximum.at(top, places, layers + 1)
         last = places.searchsorted(at)  # index of the first cut of each hull; all cuts of a hull have the same frame
-        whole = self._densities[top[at]] * self._volumes[rows[at]]
-        masses[at] = np.maximum(whole + total[at], 0.0)
-        first = first[at] + whole[:, None] * self._solid_centres[rows[at]]
+        full_mass = self._densities[top[at]] * self._volumes[rows[at]]
+        masses[at] = np.maximum(full_mass + total[at], 0.0)
+        first = first[at] + full_mass[:, None] * self._solid_centres[rows[at]]
         middle = first / np.maximum(masses[at], 1e-300)[:, None]
         centres[at] = starts[last] + (turned[last] * middle[:, None, :]).sum(axis=2)
 
     def _summed(self, values: Vector, owners: npt.NDArray[np.intp] | None = None) -> Vector:
         """Return for each link the sum of the values of its hulls."""
-        found = np.zeros((len(self.links), values.shape[1]))
-        np.add.at(found, self._owners if owners is None else owners, values)
-        return found
+        sums = np.zeros((len(self.links), values.shape[1]))
+        np.add.at(sums, self._owners if owners is None else owners, values)
+        return sums
 
 
 def _part(owner: int, hull: Hull) -> _Part:

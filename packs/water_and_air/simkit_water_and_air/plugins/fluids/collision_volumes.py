@@ -8,11 +8,10 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from simkit.diagnostics import Diagnostics
+from simkit.extend import Diagnostics, SceneCollision, SceneLink, SharedByCopies, Vector
 from simkit.linear_algebra import matmul
-from simkit.plugins.not_deep_copied import SharedByCopies
-from simkit.pose import Vector
-from simkit.scene import Geometry, Mesh, Polyline, SceneCollision, SceneLink
+from simkit.loaders.meshes.mesh_part import join_parts
+from simkit.scene import Geometry, Mesh, Polyline
 from simkit_water_and_air.plugins.fluids.submerged_volume import Solid, Triangles, solid_of
 
 
@@ -84,9 +83,8 @@ def _surface(shape: Geometry, collision: SceneCollision) -> tuple[Vector, npt.ND
 
     Faults of a mesh file are not reported here, because the compiler has already reported them.
     """
-    from simkit.compiler.meshes.mesh_part import join_parts
-    from simkit.compiler.meshes.mesh_reader import load_mesh
     from simkit.compiler.shape_geometry import polyline_triangles
+    from simkit.loaders.meshes.mesh_reader import load_mesh
 
     if isinstance(shape, Polyline):
         try:

@@ -6,7 +6,8 @@ from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from simkit.plugins.base import NEVER, Plugin
+from simkit import Plugin
+from simkit.extend import NEVER
 from simkit_water_and_air.plugins.fluids.buoyant_force import BuoyantForces, Fluid, Immersion
 from simkit_water_and_air.plugins.fluids.collision_volumes import Hull, HullFactory
 from simkit_water_and_air.plugins.fluids.link_forces import moving_data
@@ -46,11 +47,11 @@ class BuoyancyBase(Plugin):
 
         The value is computed again after a spawn, a removal or a change of gravity.
         """
-        found = self._found
+        floating = self._found
         is_idle = (
-            found is not None
-            and found.links.is_current
-            and (not len(found.links) or found.is_all_steady)
+            floating is not None
+            and floating.links.is_current
+            and (not len(floating.links) or floating.is_all_steady)
             and self._steady_state is not None
             and self._steady_state[-1] == self._gravity
         )
@@ -68,13 +69,13 @@ class BuoyancyBase(Plugin):
         """Apply the buoyant forces for the next step."""
         if self._found is None or not self._found.links.is_current:
             self._bind()
-        found = self._found
-        if found is None:
+        floating = self._found
+        if floating is None:
             return
         data = moving_data(self.sim)
         immersion = self._set_steady_wrenches(data)
         if not all(immersion.steady):
-            found.push(data, immersion, self.sim.mj_model.opt.gravity)
+            floating.push(data, immersion, self.sim.mj_model.opt.gravity)
         if self.before_step_rate is not None:
             self.sim.engine.reschedule()
 
@@ -83,15 +84,15 @@ class BuoyancyBase(Plugin):
 
     def _set_steady_wrenches(self, data: mujoco.MjData) -> Immersion:
         """Set the forces on the steady links if they have changed, and return the current immersion."""
-        found = self._found
-        assert found is not None
-        immersion, gravity = found.find_immersion(data), self._gravity
+        floating = self._found
+        assert floating is not None
+        immersion, gravity = floating.find_immersion(data), self._gravity
         now = (immersion.steady, immersion.masses, gravity)
         if now != self._steady_state:
             self._steady_state = now
             self._steady_wrenches = {
                 name: (*(-mass * g for g in gravity), 0.0, 0.0, 0.0)
-                for name, is_steady, mass in zip(found.links.names, immersion.steady, immersion.masses, strict=True)
+                for name, is_steady, mass in zip(floating.links.names, immersion.steady, immersion.masses, strict=True)
                 if is_steady and mass
             }
             self.sim.engine.wrenches.set(self, self._steady_wrenches)

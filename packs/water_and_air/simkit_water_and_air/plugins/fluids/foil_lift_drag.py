@@ -15,17 +15,15 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final
 
-from simkit.params import Params
-from simkit.plugins.find_entities import find_named_link
-from simkit.plugins.options import Options, OptionsOf, boolean, number, text, vector3
+from simkit import Params
+from simkit.extend import Options, OptionsOf, boolean, find_named_link, number, text, vector3
 from simkit_water_and_air.plugins.fluids.lift_drag import SLOWEST, read_directions
 from simkit_water_and_air.plugins.fluids.tuple_vectors import ZERO, Triple, cross, dot, unit
 from simkit_water_and_air.plugins.fluids.wing import WingBase
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.runtime import Model
-    from simkit.scene import SceneModel
+    from simkit import Model
+    from simkit.extend import SceneModel, SpecBuilder
 
 _MOST: Final = 1e9
 

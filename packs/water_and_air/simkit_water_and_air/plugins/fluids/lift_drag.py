@@ -17,17 +17,15 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
-from simkit.params import Params
-from simkit.plugins.find_entities import find_axis_joint, find_named_link
-from simkit.plugins.joints.joint_axis import JointAxis
-from simkit.plugins.options import Options, OptionsOf, boolean, number, text, vector3
+from simkit import Params
+from simkit.extend import JointAxis, Options, OptionsOf, boolean, find_named_link, number, text, vector3
+from simkit.plugins.find_entities import find_axis_joint
 from simkit_water_and_air.plugins.fluids.tuple_vectors import ZERO, Triple, cross, dot, perpendicular, scaled, unit
 from simkit_water_and_air.plugins.fluids.wing import WingBase
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.runtime import Model
-    from simkit.scene import SceneModel
+    from simkit import Model
+    from simkit.extend import SceneModel, SpecBuilder
 
 SLOWEST: Final = 0.01
 """Speed of the stream [m/s] up to which no force acts."""
@@ -56,10 +54,10 @@ class CoefficientLine:
 
     def one_sided(self, alpha: float, stall: float) -> float:
         """Return the coefficient as `at` does, but zero where its sign would change beyond the stall."""
-        found = self.at(alpha, stall)
+        coefficient = self.at(alpha, stall)
         if alpha > stall:
-            return max(0.0, found)
-        return min(0.0, found) if alpha < -stall else found
+            return max(0.0, coefficient)
+        return min(0.0, coefficient) if alpha < -stall else coefficient
 
 
 @dataclass(frozen=True, slots=True)

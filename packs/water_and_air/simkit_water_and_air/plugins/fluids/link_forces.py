@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
-from simkit.plugins.not_deep_copied import SharedByCopies
-from simkit.pose import Vector
+from simkit.extend import SharedByCopies, Vector
 from simkit.runtime.engine.physics_step import CONTROL
 
 if TYPE_CHECKING:
     import mujoco
 
-    from simkit.runtime import Simulation
+    from simkit import Simulation
 
 Three = tuple[float, float, float]
 _YZX, _ZXY = [1, 2, 0], [2, 0, 1]
@@ -32,8 +31,8 @@ def cross(a: Vector, b: Vector) -> Vector:
 
     For few rows this is several times faster than NumPy's function.
     """
-    found: Vector = a[:, _YZX] * b[:, _ZXY] - a[:, _ZXY] * b[:, _YZX]
-    return found
+    product: Vector = a[:, _YZX] * b[:, _ZXY] - a[:, _ZXY] * b[:, _YZX]
+    return product
 
 
 class PushedLinks(SharedByCopies):
@@ -75,8 +74,10 @@ class PushedLinks(SharedByCopies):
     def velocities(self, data: mujoco.MjData) -> Vector:
         """Return the velocities of the link origins [m/s] in the world frame, shape (n, 3)."""
         motion = data.cvel[self.bodies]  # cvel refers to the centre of mass of the whole tree
-        found: Vector = motion[:, 3:] + cross(motion[:, :3], data.xpos[self.bodies] - data.subtree_com[self._roots])
-        return found
+        velocities: Vector = motion[:, 3:] + cross(
+            motion[:, :3], data.xpos[self.bodies] - data.subtree_com[self._roots]
+        )
+        return velocities
 
     def velocities_few(self, data: mujoco.MjData, places: list[list[float]]) -> list[Three]:
         """Return the velocities of the link origins [m/s] in the world frame, as Python floats.
@@ -85,13 +86,13 @@ class PushedLinks(SharedByCopies):
             data: Engine data from `moving_data`.
             places: World positions of the link origins [m].
         """
-        found = []
+        velocities = []
         middles = data.subtree_com[self._roots].tolist()
         for motion, (x, y, z), (a, b, c) in zip(data.cvel[self.bodies].tolist(), places, middles, strict=True):
             p, q, r, u, v, w = motion
             x, y, z = x - a, y - b, z - c
-            found.append((u + (q * z - r * y), v + (r * x - p * z), w + (p * y - q * x)))
-        return found
+            velocities.append((u + (q * z - r * y), v + (r * x - p * z), w + (p * y - q * x)))
+        return velocities
 
     def push(self, data: mujoco.MjData, forces: Vector, torques: Vector | None = None) -> None:
         """Add forces and torques for the next step only.
@@ -133,7 +134,7 @@ class PushedLinks(SharedByCopies):
     def _notify_engine(self, bodies: list[int]) -> None:
         """Tell the engine which bodies have new forces, so that sleeping bodies wake up."""
         physics = self._sim.engine.physics
-        physics.one_shot = True
+        physics.push_once()
         if physics.sleep.watches:
             for body in bodies:
                 physics.changed_body(CONTROL, body)

@@ -7,14 +7,16 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final, TypeVar
 
 import numpy as np
 
 from simkit.elementary_functions import arccos
+from simkit.extend import Box, Cylinder, Sphere, Vector
 from simkit.linear_algebra import matmul
-from simkit.pose import Vector
-from simkit.scene import Box, Capsule, Cone, Cylinder, Ellipsoid, Geometry, Mesh, Polyline, Sphere
+from simkit.scene import Capsule, Cone, Ellipsoid, Geometry, Mesh, Polyline
+
+Height = TypeVar("Height", float, Vector)
 
 Triangles = Vector
 """Corners of triangles, counter-clockwise if seen from outside, shape (n, 3, 3)."""
@@ -193,7 +195,7 @@ class RevolvedSegment:
     b: float
     c: float
 
-    def square(self, z: Any) -> Any:
+    def square(self, z: Height) -> Height:
         """Return radius² [m²] at height z."""
         return self.a + z * (self.b + z * self.c)
 
@@ -235,8 +237,8 @@ class SolidOfRevolution(Solid):
                 middle, half = (low + high) / 2, (high - low) / 2
                 room, edge = height - z * middle, aside * math.sqrt(max(segment.square(middle), 0.0))
                 if room >= edge:  # all discs of this interval are below the plane
-                    whole, upwards = segment.between(middle, half)
-                    volume += whole
+                    added, upwards = segment.between(middle, half)
+                    volume += added
                     up += upwards
                 elif room > -edge:
                     places = middle + half * _PLACES
@@ -274,12 +276,12 @@ def _bounds(segment: RevolvedSegment, up: float, aside: float, height: float) ->
 
     These z are the roots of (height − up·z)² = aside²·radius².
     """
-    found = []
+    crossings = []
     if math.isfinite(height):
         s = aside * aside
         a, b, c = up * up - s * segment.c, -2 * height * up - s * segment.b, height * height - s * segment.a
-        found = [z for z in _roots(a, b, c) if segment.low < z < segment.high]
-    return [segment.low, *sorted(found), segment.high]
+        crossings = [z for z in _roots(a, b, c) if segment.low < z < segment.high]
+    return [segment.low, *sorted(crossings), segment.high]
 
 
 def _roots(a: float, b: float, c: float) -> list[float]:
@@ -321,8 +323,8 @@ def solid_of(shape: Geometry, triangles: Callable[[Geometry], Triangles | None])
             k = r / h  # radius = k (h/2 − z)
             return SolidOfRevolution((RevolvedSegment(-h / 2, h / 2, k * k * h * h / 4, -k * k * h, k * k),))
         case Mesh() | Polyline():
-            found = triangles(shape)
-            solid = None if found is None or not len(found) else Polyhedron(found)
+            corners = triangles(shape)
+            solid = None if corners is None or not len(corners) else Polyhedron(corners)
             return solid if solid is not None and solid.volume > 1e-15 else None
     return None
 

@@ -15,16 +15,24 @@ from typing import TYPE_CHECKING, ClassVar, Final
 
 import numpy as np
 
-from simkit import msgs
-from simkit.diagnostics import did_you_mean
-from simkit.params import LARGEST, Params
-from simkit.plugins.base import NEVER, WorldPlugin
-from simkit.plugins.endpoints import publishes
-from simkit.plugins.options import Options, OptionsOf, blocks, integer, number, text, vector3
+from simkit import Params, WorldPlugin, msgs
+from simkit.extend import (
+    LARGEST,
+    NEVER,
+    Options,
+    OptionsOf,
+    blocks,
+    did_you_mean,
+    integer,
+    number,
+    publishes,
+    text,
+    vector3,
+)
 from simkit_water_and_air.plugins.fluids.link_forces import PushedLinks, moving_data
 
 if TYPE_CHECKING:
-    from simkit.runtime import Simulation
+    from simkit import Simulation
 
 _SPEED, _DIRECTION = "/vrx/debug/wind/speed", "/vrx/debug/wind/direction"
 _FLOAT: Final = "std_msgs/msg/Float32"
@@ -78,20 +86,20 @@ class UsvWindBase(WorldPlugin):
         names = list(parent.engine.names.links)
         for item in options.objects:
             if not any(_is_link(name, item) for name in names):
-                found = f"plugin {self.name!r}: there is no link {item.link_name!r} of model {item.model!r} yet"
+                text = f"plugin {self.name!r}: there is no link {item.link_name!r} of model {item.model!r} yet"
                 hint = did_you_mean(f"{item.model}::{item.link_name}", names)
-                params.diagnostics.warning("SK-PLUGIN-140", found, item.params.where, hint)
+                params.diagnostics.warning("SK-PLUGIN-140", text, item.params.where, hint)
 
     def _bind(self) -> None:
         """Find the links of the compiled model; links of models that are spawned later are found then."""
         names = self.sim.engine.names.links
-        found: dict[str, tuple[float, float, float]] = {}
+        coefficients: dict[str, tuple[float, float, float]] = {}
         for item in self.options.objects:
             link = next((name for name in names if _is_link(name, item)), None)
             if link is not None:
-                found[link] = item.coefficients
-        self._links = PushedLinks(self.sim, tuple(found))
-        self._coefficients = np.array([found[name] for name in self._links.names]).reshape(-1, 3)
+                coefficients[link] = item.coefficients
+        self._links = PushedLinks(self.sim, tuple(coefficients))
+        self._coefficients = np.array([coefficients[name] for name in self._links.names]).reshape(-1, 3)
 
     @property
     def _wind_speed(self) -> float:

@@ -15,13 +15,14 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
+from simkit import ModelPlugin
+from simkit.extend import Options, block, choice, number, text, without_effect
 from simkit.float_sum import float_sum
-from simkit.msgs.topic_names import valid_topic
-from simkit.plugins.base import ModelPlugin
-from simkit.plugins.options import Options, block, choice, number, text, vector, without_effect
+from simkit.msgs import valid_topic
+from simkit.plugins.options import vector
 
 if TYPE_CHECKING:
-    from simkit.msgs import ParamVec
+    from simkit.msgs import ParameterValue, ParamVec
 
 PARAMETERS: Final = "ros_gz_interfaces/msg/ParamVec"
 _GRAVITY: Final = 9.8  # [m/s²], of the waves, independent of the world
@@ -95,7 +96,7 @@ class WaveParameters:
         length = math.hypot(*self.direction)
         x, y = (value / length for value in self.direction)
         middle = self.number // 2 if self.model == "CWR" else 1
-        found = []
+        waves = []
         for n in range(-middle, self.number - middle):
             factor = self.scale**n
             if self.model == "CWR":
@@ -104,8 +105,8 @@ class WaveParameters:
                 frequency = mean * factor
                 amplitude = self.gain * math.sqrt(2 * _spectrum(frequency, mean) * self._width(n) * mean)
             c, s = math.cos(n * self.angle), math.sin(n * self.angle)
-            found.append(Wave(amplitude, frequency**2 / _GRAVITY, frequency, c * x - s * y, s * x + c * y))
-        return tuple(found)
+            waves.append(Wave(amplitude, frequency**2 / _GRAVITY, frequency, c * x - s * y, s * x + c * y))
+        return tuple(waves)
 
     def _width(self, n: int) -> float:
         """Return the width of the band of frequencies of a component of PMS, relative to the peak frequency."""
@@ -169,7 +170,7 @@ class WaveOptions(Options):
         """Return the parameters; a fault is reported as an error."""
         self.read_all()
         x, y = self.direction
-        found = WaveParameters(
+        parameters = WaveParameters(
             model=self.model,
             number=int(self.count),
             scale=self.scale,
@@ -180,10 +181,10 @@ class WaveOptions(Options):
             tau=self.tau,
             gain=self.gain,
         )
-        if self.is_given and (fault := found.find_fault()):
+        if self.is_given and (fault := parameters.find_fault()):
             self.params.error("SK-PARAM-002", f"<wave>: {fault}")
             return WaveParameters()
-        return found
+        return parameters
 
 
 class WavefieldOptions(Options):
@@ -244,7 +245,7 @@ _NUMBERS: Final = frozenset(("scale", "angle", "amplitude", "period", "tau", "ga
 _WITHOUT_EFFECT: Final = frozenset(("size", "cell_count", "phase", "steepness"))
 
 
-def _value_of(value: Any) -> float | str | tuple[float, ...] | None:
+def _value_of(value: ParameterValue) -> float | str | tuple[float, ...] | None:
     """Return the value of an `rcl_interfaces/msg/ParameterValue`; None for another type."""
     if value.type == _INTEGER:
         return float(value.integer_value)

@@ -9,19 +9,17 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 import numpy.typing as npt
 
+from simkit import Params, WorldPlugin
+from simkit.extend import NEVER, Options, OptionsOf, Vector, block, blocks, listens, number, offers
 from simkit.float_sum import float_sum
-from simkit.msgs.topic_names import valid_topic
+from simkit.msgs import valid_topic
 from simkit.number_text import number_or_nan
-from simkit.params import Params
-from simkit.plugins.base import NEVER, WorldPlugin
-from simkit.plugins.endpoints import listens, offers
-from simkit.plugins.options import Options, OptionsOf, block, blocks, number, vector
-from simkit.pose import Vector
+from simkit.plugins.options import vector
 from simkit_water_and_air.plugins.fluids.link_forces import PushedLinks, moving_data
 from simkit_water_and_air.plugins.fluids.wind_gusts import GustOptions, Velocity, WindTarget, read_gusts
 
@@ -30,7 +28,8 @@ if TYPE_CHECKING:
 
     import mujoco
 
-    from simkit.runtime import Simulation
+    from simkit import Simulation
+    from simkit.msgs import Vector3, Wind
     from simkit.runtime.engine.entity_structure import AttachedPlugin
 
 WIND: Final = "simkit_msgs/msg/Wind"
@@ -77,8 +76,8 @@ class FieldPiece:
     def at(self, places: Vector) -> Vector:
         """Return the values at points [m], shape (n, 3), as an array of shape (n,)."""
         a, b, c, d = np.array(self.terms).T
-        found: Vector = self.factor * (((a * places + b) * places + c) * places + d).sum(axis=1)
-        return found
+        speeds: Vector = self.factor * (((a * places + b) * places + c) * places + d).sum(axis=1)
+        return speeds
 
     def holds(self, places: Vector) -> npt.NDArray[np.bool_]:
         """Return for each point [m] of an array of shape (n, 3) whether the point is in the box."""
@@ -122,20 +121,20 @@ class WindField:
         """Return the factor at each point [m] of an array of shape (n, 3): shape (n,), or one number if constant."""
         if not self.pieces:
             return self.everywhere
-        found, is_open = np.zeros(len(places)), np.ones(len(places), bool)
+        speeds, is_open = np.zeros(len(places)), np.ones(len(places), bool)
         for piece in self.pieces:
             inside = is_open & piece.holds(places)
             if inside.any():
-                found[inside] = piece.at(places[inside])
+                speeds[inside] = piece.at(places[inside])
                 is_open &= ~inside
-        return found
+        return speeds
 
     def one_at(self, place: Sequence[float]) -> float:
         """Return the factor at one point [m]."""
         for piece in self.pieces:
-            found = piece.one_at(place)
-            if found is not None:
-                return found
+            speed = piece.one_at(place)
+            if speed is not None:
+                return speed
         return 0.0 if self.pieces else self.everywhere
 
 
@@ -341,8 +340,8 @@ class WindPluginBase(WorldPlugin):
 
     # ------------------------------------------------------------------ commands
 
-    def _on_wind(self, message: Any) -> None:
-        vector = getattr(message, "linear_velocity", message)
+    def _on_wind(self, message: Wind | Vector3) -> None:
+        vector = cast("Vector3", getattr(message, "linear_velocity", message))
         velocity = float(vector.x), float(vector.y), float(vector.z)
         if not all(map(math.isfinite, velocity)) or max(map(abs, velocity)) > 1e6:
             self._once.not_finite("a wind")

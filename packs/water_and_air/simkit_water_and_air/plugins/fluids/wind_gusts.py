@@ -7,11 +7,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from simkit.params import LARGEST
-from simkit.plugins.options import Options, block, number, text, without_effect
+from simkit.extend import LARGEST, Options, block, number, text, without_effect
 
 if TYPE_CHECKING:
-    from simkit.pose import Vector
+    from simkit.extend import Vector
 
 Velocity = tuple[float, float, float]
 _FULL_TURN = 360.0  # degrees

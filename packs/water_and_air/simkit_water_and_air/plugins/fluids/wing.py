@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import TYPE_CHECKING, ClassVar
 
-from simkit.plugins.base import ModelPlugin
+from simkit import ModelPlugin
 from simkit.runtime.engine.physics_step import CONTROL
 from simkit_water_and_air.plugins.fluids.link_forces import moving_data
 from simkit_water_and_air.plugins.fluids.tuple_vectors import ZERO, Triple, to_link_axes, to_world_axes
@@ -53,7 +53,7 @@ class WingBase(ModelPlugin):
         x, y, z = arm
         row = data.xfrc_applied[body]
         row += (fx, fy, fz, mx + y * fz - z * fy, my + z * fx - x * fz, mz + x * fy - y * fx)
-        sim.engine.physics.one_shot = True
+        sim.engine.physics.push_once()
         sim.engine.physics.changed_body(CONTROL, body)
 
     def _motion(self, data: mujoco.MjData, body: int) -> tuple[Triple, Triple, list[float]]:

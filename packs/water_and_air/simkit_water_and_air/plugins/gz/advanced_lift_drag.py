@@ -21,18 +21,28 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final
 
-from simkit.params import LARGEST, Params
-from simkit.plugins.find_entities import find_axis_joint, find_named_link
-from simkit.plugins.joints.joint_axis import JointAxis
-from simkit.plugins.options import Options, OptionsOf, blocks, integer, number, text, vector3, without_effect
+from simkit import Params
+from simkit.extend import (
+    LARGEST,
+    JointAxis,
+    Options,
+    OptionsOf,
+    blocks,
+    find_named_link,
+    integer,
+    number,
+    text,
+    vector3,
+    without_effect,
+)
+from simkit.plugins.find_entities import find_axis_joint
 from simkit_water_and_air.plugins.fluids.lift_drag import read_directions
 from simkit_water_and_air.plugins.fluids.tuple_vectors import ZERO, Triple, cross, dot, unit
 from simkit_water_and_air.plugins.fluids.wing import WingBase
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.runtime import Model
-    from simkit.scene import SceneModel
+    from simkit import Model
+    from simkit.extend import SceneModel, SpecBuilder
 
 _SLOWEST: Final = 1e-9  # [m/s]
 _SHARPNESS: Final = 15.0  # [1/rad], of the transition at the stall
@@ -139,7 +149,7 @@ class AdvancedLiftDrag(WingBase):
 
     def _read_surfaces(self, scene: SceneModel) -> list[tuple[str, Six]]:
         """Return the joint of each control surface in use, and its effects for each radian."""
-        options, found = self.options, []
+        options, surfaces = self.options, []
         count, listed = options.num_ctrl_surfaces, options.surfaces
         if count != len(listed):
             message = f"<num_ctrl_surfaces> is {count}, but the file has {len(listed)} <control_surface> elements"
@@ -160,8 +170,8 @@ class AdvancedLiftDrag(WingBase):
                 s.pitch * factor,
                 s.yaw * factor,
             )
-            found.append((joint.scoped, effects))
-        return found
+            surfaces.append((joint.scoped, effects))
+        return surfaces
 
     def load(self, parent: Model, params: Params) -> None:
         self._joints = [(JointAxis(self.sim.joint(name)), effects) for name, effects in self._surfaces]

@@ -6,34 +6,34 @@ Parameters, defaults and the order of receiving and sending follow `ArduPilotPlu
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 
-from simkit import msgs
+from simkit import Params, Pose, msgs
 from simkit.compiler.name_map import NameMap
-from simkit.msgs.topic_names import valid_topic
-from simkit.params import LARGEST, Params
-from simkit.plugins.endpoints import listens, publishes
-from simkit.plugins.find_entities import find_axis_joint, find_sensor
-from simkit.plugins.joints.joint_axis import JointAxis
-from simkit.plugins.joints.joint_commands import DOUBLE
-from simkit.plugins.joints.kinematic_trees import KinematicTrees
-from simkit.plugins.joints.pid import Pid
-from simkit.plugins.joints.velocity_servo import VelocityServo
-from simkit.plugins.options import (
+from simkit.extend import (
+    LARGEST,
+    JointAxis,
     Options,
     OptionsOf,
     blocks,
     boolean,
     choice,
     integer,
+    listens,
     number,
     pose,
+    publishes,
     text,
     without_effect,
 )
-from simkit.pose import Pose
+from simkit.msgs import valid_topic
+from simkit.plugins.find_entities import find_axis_joint, find_sensor
+from simkit.plugins.joints.joint_commands import DOUBLE
+from simkit.plugins.joints.kinematic_trees import KinematicTrees
+from simkit.plugins.joints.pid import Pid
+from simkit.plugins.joints.velocity_servo import VelocityServo
 from simkit_water_and_air.plugins.autopilots.autopilot_plugin import AutopilotPlugin
 from simkit_water_and_air.plugins.autopilots.bounded_wait import ConnectionOptions, listen_address
 from simkit_water_and_air.plugins.autopilots.joint_channel import ChannelKind, JointChannel
@@ -41,10 +41,11 @@ from simkit_water_and_air.plugins.autopilots.servo_link import ServoLink
 from simkit_water_and_air.plugins.autopilots.servo_packet import ServoPacket, encode_state
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.runtime import Model
+    from collections.abc import Callable
+
+    from simkit import Model
+    from simkit.extend import SceneModel, SpecBuilder
     from simkit.runtime.communication.publisher import Publisher
-    from simkit.scene import SceneModel
 
 _SCAN: Final = "sensor_msgs/msg/LaserScan"
 _HALF_TURN: Final = Pose.from_rpy(0, 0, 0, math.pi, 0, 0)
@@ -177,8 +178,8 @@ class ArduPilotPlugin(AutopilotPlugin):
         self._publishers: dict[int, Publisher] = {}
         for place, control in enumerate(self._controls):
             if control.type == "COMMAND":
-                own = f"/world/{self.sim.world.name}/model/{parent.name}/joint/{control.joint}/cmd"
-                self._publishers[place] = self.advertise(valid_topic(control.topic or own), DOUBLE)
+                default_topic = f"/world/{self.sim.world.name}/model/{parent.name}/joint/{control.joint}/cmd"
+                self._publishers[place] = self.advertise(valid_topic(control.topic or default_topic), DOUBLE)
         self._servo = VelocityServo()
         self._ranges = [_UNKNOWN_RANGE] * max((sensor.index for sensor in options.ranges), default=0)
         for sensor in options.ranges:
@@ -187,8 +188,8 @@ class ArduPilotPlugin(AutopilotPlugin):
         channels = 32 if options.have_32_channels else 16
         self._connection = ServoLink(self.name, self._place, lock, timeout, self._once, channels, options.most_misses)
 
-    def _range_callback(self, place: int) -> Any:
-        def keep(message: Any) -> None:
+    def _range_callback(self, place: int) -> Callable[[msgs.Message], None]:
+        def keep(message: msgs.Message) -> None:
             measured = getattr(message, "ranges", getattr(message, "range", None))
             if measured is None:
                 self._once.left_out(f"range {place}", f"a message for rng_{place + 1} is not a LaserScan or Range")
@@ -196,8 +197,8 @@ class ArduPilotPlugin(AutopilotPlugin):
             ranges = np.atleast_1d(np.asarray(measured, float))
             largest = message.range_max if hasattr(message, "range_max") else message.max_range
             far = 2.0 * min(float(largest), LARGEST)  # without an echo, as in the source
-            found = ranges[np.isfinite(ranges)]
-            self._ranges[place] = min(float(found.min()), far) if len(found) else far
+            finite = ranges[np.isfinite(ranges)]
+            self._ranges[place] = min(float(finite.min()), far) if len(finite) else far
 
         return keep
 

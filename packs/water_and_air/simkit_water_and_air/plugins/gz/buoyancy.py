@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
-from simkit.diagnostics import did_you_mean
-from simkit.params import Params
-from simkit.plugins.base import WorldPlugin
-from simkit.plugins.options import Options, OptionsOf, block, blocks, number, texts
+from simkit import Params, WorldPlugin
+from simkit.extend import Options, OptionsOf, block, blocks, did_you_mean, number, texts
 from simkit_water_and_air.plugins.fluids.buoyant_force import Fluid
 from simkit_water_and_air.plugins.fluids.collision_volumes import Hull
 from simkit_water_and_air.plugins.fluids.floating_links import BuoyancyBase
 
 if TYPE_CHECKING:
-    from simkit.runtime import Simulation
+    from simkit import Simulation
 
 WATER: Final = 1000.0
 """Density of water [kg/m³], the default."""

@@ -9,21 +9,16 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from simkit import msgs
-from simkit.msgs.topic_names import valid_topic
-from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
-from simkit.plugins.endpoints import listens, publishes
-from simkit.plugins.find_entities import find_named_link
+from simkit import ModelPlugin, Params, msgs
+from simkit.extend import Options, OptionsOf, find_named_link, listens, number, publishes, text
+from simkit.msgs import valid_topic
 from simkit.plugins.joints.joint_commands import DOUBLE
-from simkit.plugins.options import Options, OptionsOf, number, text
 from simkit_water_and_air.plugins.fluids.link_forces import PushedLinks, cross, moving_data
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
+    from simkit import Model
+    from simkit.extend import SceneModel, SpecBuilder
     from simkit.msgs import Float64
-    from simkit.runtime import Model
-    from simkit.scene import SceneModel
 
 
 class BuoyancyEngineOptions(Options):
@@ -56,8 +51,8 @@ class BuoyancyEngine(ModelPlugin):
         options = self.options.read_all()
         self._link = find_named_link(scene, "link_name", params)
         if options.max_volume < options.min_volume:
-            found = f"<max_volume>{options.max_volume:g}</max_volume> is below <min_volume>"
-            params.error("SK-PARAM-002", f"{found}; expected at least {options.min_volume:g}")
+            text = f"<max_volume>{options.max_volume:g}</max_volume> is below <min_volume>"
+            params.error("SK-PARAM-002", f"{text}; expected at least {options.min_volume:g}")
 
     def load(self, parent: Model, params: Params) -> None:
         options = self.options

@@ -19,23 +19,29 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit import ModelPlugin, Params
+from simkit.extend import (
+    Options,
+    OptionsOf,
+    Vector,
+    boolean,
+    find_named_link,
+    listens,
+    number,
+    text,
+    vector3,
+    without_effect,
+)
 from simkit.linear_algebra import matmul
-from simkit.msgs.topic_names import valid_topic
-from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
-from simkit.plugins.endpoints import listens
-from simkit.plugins.find_entities import find_named_link
+from simkit.msgs import valid_topic
 from simkit.plugins.one_time_warnings import are_usable
-from simkit.plugins.options import Options, OptionsOf, boolean, number, text, vector3, without_effect
-from simkit.pose import Vector
 from simkit_water_and_air.plugins.fluids.added_mass import SmoothedAcceleration, own_inertia
 from simkit_water_and_air.plugins.fluids.link_forces import PushedLinks, moving_data
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
+    from simkit import Model
+    from simkit.extend import SceneModel, SpecBuilder
     from simkit.msgs import Vector3
-    from simkit.runtime import Model
-    from simkit.scene import SceneModel
 
 VECTOR: Final = "geometry_msgs/msg/Vector3"
 _FORCES, _SPEEDS = "xyzkmn", "UVWPQR"
@@ -104,10 +110,10 @@ class Hydrodynamics(ModelPlugin):
         reversed_signs: list[Params] = []
         declared = {field.element: getattr(self.options, name) for name, field in self.options.fields().items()}
         for child in params.children:
-            found = _COEFFICIENT.fullmatch(child.name)
-            if found is None:
+            match = _COEFFICIENT.fullmatch(child.name)
+            if match is None:
                 continue
-            row, dot, column, first, is_absolute, second = found.groups()
+            row, dot, column, first, is_absolute, second = match.groups()
             value = declared[child.name] if child.name in declared else params.number(child.name, 0.0)
             i = _FORCES.index(row)
             if (
@@ -139,8 +145,8 @@ class Hydrodynamics(ModelPlugin):
         options = self.options
         self._links = PushedLinks(self.sim, (self._link,))
         self._current = np.array(options.default_current)
-        own = f"/model/{options.namespace}" if options.namespace else ""
-        self.listen(valid_topic(f"{own}/ocean_current"), VECTOR, self._on_current)
+        prefix = f"/model/{options.namespace}" if options.namespace else ""
+        self.listen(valid_topic(f"{prefix}/ocean_current"), VECTOR, self._on_current)
 
     def _on_current(self, message: Vector3) -> None:
         current = float(message.x), float(message.y), float(message.z)
@@ -175,16 +181,16 @@ class Hydrodynamics(ModelPlugin):
             linear, angular = velocity[:3], velocity[3:]
             wrench[:3] += np.cross(momentum[:3], angular)
             wrench[3:] += np.cross(momentum[:3], linear) + np.cross(momentum[3:], angular)
-        found: Vector = wrench
-        return found
+        total: Vector = wrench
+        return total
 
 
 def _report_sign(element: Params, *, is_added_mass: bool) -> None:
     """Warn about a positive coefficient of one axis."""
-    found = f"<{element.name}>{element.value}</{element.name}> is positive"
+    text = f"<{element.name}>{element.value}</{element.name}> is positive"
     if is_added_mass:
         effect = "the water reduces the inertia of the link, and the simulation may diverge"
     else:
         effect = "the water accelerates the link along its velocity instead of braking it"
     hint = f"write a negative number: <{element.name}>-{element.value.lstrip('+')}</{element.name}>"
-    element.warning("SK-PLUGIN-118", f"{found}: {effect}", hint)
+    element.warning("SK-PLUGIN-118", f"{text}: {effect}", hint)

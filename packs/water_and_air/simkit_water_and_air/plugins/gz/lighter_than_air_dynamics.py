@@ -19,19 +19,15 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit import ModelPlugin, Params
+from simkit.extend import Options, OptionsOf, Vector, find_named_link, number, text
 from simkit.linear_algebra import matmul
-from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
-from simkit.plugins.find_entities import find_named_link
-from simkit.plugins.options import Options, OptionsOf, number, text
-from simkit.pose import Vector
 from simkit_water_and_air.plugins.fluids.added_mass import SmoothedAcceleration, own_inertia
 from simkit_water_and_air.plugins.fluids.link_forces import PushedLinks, cross, moving_data
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.runtime import Model
-    from simkit.scene import SceneModel
+    from simkit import Model
+    from simkit.extend import SceneModel, SpecBuilder
 
 _MOST: Final = 1e12
 

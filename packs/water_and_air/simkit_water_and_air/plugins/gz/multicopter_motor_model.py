@@ -17,23 +17,30 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, ClassVar, Final
 
-from simkit.msgs.topic_names import valid_topic
-from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
-from simkit.plugins.endpoints import listens
-from simkit.plugins.find_entities import find_named_joint, find_named_link
-from simkit.plugins.joints.joint_axis import JointAxis
+from simkit import ModelPlugin, Params
+from simkit.extend import (
+    JointAxis,
+    Options,
+    OptionsOf,
+    choice,
+    find_named_joint,
+    find_named_link,
+    integer,
+    listens,
+    number,
+    text,
+    without_effect,
+)
+from simkit.msgs import valid_topic
 from simkit.plugins.joints.joint_commands import ACTUATORS
-from simkit.plugins.joints.propeller_joint import PropellerJoint, propeller_inertia
 from simkit.plugins.one_time_warnings import are_usable
-from simkit.plugins.options import Options, OptionsOf, choice, integer, number, text, without_effect
 from simkit_water_and_air.plugins.fluids.link_forces import PushedLinks, moving_data
+from simkit_water_and_air.plugins.fluids.propeller_joint import PropellerJoint, propeller_inertia
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
+    from simkit import Model
+    from simkit.extend import SceneModel, SpecBuilder
     from simkit.msgs import Actuators
-    from simkit.runtime import Model
-    from simkit.scene import SceneModel
 
 _MOST: Final = 1e9
 _DIRECTIONS: Final = {"ccw": 1, "cw": -1}
@@ -102,8 +109,8 @@ class MulticopterMotorModel(ModelPlugin):
         self._input = 0.0  # commanded speed of the rotor [rad/s]
         self._filtered = 0.0  # the same after the filter
         self._has_state = False
-        own = options.namespace or parent.name
-        self.listen(valid_topic(f"/{own}/{options.topic}"), ACTUATORS, self._on_command)
+        namespace = options.namespace or parent.name
+        self.listen(valid_topic(f"/{namespace}/{options.topic}"), ACTUATORS, self._on_command)
 
     def _on_command(self, message: Actuators) -> None:
         speeds = message.velocity

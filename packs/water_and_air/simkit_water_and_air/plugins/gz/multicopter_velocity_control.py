@@ -12,26 +12,35 @@ from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 
+from simkit import ModelPlugin, Params
+from simkit.extend import (
+    LARGEST,
+    Options,
+    OptionsOf,
+    Vector,
+    block,
+    blocks,
+    choice,
+    find_named_joint,
+    find_named_link,
+    listens,
+    number,
+    text,
+    vector3,
+)
 from simkit.float_sum import float_sum
 from simkit.linear_algebra import matmul, norm
 from simkit.matrix_decompositions import pinv, svd
-from simkit.msgs.topic_names import valid_topic
-from simkit.params import LARGEST, Params
-from simkit.plugins.base import ModelPlugin
+from simkit.msgs import valid_topic
 from simkit.plugins.drives.odometry import COMMAND_TYPES
-from simkit.plugins.endpoints import listens
-from simkit.plugins.find_entities import find_named_joint, find_named_link
 from simkit.plugins.one_time_warnings import are_usable
-from simkit.plugins.options import Options, OptionsOf, block, blocks, choice, number, text, vector3
-from simkit.pose import Vector
 from simkit_water_and_air.plugins.fluids.link_forces import moving_data
 from simkit_water_and_air.plugins.gz.multicopter_motor_model import MulticopterMotorModel
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
+    from simkit import Model
+    from simkit.extend import SceneModel, SpecBuilder
     from simkit.msgs import Bool, Twist, TwistStamped
-    from simkit.runtime import Model
-    from simkit.scene import SceneModel
 
 Triple = tuple[float, float, float]
 _MOST: Final = (LARGEST, LARGEST, LARGEST)
@@ -102,9 +111,9 @@ class MulticopterVelocityControl(ModelPlugin):
         if params.diagnostics.error_count > faults:
             return  # rotors that could not be read are reported already
         if not sizes.all() or (svd(effects / sizes[:, np.newaxis])[1] > 1e-6).sum() < 4:
-            found = f"<rotorConfiguration> has {len(rows)} rotors that cannot push and turn the vehicle about all axes"
+            text = f"<rotorConfiguration> has {len(rows)} rotors that cannot push and turn the vehicle about all axes"
             hint = "list at least four rotors that are not in one line, with both directions"
-            params.error("SK-PLUGIN-116", f"{found}", hint)
+            params.error("SK-PLUGIN-116", f"{text}", hint)
             return
         self._allocation = pinv(effects)
 
@@ -134,9 +143,9 @@ class MulticopterVelocityControl(ModelPlugin):
             )
             if any(deviation)
         }
-        own = options.namespace
-        self.listen(valid_topic(f"/{own}/{options.command_topic}"), COMMAND_TYPES, self._on_command)
-        self.listen(valid_topic(f"/{own}/{options.enable_topic}"), "std_msgs/msg/Bool", self._on_enable)
+        namespace = options.namespace
+        self.listen(valid_topic(f"/{namespace}/{options.command_topic}"), COMMAND_TYPES, self._on_command)
+        self.listen(valid_topic(f"/{namespace}/{options.enable_topic}"), "std_msgs/msg/Bool", self._on_enable)
 
     def _on_command(self, message: Twist | TwistStamped) -> None:
         twist = cast("Twist", getattr(message, "twist", message))

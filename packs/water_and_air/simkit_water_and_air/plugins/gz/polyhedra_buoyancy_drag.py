@@ -17,23 +17,34 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit import Params, Pose
+from simkit.extend import (
+    Box,
+    Cylinder,
+    Options,
+    OptionsOf,
+    SharedByCopies,
+    Sphere,
+    Vector,
+    block,
+    blocks,
+    find_named_link,
+    listens,
+    number,
+    pose,
+    text,
+    vector3,
+)
 from simkit.float_sum import float_sum
 from simkit.linear_algebra import matmul
-from simkit.params import Params
-from simkit.plugins.endpoints import listens
-from simkit.plugins.find_entities import find_named_link
-from simkit.plugins.not_deep_copied import SharedByCopies
-from simkit.plugins.options import Options, OptionsOf, block, blocks, number, pose, text, vector3
-from simkit.pose import Pose, Vector
-from simkit.scene import Box, Cylinder, Geometry, Sphere
+from simkit.scene import Geometry
 from simkit_water_and_air.plugins.fluids.link_forces import PushedLinks, moving_data
 from simkit_water_and_air.plugins.fluids.submerged_volume import Solid, solid_of
 from simkit_water_and_air.plugins.fluids.wave_field import PARAMETERS, WavefieldOptions, WavesBase
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.runtime import Model
-    from simkit.scene import SceneModel
+    from simkit import Model
+    from simkit.extend import SceneModel, SpecBuilder
 
 _MOST: Final = 1e9
 _LEAST: Final = 1e-6  # [m³], volume below which a shape counts as dry

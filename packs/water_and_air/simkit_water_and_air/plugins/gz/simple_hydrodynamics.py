@@ -6,14 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from simkit.params import LARGEST, Params
-from simkit.plugins.find_entities import find_named_link
-from simkit.plugins.options import OptionsOf, number, text
+from simkit import Params
+from simkit.extend import LARGEST, OptionsOf, find_named_link, number, text
 from simkit_water_and_air.plugins.fluids.boat_drag import MOST, BoatDragBase, DragOptions, report_negative
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.scene import SceneModel
+    from simkit.extend import SceneModel, SpecBuilder
 
 
 class SimpleHydrodynamicsOptions(DragOptions):

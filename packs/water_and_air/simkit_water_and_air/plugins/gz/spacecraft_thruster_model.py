@@ -11,20 +11,16 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit.msgs.topic_names import valid_topic
-from simkit.params import LARGEST, Params
-from simkit.plugins.base import ModelPlugin
-from simkit.plugins.endpoints import listens
-from simkit.plugins.find_entities import find_named_link
+from simkit import ModelPlugin, Params
+from simkit.extend import LARGEST, Options, OptionsOf, find_named_link, integer, listens, number, text
+from simkit.msgs import valid_topic
 from simkit.plugins.joints.joint_commands import ACTUATORS
-from simkit.plugins.options import Options, OptionsOf, integer, number, text
 from simkit_water_and_air.plugins.fluids.link_forces import PushedLinks, moving_data
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
+    from simkit import Model
+    from simkit.extend import SceneModel, SpecBuilder
     from simkit.msgs import Actuators
-    from simkit.runtime import Model
-    from simkit.scene import SceneModel
 
 _EARLY: Final = 1e-9  # share of a step by which rounding may delay an event
 

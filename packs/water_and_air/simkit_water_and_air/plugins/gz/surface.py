@@ -8,18 +8,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from simkit.params import Params
-from simkit.plugins.endpoints import listens
-from simkit.plugins.find_entities import find_named_link
-from simkit.plugins.options import Options, OptionsOf, block, number, text
+from simkit import Params
+from simkit.extend import Options, OptionsOf, block, find_named_link, listens, number, text
 from simkit_water_and_air.plugins.fluids.hull_points import hull_wrench
 from simkit_water_and_air.plugins.fluids.link_forces import PushedLinks, moving_data
 from simkit_water_and_air.plugins.fluids.wave_field import PARAMETERS, WavefieldOptions, WavesBase
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.runtime import Model
-    from simkit.scene import SceneModel
+    from simkit import Model
+    from simkit.extend import SceneModel, SpecBuilder
 
 
 class PointsOptions(Options):

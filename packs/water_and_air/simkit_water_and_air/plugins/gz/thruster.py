@@ -14,25 +14,20 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit import msgs
+from simkit import Params, msgs
+from simkit.extend import JointAxis, Options, OptionsOf, boolean, find_named_joint, listens, number, publishes, text
 from simkit.linear_algebra import matmul, norm
-from simkit.msgs.topic_names import valid_topic
-from simkit.params import Params
+from simkit.msgs import valid_topic
 from simkit.plugins.battery import Battery, BatteryConsumer
-from simkit.plugins.endpoints import listens, publishes
-from simkit.plugins.find_entities import find_named_joint
-from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.plugins.joints.joint_commands import DOUBLE
 from simkit.plugins.joints.pid import Pid
-from simkit.plugins.joints.propeller_joint import PropellerJoint, propeller_inertia
-from simkit.plugins.options import Options, OptionsOf, boolean, number, text
 from simkit_water_and_air.plugins.fluids.link_forces import PushedLinks, moving_data
+from simkit_water_and_air.plugins.fluids.propeller_joint import PropellerJoint, propeller_inertia
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
+    from simkit import Model
+    from simkit.extend import SceneModel, SpecBuilder
     from simkit.msgs import Bool, Float64
-    from simkit.runtime import Model
-    from simkit.scene import SceneModel
 
 _BOOL: Final = "std_msgs/msg/Bool"
 _MOST: Final = 1e12
@@ -90,8 +85,8 @@ class Thruster(BatteryConsumer):
         options = self.options.read_all()
         joint = find_named_joint(scene, "joint_name", params)
         if options.max_thrust_cmd < options.min_thrust_cmd:
-            found = f"<max_thrust_cmd>{options.max_thrust_cmd:g}</max_thrust_cmd> is below <min_thrust_cmd>"
-            params.error("SK-PARAM-002", f"{found}; expected at least {options.min_thrust_cmd:g}")
+            text = f"<max_thrust_cmd>{options.max_thrust_cmd:g}</max_thrust_cmd> is below <min_thrust_cmd>"
+            params.error("SK-PARAM-002", f"{text}; expected at least {options.min_thrust_cmd:g}")
         if options.power_load and not options.battery_name:
             params.error("SK-PARAM-001", "<power_load> needs the name of a battery", "add <battery_name>")
         if joint is not None:

@@ -24,13 +24,13 @@ def draw_sky(frame: Frame, image: Floats, keys: Floats) -> None:
     """Draw the sky into the pixels without a shape."""
     directions, colours, faces = _rings()
     points = (directions * _RADIUS + frame.eye).astype(np.float32)
-    whole, new_points, new_colours, _ = clip(frame, points, colours, faces)
+    uncut_faces, new_points, new_colours, _ = clip(frame, points, colours, faces)
     new_faces = (len(points) + np.arange(len(new_points), dtype=np.int32)).reshape(-1, 3)
     behind = np.where(keys == frame.far_key, _BEYOND, keys)
     draw_values(
         frame,
         np.concatenate((points, new_points)),
-        np.concatenate((whole, new_faces)),
+        np.concatenate((uncut_faces, new_faces)),
         np.concatenate((colours, new_colours)),
         image,
         behind,

@@ -44,7 +44,7 @@ def clip(frame: Frame, points: Floats, values: Floats, faces: Integers) -> tuple
     bits = _bits(frame, across, along, ahead, _MARGIN, corners, len(points))
     a, b, c = (bits.take(faces[seen, k]) for k in range(3))
     crosses = (a | b | c) != 0
-    whole, cut = faces[seen[~crosses]], seen[crosses]
+    uncut_faces, cut = faces[seen[~crosses]], seen[crosses]
     place = np.zeros(len(points), np.intp)
     place[corners] = np.arange(len(corners))
     rows = place[faces[cut]]
@@ -60,7 +60,7 @@ def clip(frame: Frame, points: Floats, values: Floats, faces: Integers) -> tuple
     flat = data.reshape(-1, data.shape[2])
     new_points = frame.from_camera(flat[:, 0] + middle[0] * flat[:, 2], flat[:, 1] + middle[1] * flat[:, 2], flat[:, 2])
     sources: Integers = np.rint(flat[::3, -1]).astype(np.int32)
-    return whole, new_points, flat[:, 3:-1].astype(np.float32), sources
+    return uncut_faces, new_points, flat[:, 3:-1].astype(np.float32), sources
 
 
 def _distances(frame: Frame, right: Array, up: Array, ahead: Array, margin: float) -> tuple[Array, ...]:
@@ -76,9 +76,9 @@ def _bits(
     bits = np.zeros(len(corners), np.uint8)
     for plane, distance in enumerate(_distances(frame, right, up, ahead, margin)):
         bits |= (distance < 0.0).astype(np.uint8) << np.uint8(plane)
-    found = np.zeros(count, np.uint8)
-    found[corners] = bits
-    return found
+    bits_of_corners = np.zeros(count, np.uint8)
+    bits_of_corners[corners] = bits
+    return bits_of_corners
 
 
 def _cut(data: Array, away: Array) -> Array:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import functools
+import math
 from collections.abc import Sequence
+from typing import Final
 
 import numpy as np
 
 from simkit.scene import Surroundings
+from simkit.scene.world import Fog
 from simkit.sensors.cameras.rendering.software.background import draw_sky
-from simkit.sensors.cameras.rendering.software.fog import add_fog
-from simkit.sensors.cameras.rendering.software.frame import Frame
+from simkit.sensors.cameras.rendering.software.frame import Frame, reciprocals_of
 from simkit.sensors.cameras.rendering.software.lamps import CornerLight, Lamp
 from simkit.sensors.cameras.rendering.software.rasteriser import draw_values, fill_pinholes, nearer
 from simkit.sensors.cameras.rendering.software.shadow_maps import Shadow
@@ -20,6 +23,9 @@ from simkit.sensors.cameras.rendering.software.textures import TexturedShapes
 from simkit.sensors.cameras.rendering.software.triangles import Triangles, VisibleShapes
 from simkit.sensors.cameras.rendering.software.vectors import Array, Floats, Integers
 from simkit.sensors.cameras.rendering.software.visibility import Visibility
+
+_LARGEST_EXPONENT: Final = 16.0  # of the fog's table; exp(-16) is below one step of a colour
+_FOG_STEPS: Final = 4096
 
 
 class ColourImage:
@@ -88,7 +94,7 @@ class ColourImage:
         if self._textures:
             self._textures.apply(frame, triangles, triangles.values[-1], image, keys)
         if surroundings.fog is not None:
-            add_fog(surroundings.fog, frame, image, keys)
+            _add_fog(surroundings.fog, frame, image, keys)
         if surroundings.sky:
             draw_sky(frame, image, keys)
         fill_pinholes(keys, [image])
@@ -128,18 +134,18 @@ class ColourImage:
         rows, columns = window
         part, behind = frame.part(columns, rows), keys[rows, columns]
         own_keys = behind.copy()
-        own = np.zeros((*own_keys.shape, 3), np.float32)
-        draw_values(part, triangles.points, triangles.faces, triangles.values[0], own, own_keys)
+        shape_colours = np.zeros((*own_keys.shape, 3), np.float32)
+        draw_values(part, triangles.points, triangles.faces, triangles.values[0], shape_colours, own_keys)
         is_drawn = own_keys < behind
         if self._textures.numbers[row] >= 0:
-            self._textures.apply(part, triangles, triangles.values[1], own, own_keys)
+            self._textures.apply(part, triangles, triangles.values[1], shape_colours, own_keys)
         if self._surroundings.fog is not None:
-            add_fog(self._surroundings.fog, part, own, own_keys)
+            _add_fog(self._surroundings.fog, part, shape_colours, own_keys)
         opacity = self._table.colours[row, 3]
         target = image[rows, columns]
         np.minimum(target, np.float32(1.0), out=target)
         pixels = np.nonzero(is_drawn)
-        target[pixels] += opacity * (own[pixels] - target[pixels])
+        target[pixels] += opacity * (shape_colours[pixels] - target[pixels])
 
 
 def _window(frame: Frame, triangles: Triangles) -> tuple[slice, slice] | None:
@@ -161,3 +167,44 @@ def _window(frame: Frame, triangles: Triangles) -> tuple[slice, slice] | None:
             return None
         spans.append(slice(first, last))
     return spans[1], spans[0]
+
+
+# ------------------------------------------------------------------ fog
+
+
+def _add_fog(fog: Fog, frame: Frame, image: Floats, keys: Floats) -> None:
+    """Mix the colours of drawn pixels with the fog, in place; pixels without a shape have no fog.
+
+    The fog grows with the depth, as in OpenGL.
+    """
+    pixels = np.flatnonzero(keys.ravel() < frame.far_key)
+    if not len(pixels):
+        return
+    depths = (1.0 / reciprocals_of(keys.ravel()[pixels])).astype(np.float32)
+    if fog.type == "linear":
+        end = max(fog.end, fog.start + 1e-3)
+        clear = np.clip((np.float32(end) - depths) / np.float32(end - fog.start), 0.0, 1.0)
+    else:
+        power = np.float32(fog.density) * depths
+        clear = _decay(power * power if fog.type == "exp2" else power)
+    flat = image.reshape(-1, 3)
+    colour = np.array(fog.colour[:3], np.float32)
+    seen = np.minimum(flat[pixels], np.float32(1.0))
+    flat[pixels] = colour + clear[:, None] * (seen - colour)
+
+
+def _decay(exponents: Floats) -> Floats:
+    """Return exp(-x) from a table with linear interpolation, because NumPy's has other bits on other processors."""
+    table = _decay_table()
+    place = np.minimum(np.maximum(exponents, np.float32(0.0)), np.float32(_LARGEST_EXPONENT)) * np.float32(
+        _FOG_STEPS / _LARGEST_EXPONENT
+    )
+    step = np.minimum(place.astype(np.int32), _FOG_STEPS - 1)
+    low = table.take(step)
+    transmittance: Floats = low + (place - step.astype(np.float32)) * (table.take(step + 1) - low)
+    return transmittance
+
+
+@functools.cache
+def _decay_table() -> Floats:
+    return np.array([math.exp(-_LARGEST_EXPONENT * step / _FOG_STEPS) for step in range(_FOG_STEPS + 1)], np.float32)

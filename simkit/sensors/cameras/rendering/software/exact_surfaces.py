@@ -41,14 +41,14 @@ def exact_depths(frame: Frame, table: ShapeTable, triangles: Triangles, keys: Fl
     draw_numbers(frame, triangles.points, faces, numbers, image, nearer(keys))
     number = image[..., 0].ravel()
     pixels = np.flatnonzero(number)
-    found = number[pixels].astype(np.intp)
-    if not len(found):
+    part_numbers = number[pixels].astype(np.intp)
+    if not len(part_numbers):
         return pixels, np.zeros(0)
-    counts = np.bincount(found)
+    counts = np.bincount(part_numbers)
     used = np.flatnonzero(counts)
     row_of = np.zeros(len(counts), np.intp)
     row_of[used] = np.arange(len(used))
-    rows = row_of[found]
+    rows = row_of[part_numbers]
     terms = np.array([_terms(frame, table, int(use) // _PARTS, int(use) % _PARTS) for use in used])
     width = keys.shape[1]
     x, y = frame.columns()[pixels % width], frame.rows()[pixels // width]

@@ -131,5 +131,5 @@ class Frame:
 
 def reciprocals_of(keys: Floats) -> Array:
     """Return the reciprocal depths [1/m] of keys."""
-    found: Array = (2.0 - keys.astype(np.float64)) / FAR
-    return found
+    reciprocals: Array = (2.0 - keys.astype(np.float64)) / FAR
+    return reciprocals

@@ -60,7 +60,7 @@ def lamps_of(scene: mujoco.MjvScene, origin: Array, shadows: bool) -> list[Lamp]
         origin: origin of the frame in the world [m], shape (3,).
         shadows: True if shapes cast shadows.
     """
-    found = []
+    lamps = []
     for light in scene.lights[: scene.nlight]:
         kind = int(light.type)
         if kind not in (_DIRECTIONAL, _SPOT):
@@ -68,7 +68,7 @@ def lamps_of(scene: mujoco.MjvScene, origin: Array, shadows: bool) -> list[Lamp]
         direction = unit(np.array(light.dir, np.float64))
         is_parallel = kind == _DIRECTIONAL
         constant, linear, quadratic = (float(part) for part in light.attenuation)
-        found.append(
+        lamps.append(
             Lamp(
                 ambient=np.array(light.ambient, np.float32),
                 diffuse=np.array(light.diffuse, np.float32),
@@ -82,7 +82,7 @@ def lamps_of(scene: mujoco.MjvScene, origin: Array, shadows: bool) -> list[Lamp]
                 has_shadow=shadows and bool(light.castshadow) and not light.headlight,
             )
         )
-    return found
+    return lamps
 
 
 class CornerLight:

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import functools
 import math
-from typing import Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from simkit.sensors.cameras.rendering.software.frame import FAR, NEAR, Frame
 from simkit.sensors.cameras.rendering.software.vectors import Array, Floats, Integers
+
+if TYPE_CHECKING:
+    import cv2
+
 
 _ANGLE: Final = math.pi / 2  # [rad] opening angle of OpenCV's camera; the matrix of the frame does the rest
 
@@ -46,7 +50,13 @@ def draw_flat(frame: Frame, points: Floats, faces: Integers, values: Floats, ima
 
 
 def _rasterize(
-    frame: Frame, points: Floats, faces: Integers, values: Floats, image: Floats, keys: Floats, settings: Any
+    frame: Frame,
+    points: Floats,
+    faces: Integers,
+    values: Floats,
+    image: Floats,
+    keys: Floats,
+    settings: cv2.TriangleRasterizeSettings,
 ) -> None:
     import cv2
 
@@ -67,7 +77,7 @@ def draw_keys(matrix: Array, points: Floats, faces: Integers, keys: Floats, both
 
 
 @functools.lru_cache(maxsize=4)
-def _settings(is_flat: bool, both_sides: bool = False) -> Any:
+def _settings(is_flat: bool, both_sides: bool = False) -> cv2.TriangleRasterizeSettings:
     import cv2
 
     settings = cv2.TriangleRasterizeSettings()

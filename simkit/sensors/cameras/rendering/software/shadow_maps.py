@@ -148,8 +148,8 @@ class SoftShadow:
         return mean
 
     def _from(self, number: int, points: Floats) -> Floats:
-        found = self._draw(number)
-        return found.shares(rotate(points - found.position.astype(np.float32), found.axes))
+        shadow_map = self._draw(number)
+        return shadow_map.shares(rotate(points - shadow_map.position.astype(np.float32), shadow_map.axes))
 
 
 def _parallel_keys(along: Floats, depth: float) -> Floats:
@@ -224,25 +224,25 @@ class ShadowMaps:
             self._static.append((b"", np.empty((self._size, self._size), np.float32)))
         maps = []
         for number, lamp in enumerate(lamps):
-            found = self._map(lamp, reach, far, shapes, self._buffers[number])
-            ground = self._is_ground(found, shapes, table)
+            shadow_map = self._map(lamp, reach, far, shapes, self._buffers[number])
+            ground = self._is_ground(shadow_map, shapes, table)
             key = b"".join(
                 (
                     state,
                     ground.tobytes(),
-                    found.position.tobytes(),
-                    found.axes.tobytes(),
+                    shadow_map.position.tobytes(),
+                    shadow_map.axes.tobytes(),
                     np.array((reach, far)).tobytes(),
                 )
             )
             known, keys = self._static[number]
             if key != known:
-                keys.fill(found.far_key)
-                self._add(found, shapes, table, fixed, keys)
+                keys.fill(shadow_map.far_key)
+                self._add(shadow_map, shapes, table, fixed, keys)
                 self._static[number] = key, keys
-            np.copyto(found.keys, keys)
-            self._add(found, shapes, table, moving, found.keys)
-            maps.append(found)
+            np.copyto(shadow_map.keys, keys)
+            self._add(shadow_map, shapes, table, moving, shadow_map.keys)
+            maps.append(shadow_map)
         return maps
 
     def draw_once(
@@ -251,10 +251,10 @@ class ShadowMaps:
         """Draw the shadow map of one lamp, and overwrite the map before; see `draw`."""
         if not self._buffers:
             self._buffers.append(np.empty((self._size, self._size), np.float32))
-        found = self._map(lamp, reach, far, shapes, self._buffers[0])
-        found.keys.fill(found.far_key)
-        self._add(found, shapes, table, casters, found.keys)
-        return found
+        shadow_map = self._map(lamp, reach, far, shapes, self._buffers[0])
+        shadow_map.keys.fill(shadow_map.far_key)
+        self._add(shadow_map, shapes, table, casters, shadow_map.keys)
+        return shadow_map
 
     def _map(self, lamp: Lamp, reach: float, far: float, shapes: VisibleShapes, keys: Floats) -> ShadowMap:
         """Return an empty map of a lamp."""
@@ -268,24 +268,24 @@ class ShadowMaps:
         frame = Frame(view, lamp.place + origin, rotation, origin, shift=0.0)
         return ShadowMap(keys, lamp.place, axes, wide, 0.0, float(frame.far_key), frame)
 
-    def _add(self, found: ShadowMap, shapes: VisibleShapes, table: ShapeTable, rows: Array, keys: Floats) -> None:
+    def _add(self, shadow_map: ShadowMap, shapes: VisibleShapes, table: ShapeTable, rows: Array, keys: Floats) -> None:
         """Draw shapes into a map; of a closed shape only the sides that face the light."""
-        if found.frame is not None:
-            from_light = shapes.seen_from(found.frame)
+        if shadow_map.frame is not None:
+            from_light = shapes.seen_from(shadow_map.frame)
             rows = rows[from_light.is_visible[rows]]
             triangles = from_light.triangles(from_light.casters(rows), [])
-            points, faces, owners, matrix = triangles.points, triangles.faces, triangles.owners, found.frame.matrix
+            points, faces, owners, matrix = triangles.points, triangles.faces, triangles.owners, shadow_map.frame.matrix
         else:
-            rows = rows[~self._is_ground(found, shapes, table)[rows]]
+            rows = rows[~self._is_ground(shadow_map, shapes, table)[rows]]
             corners = shapes.casters(rows)
-            points, faces, owners, matrix = _parallel(found, corners), corners.faces, corners.owners, np.eye(4)
+            points, faces, owners, matrix = _parallel(shadow_map, corners), corners.faces, corners.owners, np.eye(4)
             # beyond twice the range, points would be behind OpenCV's camera
             faces = faces[(points[:, 2] < -0.1)[faces].all(axis=1)]
         is_closed = np.isin(table.kinds, _CLOSED)[owners[faces[:, 0]]]
         draw_keys(matrix, points, faces[is_closed], keys)
         draw_keys(matrix, points, faces[~is_closed], keys, both_sides=True)
 
-    def _is_ground(self, found: ShadowMap, shapes: VisibleShapes, table: ShapeTable) -> Array:
+    def _is_ground(self, shadow_map: ShadowMap, shapes: VisibleShapes, table: ShapeTable) -> Array:
         """Return True for each plane below everything that is lit: light and camera are above, and the map is inside.
 
         Such a plane shadows nothing that is visible, but it would fill the map.
@@ -294,16 +294,16 @@ class ShadowMaps:
         for row in table.planes().tolist():
             normal = table.rotations[row, :, 2].astype(np.float64)
             eye = shapes.frame.eye - (table.positions[row].astype(np.float64) - shapes.frame.origin)
-            is_wide = bool((table.sizes[row, :2] >= found.reach).all())
-            is_ground[row] = is_wide and float(dot(normal, found.axes[2])) < 0.0 < float(dot(normal, eye))
+            is_wide = bool((table.sizes[row, :2] >= shadow_map.reach).all())
+            is_ground[row] = is_wide and float(dot(normal, shadow_map.axes[2])) < 0.0 < float(dot(normal, eye))
         return is_ground
 
 
-def _parallel(found: ShadowMap, corners: Corners) -> Floats:
+def _parallel(shadow_map: ShadowMap, corners: Corners) -> Floats:
     """Return corners as OpenCV must get them for parallel rays, shape (n, 3)."""
-    away = corners.points - found.position.astype(np.float32)
-    right, up, along = (dot(away, axis.astype(np.float32)) for axis in found.axes)
-    share = np.float32(1.0) / np.maximum(np.float32(2.0) - along * np.float32(1.0 / found.depth), np.float32(1e-3))
-    scale = np.float32(1.0 / found.reach)
-    is_near = along < np.float32(1.9 * found.depth)
+    away = corners.points - shadow_map.position.astype(np.float32)
+    right, up, along = (dot(away, axis.astype(np.float32)) for axis in shadow_map.axes)
+    share = np.float32(1.0) / np.maximum(np.float32(2.0) - along * np.float32(1.0 / shadow_map.depth), np.float32(1e-3))
+    scale = np.float32(1.0 / shadow_map.reach)
+    is_near = along < np.float32(1.9 * shadow_map.depth)
     return np.stack((right * scale * share, up * scale * share, np.where(is_near, -share, np.float32(0.0))), axis=-1)

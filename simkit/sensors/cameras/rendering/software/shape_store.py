@@ -100,8 +100,8 @@ class ShapeStore:
         wanted = _SIDES_PER_ROOT * np.sqrt(table.sizes[:, :2].max(axis=1) * pixels)
         steps = np.minimum(np.searchsorted(_SIDES, wanted), len(_SIDES) - 1)
         is_round = np.isin(table.kinds, tuple(ROUND))
-        found: Integers = np.where(is_round, np.array(_SIDES, np.int32)[steps], 0).astype(np.int32)
-        return found
+        side_counts: Integers = np.where(is_round, np.array(_SIDES, np.int32)[steps], 0).astype(np.int32)
+        return side_counts
 
     def place(
         self, scene: mujoco.MjvScene, table: ShapeTable, row: int, sides: int, squares: int, frame: Frame

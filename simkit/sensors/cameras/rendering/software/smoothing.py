@@ -44,17 +44,17 @@ def smooth(visibility: Visibility, triangles: Triangles, layers: list[Floats], i
     for place, drawn in zip(places, visibility.draw_samples(values, places), strict=True):
         pixels = np.flatnonzero(drawn[..., 0] != middle)
         wanted, packed = (drawn[..., k].ravel()[pixels] for k in (0, 1))
-        found = _unpack(packed)
+        sample_colours = _unpack(packed)
         at = pixels + 2 * (pixels // width) + width + 3  # places in the padded array
         is_open = np.ones(len(pixels), bool)
         for across, down in _neighbours(*place):
             rows = np.flatnonzero(is_open & (padded.ravel()[at + down * (width + 2) + across] == wanted))
-            found[rows] = colours[pixels[rows] + down * width + across]
+            sample_colours[rows] = colours[pixels[rows] + down * width + across]
             is_open[rows] = False
         # a sample of the background that no neighbour shows keeps the colour of its pixel
         lost = is_open & (wanted == 0.0)
-        found[lost] = colours[pixels[lost]]
-        change[pixels] += found - colours[pixels]
+        sample_colours[lost] = colours[pixels[lost]]
+        change[pixels] += sample_colours - colours[pixels]
     change *= np.float32(1.0 / len(places))
     colours += change
 

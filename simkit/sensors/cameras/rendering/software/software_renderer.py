@@ -227,8 +227,10 @@ class SoftwareRenderer:
             return soft_maps.draw_once(lamps[lamp], table, shapes, casters, reach, far)
 
         soft: list[Shadow] = [
-            SoftShadow(found, functools.partial(draw, number), len(moved)) if shadowed[number].is_parallel else found
-            for number, found in enumerate(hard)
+            SoftShadow(shadow_map, functools.partial(draw, number), len(moved))
+            if shadowed[number].is_parallel
+            else shadow_map
+            for number, shadow_map in enumerate(hard)
         ]
         return soft, lamps
 

@@ -165,13 +165,13 @@ class TexturedShapes:
 
     def __init__(self, model: mujoco.MjModel, table: ShapeTable, textures: dict[int, Texture]) -> None:
         self._model, self._table, self._known = model, table, textures
-        own = table.textures
+        shape_textures = table.textures
         numbers = np.full(len(table), -1, np.int32)
         if model.ntex and model.nmat:
             by_material = np.asarray(model.mat_texid).reshape(model.nmat, _ROLES)[:, _RGB]
             has_material = table.materials >= 0
             numbers[has_material] = by_material[table.materials[has_material]]
-        numbers[own >= 0] = own[own >= 0]
+        numbers[shape_textures >= 0] = shape_textures[shape_textures >= 0]
         for row in np.flatnonzero(numbers >= 0):
             is_bare = table.kinds[row] in (shape_meshes.LINE, shape_meshes.LINEBOX)
             channels = int(model.tex_nchannel[numbers[row]])
@@ -186,11 +186,11 @@ class TexturedShapes:
 
     def coordinates(self, corners: Corners, frame: Frame) -> Floats:
         """Return the texture coordinates at corners, shape (n, 3); two of them for planar textures."""
-        found = np.zeros((len(corners.points), 3), np.float32)
+        uv = np.zeros((len(corners.points), 3), np.float32)
         for row in np.unique(corners.owners[self.numbers[corners.owners] >= 0]).tolist():
             rows = np.flatnonzero(corners.owners == row)
-            found[rows] = self._of_shape(row, corners.points[rows], corners.coordinates[rows], frame)
-        return found
+            uv[rows] = self._of_shape(row, corners.points[rows], corners.coordinates[rows], frame)
+        return uv
 
     def _of_shape(self, row: int, points: Floats, coordinates: Floats, frame: Frame) -> Floats:
         """Return coordinates as MuJoCo 4 maps them: repeated over the unit shape, or over the metres of its size."""
@@ -266,8 +266,8 @@ class TexturedShapes:
 
 
 def _length(x: Floats, y: Floats) -> Floats:
-    found: Floats = np.sqrt(x * x + y * y)
-    return found
+    lengths: Floats = np.sqrt(x * x + y * y)
+    return lengths
 
 
 def _pixel_sizes(where: Floats, numbers: Array) -> Floats:

@@ -154,7 +154,7 @@ class VisibleShapes:
             places: positions of lamps, below which planes are divided finely.
         """
         table, frame = self._table, self.frame
-        found, points, normals, faces, parts, coordinates, counts = [], [], [], [], [], [], []
+        drawn_rows, points, normals, faces, parts, coordinates, counts = [], [], [], [], [], [], []
         start = 0
         for row in rows.tolist():
             kind = int(table.kinds[row])
@@ -171,7 +171,7 @@ class VisibleShapes:
                     continue
                 at, up, of, part = placed.points, placed.normals, placed.mesh.faces, placed.mesh.parts
                 texture = placed.mesh.coordinates
-            found.append(row)
+            drawn_rows.append(row)
             counts.append(len(at))
             points.append(at)
             normals.append(up)
@@ -179,7 +179,7 @@ class VisibleShapes:
             parts.append(part)
             coordinates.append(np.zeros((len(at), 2), np.float32) if texture is None else texture)
             start += len(at)
-        if not found:
+        if not drawn_rows:
             none = np.zeros((0, 3), np.float32)
             empty = np.zeros(0, np.int32)
             return Corners(none, none, np.zeros((0, 3), np.int32), empty, empty, np.zeros((0, 2), np.float32))
@@ -187,7 +187,7 @@ class VisibleShapes:
             np.concatenate(points),
             np.concatenate(normals),
             np.concatenate(faces),
-            np.repeat(np.array(found, np.int32), counts),
+            np.repeat(np.array(drawn_rows, np.int32), counts),
             np.concatenate(parts),
             np.concatenate(coordinates),
         )
@@ -216,7 +216,7 @@ class VisibleShapes:
             return Triangles(corners.points, corners.faces, corners.owners, corners.parts, values)
         doubtful = corners.faces[chosen]
         joined = np.concatenate(values, axis=1) if values else np.zeros((len(corners.points), 0), np.float32)
-        whole, points, new_values, sources = clip(self.frame, corners.points, joined, doubtful)
+        uncut_faces, points, new_values, sources = clip(self.frame, corners.points, joined, doubtful)
         first = np.repeat(doubtful[sources, 0], 3)
         new_faces = (len(corners.points) + np.arange(len(points), dtype=np.int32)).reshape(-1, 3)
         layers = [
@@ -224,7 +224,7 @@ class VisibleShapes:
         ]
         return Triangles(
             np.concatenate((corners.points, points)),
-            np.concatenate((corners.faces[~chosen], whole, new_faces)),
+            np.concatenate((corners.faces[~chosen], uncut_faces, new_faces)),
             np.concatenate((corners.owners, corners.owners[first])),
             np.concatenate((corners.parts, corners.parts[first])),
             layers,

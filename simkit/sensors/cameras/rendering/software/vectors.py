@@ -45,8 +45,8 @@ def unit(vectors: Array) -> Array:
     """Return the vectors at length 1; a zero vector stays zero."""
     lengths = np.asarray(np.sqrt(dot(vectors, vectors)))[..., None]
     lengths[lengths == 0.0] = 1.0
-    found: Array = vectors / lengths
-    return found
+    unit_vectors: Array = vectors / lengths
+    return unit_vectors
 
 
 def power(base: Floats, exponents: Floats) -> Floats:

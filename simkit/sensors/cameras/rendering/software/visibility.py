@@ -80,12 +80,12 @@ class Visibility:
         area = sides[0][1] * sides[1][0] - sides[0][0] * sides[1][1]  # positive for a front, because y is downwards
         longest = np.sqrt(np.max([dx * dx + dy * dy for dx, dy in sides], axis=0))
         column, row = np.floor(x.mean(axis=1)), np.floor(y.mean(axis=1))
-        found: Array = (area > 0.0) & ((0.5 * area < _SMALL) | (area < _THIN * longest))
+        may_hide: Array = (area > 0.0) & ((0.5 * area < _SMALL) | (area < _THIN * longest))
         short = longest < _SHORT
         inside = (column >= 0) & (row >= 0) & (column < view.width) & (row < view.height)
-        found &= inside | ~short
-        checked = np.flatnonzero(found & short)
+        may_hide &= inside | ~short
+        checked = np.flatnonzero(may_hide & short)
         farthest = cv2.dilate(self.keys, np.ones((5, 5), np.uint8))
         around = farthest[row[checked].astype(np.intp), column[checked].astype(np.intp)]
-        found[checked] = 2.0 - FAR / depth[faces[checked]].mean(axis=1) <= around
-        return found
+        may_hide[checked] = 2.0 - FAR / depth[faces[checked]].mean(axis=1) <= around
+        return may_hide

@@ -1,0 +1,1 @@
+"""Plugins that move actors, and the models of actors."""

@@ -1,0 +1,1 @@
+"""Commands of the pack for authors of plugins and packs."""

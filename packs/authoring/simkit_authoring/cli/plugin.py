@@ -1,0 +1,270 @@
+"""List, describe and create plugins."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from typer import Option
+
+from simkit.cli.run_options import NONE_GIVEN
+from simkit.cli.terminal import completion, options
+from simkit.cli.terminal.output import JsonObject, print_diagnostics, print_status, stdout_console
+from simkit.errors import InputError
+from simkit.extend import Diagnostics, GivenOptions, argument, option, report_errors, with_run_options
+
+if TYPE_CHECKING:
+    from simkit_authoring.catalogue import Entry
+    from simkit_authoring.plugin_facts import Facts, Parameter, Service, Topic
+
+plugin = typer.Typer(help="List, describe and create plugins.", no_args_is_help=True)
+
+
+@plugin.command("list")
+@report_errors
+@with_run_options("plugin_paths")
+def list_plugins(
+    words: Annotated[list[str] | None, argument("List only names that contain one of these words.")] = None,
+    given: GivenOptions = NONE_GIVEN,
+    json_: options.Json = False,
+) -> None:
+    """List all names that a world can use for a plugin, with the elements that can have the plugin."""
+    from simkit_authoring.catalogue import known_plugins
+
+    search_words = [word.casefold() for word in words or ()]
+    problems = Diagnostics()
+    entries = known_plugins(given.values.get("plugin_paths", ()), problems)
+    print_diagnostics(problems, verbose=True)
+    if json_:
+        shown = [_as_dict(e) for e in entries if _matching(e, search_words) or not search_words]
+        stdout_console().file.write(json.dumps(shown, indent=2) + "\n")
+        return
+    rows = [
+        (name, " or ".join(e.parents), e)
+        for e in entries
+        for name in (_matching(e, search_words) if search_words else e.names)
+    ]
+    if not rows:
+        print_status(f"no plugin name contains {' or '.join(words or ())}; list all with `simkit plugin list`")
+        return
+    width = max(len(name) for name, _, _ in rows)
+    places = max(len(parents) for _, parents, _ in rows)
+    for name, parents, entry in rows:
+        stdout_console().print(
+            f"{name:<{width}}  {parents:<{places}}  {entry.cls.__name__}: {_first_sentence(entry.summary)}"
+        )
+
+
+def _matching(entry: Entry, search_words: list[str]) -> list[str]:
+    if any(word in entry.cls.__name__.casefold() for word in search_words):
+        return list(entry.names)
+    return [name for name in entry.names if any(word in name.casefold() for word in search_words)]
+
+
+@plugin.command("info")
+@report_errors
+@with_run_options("plugin_paths")
+def show_info(
+    name: Annotated[str, argument("Name in any spelling, class, MODULE:CLASS or FILE.py.")],
+    given: GivenOptions = NONE_GIVEN,
+    json_: options.Json = False,
+) -> None:
+    """Print the parameters, topics, services and actions of a plugin."""
+    from simkit_authoring.catalogue import common_facts, facts_of, find_entry
+
+    entry = find_entry(name, given.values.get("plugin_paths", ()))
+    facts = facts_of(entry.cls)
+    if json_:
+        description = {
+            **_as_dict(entry),
+            **_facts_as_dict(facts),
+            "common": _facts_as_dict(common_facts())["parameters"],
+        }
+        stdout_console().file.write(json.dumps(description, indent=2) + "\n")
+        return
+    first, *others = entry.names or (entry.cls.__name__,)
+    stdout_console().print(
+        f"{first}: {entry.cls.__name__}, on a {' or a '.join(entry.parents)}".replace("on a any", "anywhere")
+    )
+    if entry.summary:
+        stdout_console().print(f"  {entry.summary}")
+    stdout_console().print(f"  from {entry.source or entry.origin}")
+    if others:
+        stdout_console().print(f"  other names: {', '.join(others)}")
+    _print_table("parameters", [_parameter_row(p) for p in facts.parameters])
+    _print_table("publishes", [_topic_row(t) for t in facts.topics if t.published])
+    _print_table("subscribes to", [_topic_row(t) for t in facts.topics if not t.published])
+    _print_table("services", [_service_row(s) for s in facts.services if not s.is_action])
+    _print_table("actions", [_service_row(s) for s in facts.services if s.is_action])
+
+
+@plugin.command("new")
+@report_errors
+@with_run_options("file", "plugin_paths", without={"base": "plugins do not depend on the base"})
+def new_plugin(
+    name: Annotated[str | None, argument("Name of the plugin: wheel_brake, WheelBrake or libwheel_brake.so.")] = None,
+    from_: Annotated[
+        str | None,
+        option(
+            "Create a plugin for each unknown plugin library of this world.",
+            "WORLD",
+            "--from",
+            complete=completion.worlds,
+        ),
+    ] = None,
+    on: Annotated[str, Option(help="Parent element of the plugin: world, model, visual or sensor.")] = "model",
+    folder: Annotated[Path, option("Folder for the new files.", "DIR")] = Path(),
+    force: options.Force = False,
+    given: GivenOptions = NONE_GIVEN,
+) -> None:
+    """Create a plugin with typed parameters, and a test that passes."""
+    from simkit_authoring.new_plugins import plugin_named, plugins_missing_in
+    from simkit_authoring.plugin_skeleton import write_plugins
+
+    if (name is None) == (from_ is None):
+        raise InputError("SK-PLUGIN-072", "give either NAME or --from WORLD")
+    if from_ is None:
+        assert name is not None
+        new_plugins = [plugin_named(name, on)]
+    else:
+        from simkit.build import read_scene
+
+        scene, _ = read_scene(from_, missing_meshes=True, **given.source_options())
+        new_plugins = plugins_missing_in(scene, given.values.get("plugin_paths", ()))
+        if not new_plugins:
+            print_status("every plugin of this file is known; nothing to write")
+            return
+    for path in write_plugins(new_plugins, folder, overwrite=force):
+        stdout_console().print(str(path))
+    print_status(f"run the tests with `python -m pytest {folder}`; use the plugins with --plugin-path {folder}")
+
+
+# ---------------------------------------------------------------------- as text
+
+
+def _first_sentence(text: str) -> str:
+    head, dot, _ = text.partition(". ")
+    return head + "." if dot else text
+
+
+def _print_table(title: str, rows: list[tuple[str, ...]]) -> None:
+    if not rows:
+        return
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    stdout_console().print(f"\n{title}")
+    for row in rows:
+        stdout_console().print(
+            "  " + "  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip()
+        )
+
+
+def _parameter_row(p: Parameter) -> tuple[str, ...]:
+    kind = f"{p.size} numbers" if p.kind == "vector" and p.size else {"vector": "numbers"}.get(p.kind, p.kind)
+    notes = [_range(p), "one of " + ", ".join(map(repr, p.choices)) if p.choices else ""]
+    notes += ["repeatable" if p.repeated else "", "live" if p.live else "", p.says]
+    depth = "  " * (len(p.path) - 1)
+    return depth + p.path[-1], kind or "(taken)", _default(p), p.unit, "; ".join(filter(None, notes))
+
+
+def _range(p: Parameter) -> str:
+    if p.minimum is not None and p.maximum is not None:
+        return f"{p.minimum:g} to {p.maximum:g}"
+    if p.minimum is not None:
+        return f"at least {p.minimum:g}"
+    return f"at most {p.maximum:g}" if p.maximum is not None else ""
+
+
+def _default(p: Parameter) -> str:
+    if p.required:
+        return "required"
+    if isinstance(p.default, bool):
+        shown = str(p.default).lower()
+    elif isinstance(p.default, tuple):
+        shown = " ".join(_number(v) for v in p.default)
+    elif isinstance(p.default, (int, float)):
+        shown = _number(p.default)
+    else:
+        shown = str(p.default or "")
+    if p.instead:
+        shown = f"<{'>, else <'.join(p.instead)}>" + (f", else {shown}" if shown else "")
+    return shown
+
+
+def _number(value: object) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _topic_row(t: Topic) -> tuple[str, ...]:
+    notes = ["latched" if t.latched else "", "named by " + _in_brackets(t.elements) if t.elements else ""]
+    return t.name, " or ".join(t.types), "; ".join(filter(None, notes))
+
+
+def _service_row(s: Service) -> tuple[str, ...]:
+    return s.name, s.type, "named by " + _in_brackets(s.elements) if s.elements else ""
+
+
+def _in_brackets(names: tuple[str, ...]) -> str:
+    return ", ".join(f"<{name}>" for name in names)
+
+
+# ---------------------------------------------------------------------- as JSON
+
+
+def _as_dict(entry: Entry) -> JsonObject:
+    return {
+        "class": entry.cls.__name__,
+        "names": list(entry.names),
+        "parents": list(entry.parents),
+        "origin": entry.origin,
+        "source": entry.source,
+        "summary": entry.summary,
+    }
+
+
+def _facts_as_dict(facts: Facts) -> JsonObject:
+    return {
+        "parameters": [
+            {
+                "name": p.name,
+                "type": p.kind,
+                "default": _plain(p.default),
+                "instead": list(p.instead),
+                "required": p.required,
+                "unit": p.unit,
+                "minimum": _plain(p.minimum),
+                "maximum": _plain(p.maximum),
+                "choices": list(p.choices),
+                "size": p.size,
+                "repeated": p.repeated,
+                "live": p.live,
+                "description": p.says,
+            }
+            for p in facts.parameters
+        ],
+        "topics": [
+            {
+                "name": t.name,
+                "types": list(t.types),
+                "direction": "out" if t.published else "in",
+                "latched": t.latched,
+                "named_by": list(t.elements),
+            }
+            for t in facts.topics
+        ],
+        "services": [_service_as_dict(s) for s in facts.services if not s.is_action],
+        "actions": [_service_as_dict(s) for s in facts.services if s.is_action],
+    }
+
+
+def _service_as_dict(service: Service) -> JsonObject:
+    return {"name": service.name, "type": service.type, "named_by": list(service.elements)}
+
+
+def _plain(value: object) -> object:
+    """Convert a value to JSON; infinity becomes text."""
+    if isinstance(value, tuple):
+        return [_plain(v) for v in value]
+    return str(value) if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,1 @@
+"""Option of `simkit run` that reloads plugins."""

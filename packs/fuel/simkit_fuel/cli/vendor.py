@@ -1,0 +1,28 @@
+"""Copy a world and all files that it uses into one folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+from simkit.cli.run_options import NONE_GIVEN
+from simkit.cli.terminal import options
+from simkit.cli.terminal.output import stdout_console
+from simkit.extend import GivenOptions, argument, report_errors, with_run_options
+
+LISTED_AFTER = "convert"
+
+
+@report_errors
+@with_run_options("file")
+def vendor(
+    file: options.File,
+    folder: Annotated[Path, argument("New or empty folder to write.")],
+    given: GivenOptions = NONE_GIVEN,
+) -> None:
+    """Copy a world and all files that it uses into one folder."""
+    from simkit import describe
+    from simkit.writers.vendored_folder import vendor as write
+
+    main, count = write(file, folder, describe, **given.source_options())
+    stdout_console().print(f"{folder / main} and {count - 1} other files")

@@ -1,0 +1,348 @@
+"""Parameters of Nav2's nodes and of `robot_localization` as parameters of simkit's plugins.
+
+A node of a launch file has a flat table of parameters, such as `FollowPath.max_vel_x`. A plugin gets those that it
+reads. The nearest class of simkit replaces a class that simkit does not have, and a warning says so.
+"""
+
+from __future__ import annotations
+
+import html
+import re
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Final
+
+from simkit import Plugin
+from simkit.plugins.unread_parameters import names_read
+from simkit_navigation.plugins.localisation.amcl import Amcl
+from simkit_navigation.plugins.localisation.robot_localization import EkfNode
+from simkit_navigation.plugins.navigation.behavior_server import BehaviorServer
+from simkit_navigation.plugins.navigation.bt_navigator import BtNavigator
+from simkit_navigation.plugins.navigation.controller_server import ControllerServer
+from simkit_navigation.plugins.navigation.costmap_2d import Costmap2D
+from simkit_navigation.plugins.navigation.planner_server import PlannerServer
+
+Values = dict[str, object]
+"""Values of parameters; blocks are dictionaries."""
+
+_ELEMENT: Final = re.compile(r"[A-Za-z_][\w.-]*")
+_EKF_INPUT: Final = re.compile(
+    r"(odom|pose|twist|imu)\d+(_config|_differential|_relative|_queue_size|_nodelay|_remove_gravitational_acceleration"
+    r"|(_pose|_twist|_linear_acceleration)?_rejection_threshold)?"
+)
+_PURSUIT: Final = "nav2_regulated_pure_pursuit_controller::RegulatedPurePursuitController"
+_SHIM: Final = "nav2_rotation_shim_controller::RotationShimController"
+_NAVFN: Final = "nav2_navfn_planner::NavfnPlanner"
+_MOTION_MODELS: Final = {
+    "differential": "nav2_amcl::DifferentialMotionModel",
+    "omnidirectional": "nav2_amcl::OmniMotionModel",
+}
+_SPEEDS: Final = ("desired_linear_vel", "max_vel_x", "vx_max", "max_linear_vel")
+_TURNING_RATES: Final = ("rotate_to_heading_angular_vel", "max_vel_theta", "wz_max", "max_angular_vel")
+_OF_ALL_NODES: Final = frozenset(("use_sim_time", "qos_overrides", "bond_heartbeat_period"))
+"""Parameters of nodes that change nothing here and need no warning."""
+
+
+@dataclass
+class PluginOfNode:
+    """Plugin that does the work of a node, with its parameters.
+
+    Attributes:
+        kind: class of the plugin.
+        name: name of the plugin.
+        values: parameters; blocks are dictionaries.
+        blocks: names of blocks that the user has chosen, such as `FollowPath`.
+        told: sentences about what differs from the node's parameters.
+    """
+
+    kind: type[Plugin]
+    name: str
+    values: Values
+    blocks: list[str] = field(default_factory=list)
+    told: list[str] = field(default_factory=list)
+
+    def elements(self, unused: list[str]) -> str:
+        """Return the elements of the plugin in a file.
+
+        Args:
+            unused: list to which the names of parameters without an effect are added.
+        """
+        names = {part for name in names_read(self.kind) for part in name.split(".")} | set(self.blocks)
+        return "".join(_elements(self.values, names, "", unused))
+
+
+def _elements(values: Mapping[str, object], names: Collection[str], prefix: str, unused: list[str]) -> Iterator[str]:
+    for key, value in values.items():
+        is_known = _ELEMENT.fullmatch(key) is not None and (key in names or _EKF_INPUT.fullmatch(key) is not None)
+        if not is_known:
+            if prefix or key not in _OF_ALL_NODES:
+                unused.append(f"{prefix}{key}")
+        elif isinstance(value, Mapping):
+            yield f"<{key}>{''.join(_elements(value, names, f'{prefix}{key}.', unused))}</{key}>"
+        else:
+            yield f"<{key}>{html.escape(_text(value))}</{key}>"
+
+
+def _text(value: object) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return " ".join(map(_text, value)) if isinstance(value, (list, tuple)) else str(value)
+
+
+def nested(values: Mapping[str, object]) -> Values:
+    """Return parameters with dots in their names as blocks."""
+    tree: Values = {}
+    for name, value in values.items():
+        *blocks, last = name.split(".")
+        at = tree
+        for block in blocks:
+            below = at.setdefault(block, {})
+            if not isinstance(below, dict):
+                below = at[block] = {}
+            at = below
+        at[last] = value
+    return tree
+
+
+def model_of_plugins(model: str, plugins: Sequence[PluginOfNode], ros: str, unused: list[str]) -> str:
+    """Return a static model without a shape whose plugins do the work of a node.
+
+    Args:
+        model: name of the model.
+        plugins: plugins.
+        ros: content of their blocks `<ros>`.
+        unused: list to which the names of parameters without an effect are added.
+    """
+    texts = (
+        f'<plugin filename="{plugin.kind.filenames[0]}" name="{plugin.name}"><ros>{ros}</ros>'
+        f"{plugin.elements(unused)}</plugin>"
+        for plugin in plugins
+    )
+    link = '<static>true</static><link name="link"/>'
+    return f'<sdf version="1.9"><model name="{model}">{link}{"".join(texts)}</model></sdf>'
+
+
+# ---------------------------------------------------------------------- tables of the nodes
+
+
+@dataclass(frozen=True)
+class ServerNode:
+    """Node whose work a plugin does.
+
+    Attributes:
+        plugins: function from the parameters of the node, and of its costmap, to the plugins.
+        node: name of the node, unless the launch file gives one.
+        costmap: name of the node's costmap; empty without one.
+        is_lifecycle: True if the node does its work only while it is active.
+        has_live_parameters: True if the plugin serves the parameters of the node.
+    """
+
+    plugins: Callable[[Values, Values], list[PluginOfNode]]
+    node: str
+    costmap: str = ""
+    is_lifecycle: bool = True
+    has_live_parameters: bool = False
+
+
+def _amcl(values: Values, _: Values) -> list[PluginOfNode]:
+    plugin = PluginOfNode(Amcl, "amcl", dict(values))
+    model = str(values.get("robot_model_type", ""))
+    if model in _MOTION_MODELS:
+        plugin.values["robot_model_type"] = _MOTION_MODELS[model]
+    if values.get("laser_model_type") == "beam":
+        plugin.values["laser_model_type"] = "likelihood_field"
+        plugin.told.append("the laser model 'beam' is not available; 'likelihood_field' is used")
+    return [plugin]
+
+
+def _costmap(name: str, values: Values) -> PluginOfNode:
+    plugin = PluginOfNode(Costmap2D, name, {"robot_base_frame": "base_link", **values})
+    layers = _names(values.get("plugins"))
+    kept = []
+    for layer in layers:
+        block = values.get(layer)
+        settings = dict(block) if isinstance(block, dict) else {}
+        kind = str(settings.get("plugin", "")).replace("/", "::")
+        if kind == "nav2_costmap_2d::VoxelLayer" or kind.endswith("VoxelLayer"):
+            settings["plugin"] = "nav2_costmap_2d::ObstacleLayer"
+            plugin.told.append(f"{layer}: an ObstacleLayer replaces the VoxelLayer")
+        elif kind and kind.startswith("nav2_") and kind.rpartition("::")[2] not in _LAYERS:
+            plugin.told.append(f"{layer}: the layer {kind} is left out")
+            continue
+        plugin.values[layer] = _without_clouds(layer, settings, plugin)
+        kept.append(layer)
+    if layers:
+        plugin.values["plugins"] = kept
+    plugin.blocks += kept
+    filters = _names(plugin.values.pop("filters", None))
+    if filters:
+        plugin.told.append(f"the filters {', '.join(filters)} are left out")
+    for block_name, block in values.items():  # a block of a layer that is not in the list has no effect in Nav2, either
+        if isinstance(block, dict) and "plugin" in block and layers and block_name not in kept:
+            plugin.values.pop(block_name, None)
+    return plugin
+
+
+_LAYERS: Final = frozenset(("StaticLayer", "ObstacleLayer", "InflationLayer"))
+
+
+def _without_clouds(layer: str, settings: Values, plugin: PluginOfNode) -> Values:
+    """Return the settings of a layer without its sources that are no laser scans."""
+    sources = _names(settings.get("observation_sources"))
+    scans = []
+    for source in sources:
+        block = settings.get(source)
+        kind = block.pop("data_type", "LaserScan") if isinstance(block, dict) else "LaserScan"
+        if kind == "LaserScan":
+            scans.append(source)
+        else:
+            settings.pop(source, None)
+            plugin.told.append(f"{layer}: the source {source} ({kind}) is left out; only laser scans are used")
+    if sources:
+        settings["observation_sources"] = " ".join(scans)
+        plugin.blocks += scans
+        if not scans:
+            settings["enabled"] = False
+    return settings
+
+
+def _planner(values: Values, costmap: Values) -> list[PluginOfNode]:
+    plugin = PluginOfNode(PlannerServer, "planner_server", {**_frame_of(costmap), **values})
+    for name in _names(values.get("planner_plugins")):
+        plugin.blocks.append(name)
+        settings = _block(plugin.values, name)
+        kind = str(settings.get("plugin", "")).replace("/", "::")
+        if kind.startswith("nav2_") and kind != _NAVFN:
+            plugin.told.append(f"{name}: the planner {_NAVFN} replaces {kind}")
+            settings["plugin"] = _NAVFN
+    return [_costmap("global_costmap", costmap), plugin]
+
+
+def _controller(values: Values, costmap: Values) -> list[PluginOfNode]:
+    outline = _outline_of(costmap)
+    plugin = PluginOfNode(ControllerServer, "controller_server", {**_frame_of(costmap), **outline, **values})
+    for name in _names(values.get("controller_plugins")):
+        plugin.blocks.append(name)
+        settings = _block(plugin.values, name)
+        kind = str(settings.get("plugin", "")).replace("/", "::")
+        if kind == _SHIM:
+            kind = str(settings.get("primary_controller", "")).replace("/", "::")
+            settings["plugin"] = kind
+        if not kind or kind == _PURSUIT or ".py:" in kind:
+            continue
+        plugin.told.append(f"{name}: the controller {_PURSUIT} replaces {kind}")
+        plugin.values[name] = _pursuit_settings(settings)
+    for wanted, element in (("goal_checker", "general_goal_checker"), ("progress_checker", "progress_checker")):
+        checkers = _names(values.get(f"{wanted}_plugins")) or _names(values.get(f"{wanted}_plugin")) or [wanted]
+        settings = _block(plugin.values, checkers[0])
+        plugin.values.pop(checkers[0], None)
+        if settings:
+            plugin.values[element] = {key: value for key, value in settings.items() if key != "plugin"}
+        for name in (f"{wanted}_plugins", f"{wanted}_plugin"):
+            plugin.values.pop(name, None)
+    return [_costmap("local_costmap", costmap), plugin]
+
+
+def _pursuit_settings(settings: Values) -> Values:
+    """Return the settings of pure pursuit with the speeds of another controller."""
+    speed = next((settings[name] for name in _SPEEDS if name in settings), None)
+    rate = next((settings[name] for name in _TURNING_RATES if name in settings), None)
+    found: Values = {"plugin": _PURSUIT}
+    if isinstance(speed, (int, float)) and speed > 0:
+        found["desired_linear_vel"] = speed
+    if isinstance(rate, (int, float)) and rate > 0:
+        found["rotate_to_heading_angular_vel"] = rate
+    return found
+
+
+def _behaviors(values: Values, costmap: Values) -> list[PluginOfNode]:
+    renamed = {"global_frame": "local_frame", "local_costmap_topic": "costmap_topic"}
+    own = {new: values[old] for old, new in renamed.items() if old in values and new not in values}
+    rest = {name: value for name, value in values.items() if name not in renamed}
+    outline = _outline_of(costmap)
+    plugin = PluginOfNode(BehaviorServer, "behavior_server", {**outline, **own, **rest})
+    for name in _names(plugin.values.pop("behavior_plugins", None)):
+        block = plugin.values.pop(name, None)
+        kind = str(block.get("plugin", name) if isinstance(block, dict) else name)
+        if re.split(r"::|/", kind)[-1].replace("_", "").lower() not in _BEHAVIORS:
+            plugin.told.append(f"there is no behaviour {name} ({kind})")
+    return [plugin]
+
+
+_BEHAVIORS: Final = frozenset(("spin", "backup", "driveonheading", "wait"))
+
+
+def _navigator(values: Values, _: Values) -> list[PluginOfNode]:
+    plugin = PluginOfNode(BtNavigator, "bt_navigator", {"robot_base_frame": "base_link", **values})
+    for name in _names(plugin.values.pop("navigators", None)):
+        plugin.values.pop(name, None)
+    for name in ("plugin_lib_names", "error_code_names", "error_code_name_prefixes"):
+        plugin.values.pop(name, None)
+    for name in ("default_bt_xml_filename", "default_nav_to_pose_bt_xml", "default_nav_through_poses_bt_xml"):
+        tree = str(plugin.values.pop(name, ""))
+        if tree and "w_replanning_and_recovery" not in tree:
+            plugin.told.append(f"the tree {tree.rpartition('/')[2]} is not executed; the default behaviour is used")
+    return [plugin]
+
+
+def _ekf(values: Values, _: Values) -> list[PluginOfNode]:
+    return [PluginOfNode(EkfNode, "ekf_filter_node", dict(values), list(_COVARIANCES))]
+
+
+_COVARIANCES: Final = ("process_noise_covariance", "initial_estimate_covariance")
+
+
+def _ukf(values: Values, _: Values) -> list[PluginOfNode]:
+    """Return the plugin of `ekf_node` in place of an unscented filter; the parameters alpha, beta and kappa are its."""
+    own = {name: value for name, value in values.items() if name not in ("alpha", "beta", "kappa")}
+    plugin = PluginOfNode(EkfNode, "ukf_filter_node", own, list(_COVARIANCES))
+    plugin.told.append("the extended Kalman filter of ekf_node replaces the unscented one")
+    return [plugin]
+
+
+SERVER_NODES: Final[Mapping[str, ServerNode]] = {
+    "amcl": ServerNode(_amcl, "amcl", has_live_parameters=True),
+    "planner_server": ServerNode(_planner, "planner_server", "global_costmap"),
+    "controller_server": ServerNode(_controller, "controller_server", "local_costmap"),
+    "behavior_server": ServerNode(_behaviors, "behavior_server", "local_costmap"),
+    "recoveries_server": ServerNode(_behaviors, "recoveries_server", "local_costmap"),
+    "bt_navigator": ServerNode(_navigator, "bt_navigator"),
+    "ekf_node": ServerNode(_ekf, "ekf_filter_node", is_lifecycle=False),
+    "ukf_node": ServerNode(_ukf, "ukf_filter_node", is_lifecycle=False),
+}
+"""Nodes whose work plugins do, by the name of their executable."""
+
+
+def server_node(executable: str) -> ServerNode:
+    """Return the row of an executable such as `amcl`, or of a component such as `nav2_amcl::AmclNode`."""
+    name = executable.rpartition("::")[2].removesuffix("Node").removeprefix("Robot")
+    words = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()
+    return SERVER_NODES.get(executable) or SERVER_NODES.get(words) or SERVER_NODES[_COMPONENTS[executable]]
+
+
+_COMPONENTS: Final = {
+    "robot_localization::EkfFilterNode": "ekf_node",
+    "robot_localization::UkfFilterNode": "ukf_node",
+}
+
+
+def _frame_of(costmap: Values) -> Values:
+    return {"robot_base_frame": costmap.get("robot_base_frame", "base_link")}
+
+
+def _outline_of(costmap: Values) -> Values:
+    return {name: value for name, value in costmap.items() if name in ("robot_radius", "footprint")}
+
+
+def _names(value: object) -> list[str]:
+    """Return the names in a list, or in a text with spaces."""
+    if isinstance(value, (list, tuple)):
+        return [str(item) for item in value if str(item)]
+    return value.split() if isinstance(value, str) else []
+
+
+def _block(values: Values, name: str) -> Values:
+    """Return a block as a dictionary that may be changed."""
+    block = values.get(name)
+    values[name] = own = dict(block) if isinstance(block, dict) else {}
+    return own

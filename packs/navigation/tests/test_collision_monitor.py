@@ -1,0 +1,112 @@
+"""Collision monitor: zones around the robot, and the node that changes velocities."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import simkit
+from simkit import Simulation
+from simkit_navigation.plugins.navigation.collision_zones import CollisionZone, allowed_velocity
+
+SQUARE = np.array([[0.5, 0.3], [0.5, -0.3], [-0.3, -0.3], [-0.3, 0.3]])
+AHEAD = np.array([[0.4, 0.0], [0.4, 0.1], [0.4, -0.1], [0.45, 0.0]])
+WALL_AHEAD = np.column_stack((np.full(9, 1.0), np.linspace(-0.4, 0.4, 9)))
+FORWARD = (0.4, 0.0, 0.2)
+
+
+def test_points_count_in_a_polygon_and_in_a_circle() -> None:
+    polygon, circle = CollisionZone("p", "stop", SQUARE), CollisionZone("c", "stop", None, radius=0.42)
+    assert polygon.is_hit(AHEAD) and not polygon.is_hit(AHEAD + np.array((0.2, 0.0))) and not polygon.is_hit(AHEAD[:3])
+    assert not circle.is_hit(AHEAD) and circle.is_hit(AHEAD * 0.9)
+    assert CollisionZone("one", "stop", SQUARE, min_points=1).is_hit(AHEAD[:1])
+
+
+@pytest.mark.parametrize(
+    ("zone", "expected"),
+    [
+        (CollisionZone("z", "stop", SQUARE), (0.0, 0.0, 0.0)),
+        (CollisionZone("z", "slowdown", SQUARE, ratio=0.25), (0.1, 0.0, 0.05)),
+        (CollisionZone("z", "limit", SQUARE, linear_limit=0.2, angular_limit=1.0), (0.2, 0.0, 0.1)),
+        (CollisionZone("z", "limit", SQUARE, linear_limit=1.0, angular_limit=1.0), FORWARD),
+        (CollisionZone("z", "none", SQUARE), FORWARD),
+    ],
+)
+def test_each_action_changes_the_velocity(zone: CollisionZone, expected: tuple[float, float, float]) -> None:
+    assert zone.change(FORWARD, AHEAD) == pytest.approx(expected)
+    assert zone.change(FORWARD, AHEAD + 5.0) == FORWARD
+
+
+def test_approaching_an_obstacle_slows_the_robot_down_by_the_time_to_the_collision() -> None:
+    zone = CollisionZone("z", "approach", SQUARE, horizon=2.0, step=0.05)
+    assert zone.change((0.2, 0.0, 0.0), WALL_AHEAD) == (0.2, 0.0, 0.0)  # 0.5 m away: 2.5 s
+    assert zone.change((0.5, 0.0, 0.0), WALL_AHEAD)[0] == pytest.approx(0.25, abs=0.02)  # 1 s of 2 s
+    assert zone.change((-0.5, 0.0, 0.0), WALL_AHEAD) == (-0.5, 0.0, 0.0)
+    assert zone.change((0.5, 0.0, 0.0), AHEAD) == (0.0, 0.0, 0.0)
+
+
+def test_the_zone_that_allows_the_least_decides() -> None:
+    slow, stop = CollisionZone("slow", "slowdown", SQUARE), CollisionZone("stop", "stop", SQUARE)
+    velocity, zone = allowed_velocity([slow, stop], FORWARD, AHEAD)
+    assert velocity == (0.0, 0.0, 0.0) and zone is stop
+    assert allowed_velocity([slow, stop], FORWARD, AHEAD + 5.0) == (FORWARD, None)
+
+
+PARAMETERS = {
+    "base_frame_id": "base",
+    "state_topic": "state",
+    "polygons": ["Stop", "Slow"],
+    "Stop": {"type": "circle", "radius": 0.3, "action_type": "stop", "min_points": 3},
+    "Slow": {
+        "type": "polygon",
+        "points": "[[1, 1], [1, -1], [-1, -1], [-1, 1]]",
+        "action_type": "slowdown",
+        "slowdown_ratio": 0.5,
+        "max_points": 2,
+    },
+    "observation_sources": ["scan"],
+    "scan": {"type": "scan", "topic": "/scan"},
+}
+
+
+def command(sim: Simulation, reach: float, stamped: bool = False) -> float:
+    """Send a scan whose rays all have one range, and a velocity; return the forward speed that the monitor sends."""
+    kind = "geometry_msgs/msg/TwistStamped" if stamped else "geometry_msgs/msg/Twist"
+    scan = {"angle_min": -0.2, "angle_increment": 0.1, "range_min": 0.05, "range_max": 5.0, "ranges": [reach] * 5}
+    header = {"frame_id": "base", "stamp": {"sec": int(sim.time), "nanosec": round(sim.time % 1 * 1e9)}}
+    sim.advertise("/scan", "sensor_msgs/msg/LaserScan").publish({"header": header, **scan})
+    sim.run(0.05)
+    sent = sim.subscribe("/cmd_vel", keep=1)
+    twist = {"linear": {"x": 0.4}}
+    sim.advertise("/cmd_vel_smoothed", kind).publish({"twist": twist} if stamped else twist)
+    sim.run(0.05)
+    return float((sent.latest.twist if stamped else sent.latest).linear.x)
+
+
+@pytest.mark.parametrize("stamped", [False, True])
+def test_the_node_slows_down_and_stops_by_the_points_of_a_scan(stamped: bool) -> None:
+    with simkit.load('<sdf version="1.9"><world name="w"/></sdf>') as sim:
+        params = {**PARAMETERS, "enable_stamped_cmd_vel": stamped}
+        node = sim.add_node("nav2_collision_monitor/collision_monitor", params=params)
+        manager = {"autostart": True, "node_names": ["collision_monitor"]}
+        sim.add_node("nav2_lifecycle_manager/lifecycle_manager", params=manager)
+        sim.run(0.2)
+        states = sim.subscribe("/state", keep=5)
+        speeds = [command(sim, reach, stamped) for reach in (3.0, 0.8, 0.2, 3.0)]
+        assert speeds == pytest.approx([0.4, 0.2, 0.0, 0.4])
+        assert [message.polygon_name for message in states.messages][:2] == ["Slow", "Stop"]
+        assert any("Robot to stop due to points in Stop" in line for line in node.log)
+
+
+def test_the_robot_stops_without_scans() -> None:
+    with simkit.load('<sdf version="1.9"><world name="w"/></sdf>') as sim:
+        sim.add_node("nav2_collision_monitor/collision_monitor", params=PARAMETERS)
+        manager = {"autostart": True, "node_names": ["collision_monitor"]}
+        sim.add_node("nav2_lifecycle_manager/lifecycle_manager", params=manager)
+        sim.run(0.2)
+        assert command(sim, 3.0) == pytest.approx(0.4)
+        sim.run(3.0)
+        sent = sim.subscribe("/cmd_vel", keep=1)
+        sim.publish("/cmd_vel_smoothed", {"linear": {"x": 0.4}})
+        sim.run(0.05)
+        assert sent.latest.linear.x == 0.0

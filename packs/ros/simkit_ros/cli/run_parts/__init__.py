@@ -1,0 +1,1 @@
+"""Options of `simkit run` for ROS 2."""

@@ -1,0 +1,1 @@
+"""Pack with cameras for labels, bounding boxes, temperatures and wide angles."""

@@ -1,0 +1,1 @@
+"""Cameras of special kinds, with the images and messages that they compute."""

@@ -1,0 +1,1 @@
+"""Shared code of the pack's commands: names that they look up, values on their command lines, completion."""

@@ -1,0 +1,1 @@
+"""Pack verification: certificates of determinism, bundles that repeat a run, and grading of exercises."""

@@ -1,0 +1,1 @@
+"""Options of `simkit run` of the pack verification."""

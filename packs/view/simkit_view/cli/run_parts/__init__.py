@@ -1,0 +1,1 @@
+"""Run parts of the pack view: options of `simkit run` with what they do."""

@@ -1,0 +1,91 @@
+"""Commands that pages send to robots: speeds, goals and initial poses, and joint positions."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+from simkit.bridges.teleop import Teleop, TeleopTarget, find_targets
+from simkit.run_spec import JsonObject
+
+if TYPE_CHECKING:
+    from simkit import Simulation
+    from simkit.runtime import Publisher
+
+_POSES: Final = {
+    "goal": ("/goal_pose", "geometry_msgs/msg/PoseStamped"),
+    "initial": ("/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped"),
+}
+_FRAME: Final = "map"  # frame of goals, as in RViz; the map of a world has the world's origin
+_POSITION_VARIANCE, _YAW_VARIANCE = 0.25, (math.pi / 12) ** 2  # [m²], [rad²]: those of RViz
+
+
+class Driving:
+    """Robots that pages drive; the run sends the commands that are due.
+
+    Args:
+        sim: simulation with the robots.
+    """
+
+    def __init__(self, sim: Simulation) -> None:
+        self._sim = sim
+        self._drivers: dict[str, tuple[Teleop, object]] = {}
+        self._publishers: dict[str, Publisher] = {}
+
+    def targets(self) -> list[JsonObject]:
+        """Return the robots that can be driven, with their limits; null for a speed without a limit."""
+        return [_target_dict(target) for target in find_targets(self._sim)]
+
+    @property
+    def next_tick(self) -> int | None:
+        """Tick of the next command; None while nothing is sent."""
+        ticks = [tick for driver, _ in self._drivers.values() if (tick := driver.next_tick) is not None]
+        return min(ticks, default=None)
+
+    def send_due(self) -> None:
+        """Send the commands that are due at the present tick."""
+        for driver, _ in self._drivers.values():
+            driver.send_due()
+
+    def teleop(self, topic: str, client: object) -> Teleop | None:
+        """Return the driver of a topic, and note who drives; None if no robot has the topic."""
+        driver = self._drivers.get(topic)
+        if driver is None:
+            target = next((t for t in find_targets(self._sim) if t.topic == topic), None)
+            if target is None:
+                return None
+            driver = (Teleop(self._sim, target), client)
+        self._drivers[topic] = (driver[0], client)
+        return driver[0]
+
+    def release(self, client: object) -> None:
+        """Stop what a page drives, because the page has closed."""
+        for driver, driven_by in self._drivers.values():
+            if driven_by is client:
+                driver.release_keys()
+
+    def send_pose(self, kind: str, x: float, y: float, yaw: float, topic: str = "") -> str:
+        """Publish a goal (`goal`) or the estimate of the robot's own pose (`initial`); return the topic."""
+        default, type_name = _POSES[kind]
+        topic, sim = topic or default, self._sim
+        if topic not in self._publishers:
+            self._publishers[topic] = sim.advertise(topic, type_name)
+        stamp = {"sec": sim.time_ns // 1_000_000_000, "nanosec": sim.time_ns % 1_000_000_000}
+        turn = {"z": math.sin(yaw / 2), "w": math.cos(yaw / 2)}
+        pose: JsonObject = {"position": {"x": x, "y": y}, "orientation": turn}
+        if kind == "initial":
+            covariance = [0.0] * 36
+            covariance[0] = covariance[7] = _POSITION_VARIANCE
+            covariance[35] = _YAW_VARIANCE
+            pose = {"pose": pose, "covariance": covariance}
+        self._publishers[topic].publish({"header": {"stamp": stamp, "frame_id": _FRAME}, "pose": pose})
+        return topic
+
+
+def _target_dict(target: TeleopTarget) -> JsonObject:
+    bounds = {name: [_finite(v) for v in getattr(target, name)] for name in ("linear", "angular")}
+    return {"topic": target.topic, "model": target.model, "sideways": target.sideways, **bounds}
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None

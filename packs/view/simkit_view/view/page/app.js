@@ -1,0 +1,4645 @@
+var cr={LEFT:0,MIDDLE:1,RIGHT:2,ROTATE:0,DOLLY:1,PAN:2},hr={ROTATE:0,PAN:1,DOLLY_PAN:2,DOLLY_ROTATE:3},xm=0,yd=1,ym=2;var Pr=1,vm=2,Bo=3,ur=0,Xn=1,Sn=2,Ir=0,ko=1,vd=2,Sd=3,Md=4,Sm=5;var Lr=100,Mm=101,bm=102,wm=103,Tm=104,Em=200,Am=201,Cm=202,Rm=203,bd=204,wd=205,Pm=206,Im=207,Lm=208,Dm=209,Nm=210,Um=211,Om=212,Fm=213,Bm=214,fc=0,pc=1,mc=2,wo=3,gc=4,_c=5,xc=6,yc=7,Hc=0,km=1,zm=2,hs=0,Td=1,Ed=2,Ad=3,Cd=4,Rd=5,Pd=6,Id=7;var Ld=300,Dr=301,zo=302,Wc=303,Xc=304,To=1e3,cs=1001,vc=1002,zn=1003,Vm=1004;var il=1005;var li=1006,Yc=1007;var Fs=1008;var gi=1009,Dd=1010,Nd=1011,Vo=1012,qc=1013,$i=1014,Fi=1015,Zi=1016,$c=1017,Zc=1018,Nr=1020,Ud=35902,Od=35899,Fd=1021,Bd=1022,Ji=1023,Ps=1026,Bs=1027,Jc=1028,jc=1029,dr=1030,Kc=1031;var Qc=1033,sl=33776,rl=33777,ol=33778,al=33779,th=35840,eh=35841,nh=35842,ih=35843,sh=36196,rh=37492,oh=37496,ah=37488,lh=37489,ll=37490,ch=37491,hh=37808,uh=37809,dh=37810,fh=37811,ph=37812,mh=37813,gh=37814,_h=37815,xh=37816,yh=37817,vh=37818,Sh=37819,Mh=37820,bh=37821,wh=36492,Th=36494,Eh=36495,Ah=36283,Ch=36284,cl=36285,Rh=36286;var Aa=2300,Sc=2301,uc=2302,ld=2303,cd=2400,hd=2401,ud=2402;var Gm=3200;var hl=0,Hm=1,ks="",Ae="srgb",Ca="srgb-linear",Ra="linear",Pe="srgb";var dc=7680;var Wm=519,Xm=512,Ym=513,qm=514,kd=515,$m=516,Zm=517,zd=518,Vd=519,Gd=35044;var Hd="300 es",Di=2e3,Eo=2001;function Gx(i){for(let t=i.length-1;t>=0;--t)if(i[t]>=65535)return!0;return!1}function Hx(i){return ArrayBuffer.isView(i)&&!(i instanceof DataView)}function Pa(i){return document.createElementNS("http://www.w3.org/1999/xhtml",i)}function Jm(){let i=Pa("canvas");return i.style.display="block",i}var Lp={},Ao=null;function Ia(...i){let t="THREE."+i.shift();Ao?Ao("log",t,...i):console.log(t,...i)}function jm(i){let t=i[0];if(typeof t=="string"&&t.startsWith("TSL:")){let e=i[1];e&&e.isStackTrace?i[0]+=" "+e.getLocation():i[1]='Stack trace not available. Enable "THREE.Node.captureStackTrace" to capture stack traces.'}return i}function jt(...i){i=jm(i);let t="THREE."+i.shift();if(Ao)Ao("warn",t,...i);else{let e=i[0];e&&e.isStackTrace?console.warn(e.getError(t)):console.warn(t,...i)}}function te(...i){i=jm(i);let t="THREE."+i.shift();if(Ao)Ao("error",t,...i);else{let e=i[0];e&&e.isStackTrace?console.error(e.getError(t)):console.error(t,...i)}}function wa(...i){let t=i.join(" ");t in Lp||(Lp[t]=!0,jt(...i))}function Km(i,t,e){return new Promise(function(n,s){function r(){switch(i.clientWaitSync(t,i.SYNC_FLUSH_COMMANDS_BIT,0)){case i.WAIT_FAILED:s();break;case i.TIMEOUT_EXPIRED:setTimeout(r,e);break;default:n()}}setTimeout(r,e)})}var Qm={[fc]:fc,[mc]:xc,[gc]:gc,[wo]:_c,[pc]:pc,[xc]:mc,[yc]:yc,[_c]:wo},qi=class{addEventListener(t,e){this._listeners===void 0&&(this._listeners={});let n=this._listeners;n[t]===void 0&&(n[t]=[]),n[t].indexOf(e)===-1&&n[t].push(e)}hasEventListener(t,e){let n=this._listeners;return n===void 0?!1:n[t]!==void 0&&n[t].indexOf(e)!==-1}removeEventListener(t,e){let n=this._listeners;if(n===void 0)return;let s=n[t];if(s!==void 0){let r=s.indexOf(e);r!==-1&&s.splice(r,1)}}dispatchEvent(t){let e=this._listeners;if(e===void 0)return;let n=e[t.type];if(n!==void 0){t.target=this;let s=n.slice(0);for(let r=0,o=s.length;r<o;r++)s[r].call(this,t);t.target=null}}},Jn=["00","01","02","03","04","05","06","07","08","09","0a","0b","0c","0d","0e","0f","10","11","12","13","14","15","16","17","18","19","1a","1b","1c","1d","1e","1f","20","21","22","23","24","25","26","27","28","29","2a","2b","2c","2d","2e","2f","30","31","32","33","34","35","36","37","38","39","3a","3b","3c","3d","3e","3f","40","41","42","43","44","45","46","47","48","49","4a","4b","4c","4d","4e","4f","50","51","52","53","54","55","56","57","58","59","5a","5b","5c","5d","5e","5f","60","61","62","63","64","65","66","67","68","69","6a","6b","6c","6d","6e","6f","70","71","72","73","74","75","76","77","78","79","7a","7b","7c","7d","7e","7f","80","81","82","83","84","85","86","87","88","89","8a","8b","8c","8d","8e","8f","90","91","92","93","94","95","96","97","98","99","9a","9b","9c","9d","9e","9f","a0","a1","a2","a3","a4","a5","a6","a7","a8","a9","aa","ab","ac","ad","ae","af","b0","b1","b2","b3","b4","b5","b6","b7","b8","b9","ba","bb","bc","bd","be","bf","c0","c1","c2","c3","c4","c5","c6","c7","c8","c9","ca","cb","cc","cd","ce","cf","d0","d1","d2","d3","d4","d5","d6","d7","d8","d9","da","db","dc","dd","de","df","e0","e1","e2","e3","e4","e5","e6","e7","e8","e9","ea","eb","ec","ed","ee","ef","f0","f1","f2","f3","f4","f5","f6","f7","f8","f9","fa","fb","fc","fd","fe","ff"],Dp=1234567,Ta=Math.PI/180,Tr=180/Math.PI;function fr(){let i=Math.random()*4294967295|0,t=Math.random()*4294967295|0,e=Math.random()*4294967295|0,n=Math.random()*4294967295|0;return(Jn[i&255]+Jn[i>>8&255]+Jn[i>>16&255]+Jn[i>>24&255]+"-"+Jn[t&255]+Jn[t>>8&255]+"-"+Jn[t>>16&15|64]+Jn[t>>24&255]+"-"+Jn[e&63|128]+Jn[e>>8&255]+"-"+Jn[e>>16&255]+Jn[e>>24&255]+Jn[n&255]+Jn[n>>8&255]+Jn[n>>16&255]+Jn[n>>24&255]).toLowerCase()}function he(i,t,e){return Math.max(t,Math.min(e,i))}function Wd(i,t){return(i%t+t)%t}function Wx(i,t,e,n,s){return n+(i-t)*(s-n)/(e-t)}function Xx(i,t,e){return i!==t?(e-i)/(t-i):0}function Ea(i,t,e){return(1-e)*i+e*t}function Yx(i,t,e,n){return Ea(i,t,1-Math.exp(-e*n))}function qx(i,t=1){return t-Math.abs(Wd(i,t*2)-t)}function $x(i,t,e){return i<=t?0:i>=e?1:(i=(i-t)/(e-t),i*i*(3-2*i))}function Zx(i,t,e){return i<=t?0:i>=e?1:(i=(i-t)/(e-t),i*i*i*(i*(i*6-15)+10))}function Jx(i,t){return i+Math.floor(Math.random()*(t-i+1))}function jx(i,t){return i+Math.random()*(t-i)}function Kx(i){return i*(.5-Math.random())}function Qx(i){i!==void 0&&(Dp=i);let t=Dp+=1831565813;return t=Math.imul(t^t>>>15,t|1),t^=t+Math.imul(t^t>>>7,t|61),((t^t>>>14)>>>0)/4294967296}function ty(i){return i*Ta}function ey(i){return i*Tr}function ny(i){return i>0&&Number.isInteger(i)&&2**Math.round(Math.log2(i))===i}function iy(i){return Math.pow(2,Math.ceil(Math.log(i)/Math.LN2))}function Xd(i){return Math.pow(2,Math.floor(Math.log(i)/Math.LN2))}function sy(i,t,e,n,s){let r=Math.cos,o=Math.sin,a=r(e/2),c=o(e/2),l=r((t+n)/2),u=o((t+n)/2),h=r((t-n)/2),d=o((t-n)/2),f=r((n-t)/2),p=o((n-t)/2);switch(s){case"XYX":i.set(a*u,c*h,c*d,a*l);break;case"YZY":i.set(c*d,a*u,c*h,a*l);break;case"ZXZ":i.set(c*h,c*d,a*u,a*l);break;case"XZX":i.set(a*u,c*p,c*f,a*l);break;case"YXY":i.set(c*f,a*u,c*p,a*l);break;case"ZYZ":i.set(c*p,c*f,a*u,a*l);break;default:jt("MathUtils: .setQuaternionFromProperEuler() encountered an unknown order: "+s)}}function Ph(i){switch(i.constructor){case Uint32Array:return 4294967295;case Uint16Array:return 65535;case Uint8Array:case Uint8ClampedArray:return 255;case Int32Array:return 2147483647;case Int16Array:return 32767;case Int8Array:return 127;default:return}}function Yd(i,t){if(t.constructor===Float32Array)return i;let e=Ph(t);if(e===void 0)throw new Error("THREE.MathUtils: Invalid component type.");return Math.max(i/e,-1)}function qd(i,t){if(t.constructor===Float32Array)return i;let e=Ph(t);if(e===void 0)throw new Error("THREE.MathUtils: Invalid component type.");return Math.round(i*e)}var ul={DEG2RAD:Ta,RAD2DEG:Tr,generateUUID:fr,clamp:he,euclideanModulo:Wd,mapLinear:Wx,inverseLerp:Xx,lerp:Ea,damp:Yx,pingpong:qx,smoothstep:$x,smootherstep:Zx,randInt:Jx,randFloat:jx,randFloatSpread:Kx,seededRandom:Qx,degToRad:ty,radToDeg:ey,isPowerOfTwo:ny,ceilPowerOfTwo:iy,floorPowerOfTwo:Xd,setQuaternionFromProperEuler:sy,normalize:qd,denormalize:Yd},kt=class{static{this.prototype.isVector2=!0}constructor(t=0,e=0){this.x=t,this.y=e}get width(){return this.x}set width(t){this.x=t}get height(){return this.y}set height(t){this.y=t}set(t,e){return this.x=t,this.y=e,this}setScalar(t){return this.x=t,this.y=t,this}setX(t){return this.x=t,this}setY(t){return this.y=t,this}setComponent(t,e){switch(t){case 0:this.x=e;break;case 1:this.y=e;break;default:throw new Error("THREE.Vector2: index is out of range: "+t)}return this}getComponent(t){switch(t){case 0:return this.x;case 1:return this.y;default:throw new Error("THREE.Vector2: index is out of range: "+t)}}clone(){return new this.constructor(this.x,this.y)}copy(t){return this.x=t.x,this.y=t.y,this}add(t){return this.x+=t.x,this.y+=t.y,this}addScalar(t){return this.x+=t,this.y+=t,this}addVectors(t,e){return this.x=t.x+e.x,this.y=t.y+e.y,this}addScaledVector(t,e){return this.x+=t.x*e,this.y+=t.y*e,this}sub(t){return this.x-=t.x,this.y-=t.y,this}subScalar(t){return this.x-=t,this.y-=t,this}subVectors(t,e){return this.x=t.x-e.x,this.y=t.y-e.y,this}multiply(t){return this.x*=t.x,this.y*=t.y,this}multiplyScalar(t){return this.x*=t,this.y*=t,this}divide(t){return this.x/=t.x,this.y/=t.y,this}divideScalar(t){return this.multiplyScalar(1/t)}applyMatrix3(t){let e=this.x,n=this.y,s=t.elements;return this.x=s[0]*e+s[3]*n+s[6],this.y=s[1]*e+s[4]*n+s[7],this}min(t){return this.x=Math.min(this.x,t.x),this.y=Math.min(this.y,t.y),this}max(t){return this.x=Math.max(this.x,t.x),this.y=Math.max(this.y,t.y),this}clamp(t,e){return this.x=he(this.x,t.x,e.x),this.y=he(this.y,t.y,e.y),this}clampScalar(t,e){return this.x=he(this.x,t,e),this.y=he(this.y,t,e),this}clampLength(t,e){let n=this.length();return this.divideScalar(n||1).multiplyScalar(he(n,t,e))}floor(){return this.x=Math.floor(this.x),this.y=Math.floor(this.y),this}ceil(){return this.x=Math.ceil(this.x),this.y=Math.ceil(this.y),this}round(){return this.x=Math.round(this.x),this.y=Math.round(this.y),this}roundToZero(){return this.x=Math.trunc(this.x),this.y=Math.trunc(this.y),this}negate(){return this.x=-this.x,this.y=-this.y,this}dot(t){return this.x*t.x+this.y*t.y}cross(t){return this.x*t.y-this.y*t.x}lengthSq(){return this.x*this.x+this.y*this.y}length(){return Math.sqrt(this.x*this.x+this.y*this.y)}manhattanLength(){return Math.abs(this.x)+Math.abs(this.y)}normalize(){return this.divideScalar(this.length()||1)}angle(){return Math.atan2(-this.y,-this.x)+Math.PI}angleTo(t){let e=Math.sqrt(this.lengthSq()*t.lengthSq());if(e===0)return Math.PI/2;let n=this.dot(t)/e;return Math.acos(he(n,-1,1))}distanceTo(t){return Math.sqrt(this.distanceToSquared(t))}distanceToSquared(t){let e=this.x-t.x,n=this.y-t.y;return e*e+n*n}manhattanDistanceTo(t){return Math.abs(this.x-t.x)+Math.abs(this.y-t.y)}setLength(t){return this.normalize().multiplyScalar(t)}lerp(t,e){return this.x+=(t.x-this.x)*e,this.y+=(t.y-this.y)*e,this}lerpVectors(t,e,n){return this.x=t.x+(e.x-t.x)*n,this.y=t.y+(e.y-t.y)*n,this}equals(t){return t.x===this.x&&t.y===this.y}fromArray(t,e=0){return this.x=t[e],this.y=t[e+1],this}toArray(t=[],e=0){return t[e]=this.x,t[e+1]=this.y,t}fromBufferAttribute(t,e){return this.x=t.getX(e),this.y=t.getY(e),this}rotateAround(t,e){let n=Math.cos(e),s=Math.sin(e),r=this.x-t.x,o=this.y-t.y;return this.x=r*n-o*s+t.x,this.y=r*s+o*n+t.y,this}random(){return this.x=Math.random(),this.y=Math.random(),this}*[Symbol.iterator](){yield this.x,yield this.y}},Xe=class{constructor(t=0,e=0,n=0,s=1){this.isQuaternion=!0,this._x=t,this._y=e,this._z=n,this._w=s}static slerpFlat(t,e,n,s,r,o,a){let c=n[s+0],l=n[s+1],u=n[s+2],h=n[s+3],d=r[o+0],f=r[o+1],p=r[o+2],_=r[o+3];if(h!==_||c!==d||l!==f||u!==p){let m=c*d+l*f+u*p+h*_;m<0&&(d=-d,f=-f,p=-p,_=-_,m=-m);let g=1-a;if(m<.9995){let x=Math.acos(m),E=Math.sin(x);g=Math.sin(g*x)/E,a=Math.sin(a*x)/E,c=c*g+d*a,l=l*g+f*a,u=u*g+p*a,h=h*g+_*a}else{c=c*g+d*a,l=l*g+f*a,u=u*g+p*a,h=h*g+_*a;let x=1/Math.sqrt(c*c+l*l+u*u+h*h);c*=x,l*=x,u*=x,h*=x}}t[e]=c,t[e+1]=l,t[e+2]=u,t[e+3]=h}static multiplyQuaternionsFlat(t,e,n,s,r,o){let a=n[s],c=n[s+1],l=n[s+2],u=n[s+3],h=r[o],d=r[o+1],f=r[o+2],p=r[o+3];return t[e]=a*p+u*h+c*f-l*d,t[e+1]=c*p+u*d+l*h-a*f,t[e+2]=l*p+u*f+a*d-c*h,t[e+3]=u*p-a*h-c*d-l*f,t}get x(){return this._x}set x(t){this._x=t,this._onChangeCallback()}get y(){return this._y}set y(t){this._y=t,this._onChangeCallback()}get z(){return this._z}set z(t){this._z=t,this._onChangeCallback()}get w(){return this._w}set w(t){this._w=t,this._onChangeCallback()}set(t,e,n,s){return this._x=t,this._y=e,this._z=n,this._w=s,this._onChangeCallback(),this}clone(){return new this.constructor(this._x,this._y,this._z,this._w)}copy(t){return this._x=t.x,this._y=t.y,this._z=t.z,this._w=t.w,this._onChangeCallback(),this}setFromEuler(t,e=!0){let n=t._x,s=t._y,r=t._z,o=t._order,a=Math.cos,c=Math.sin,l=a(n/2),u=a(s/2),h=a(r/2),d=c(n/2),f=c(s/2),p=c(r/2);switch(o){case"XYZ":this._x=d*u*h+l*f*p,this._y=l*f*h-d*u*p,this._z=l*u*p+d*f*h,this._w=l*u*h-d*f*p;break;case"YXZ":this._x=d*u*h+l*f*p,this._y=l*f*h-d*u*p,this._z=l*u*p-d*f*h,this._w=l*u*h+d*f*p;break;case"ZXY":this._x=d*u*h-l*f*p,this._y=l*f*h+d*u*p,this._z=l*u*p+d*f*h,this._w=l*u*h-d*f*p;break;case"ZYX":this._x=d*u*h-l*f*p,this._y=l*f*h+d*u*p,this._z=l*u*p-d*f*h,this._w=l*u*h+d*f*p;break;case"YZX":this._x=d*u*h+l*f*p,this._y=l*f*h+d*u*p,this._z=l*u*p-d*f*h,this._w=l*u*h-d*f*p;break;case"XZY":this._x=d*u*h-l*f*p,this._y=l*f*h-d*u*p,this._z=l*u*p+d*f*h,this._w=l*u*h+d*f*p;break;default:jt("Quaternion: .setFromEuler() encountered an unknown order: "+o)}return e===!0&&this._onChangeCallback(),this}setFromAxisAngle(t,e){let n=e/2,s=Math.sin(n);return this._x=t.x*s,this._y=t.y*s,this._z=t.z*s,this._w=Math.cos(n),this._onChangeCallback(),this}setFromRotationMatrix(t){let e=t.elements,n=e[0],s=e[4],r=e[8],o=e[1],a=e[5],c=e[9],l=e[2],u=e[6],h=e[10],d=n+a+h;if(d>0){let f=.5/Math.sqrt(d+1);this._w=.25/f,this._x=(u-c)*f,this._y=(r-l)*f,this._z=(o-s)*f}else if(n>a&&n>h){let f=2*Math.sqrt(1+n-a-h);this._w=(u-c)/f,this._x=.25*f,this._y=(s+o)/f,this._z=(r+l)/f}else if(a>h){let f=2*Math.sqrt(1+a-n-h);this._w=(r-l)/f,this._x=(s+o)/f,this._y=.25*f,this._z=(c+u)/f}else{let f=2*Math.sqrt(1+h-n-a);this._w=(o-s)/f,this._x=(r+l)/f,this._y=(c+u)/f,this._z=.25*f}return this._onChangeCallback(),this}setFromUnitVectors(t,e){let n=t.dot(e)+1;return n<1e-8?(n=0,Math.abs(t.x)>Math.abs(t.z)?(this._x=-t.y,this._y=t.x,this._z=0,this._w=n):(this._x=0,this._y=-t.z,this._z=t.y,this._w=n)):(this._x=t.y*e.z-t.z*e.y,this._y=t.z*e.x-t.x*e.z,this._z=t.x*e.y-t.y*e.x,this._w=n),this.normalize()}angleTo(t){return 2*Math.acos(Math.abs(he(this.dot(t),-1,1)))}rotateTowards(t,e){let n=this.angleTo(t);if(n===0)return this;let s=Math.min(1,e/n);return this.slerp(t,s),this}identity(){return this.set(0,0,0,1)}invert(){return this.conjugate()}conjugate(){return this._x*=-1,this._y*=-1,this._z*=-1,this._onChangeCallback(),this}dot(t){return this._x*t._x+this._y*t._y+this._z*t._z+this._w*t._w}lengthSq(){return this._x*this._x+this._y*this._y+this._z*this._z+this._w*this._w}length(){return Math.sqrt(this._x*this._x+this._y*this._y+this._z*this._z+this._w*this._w)}normalize(){let t=this.length();return t===0?(this._x=0,this._y=0,this._z=0,this._w=1):(t=1/t,this._x=this._x*t,this._y=this._y*t,this._z=this._z*t,this._w=this._w*t),this._onChangeCallback(),this}multiply(t){return this.multiplyQuaternions(this,t)}premultiply(t){return this.multiplyQuaternions(t,this)}multiplyQuaternions(t,e){let n=t._x,s=t._y,r=t._z,o=t._w,a=e._x,c=e._y,l=e._z,u=e._w;return this._x=n*u+o*a+s*l-r*c,this._y=s*u+o*c+r*a-n*l,this._z=r*u+o*l+n*c-s*a,this._w=o*u-n*a-s*c-r*l,this._onChangeCallback(),this}slerp(t,e){let n=t._x,s=t._y,r=t._z,o=t._w,a=this.dot(t);a<0&&(n=-n,s=-s,r=-r,o=-o,a=-a);let c=1-e;if(a<.9995){let l=Math.acos(a),u=Math.sin(l);c=Math.sin(c*l)/u,e=Math.sin(e*l)/u,this._x=this._x*c+n*e,this._y=this._y*c+s*e,this._z=this._z*c+r*e,this._w=this._w*c+o*e,this._onChangeCallback()}else this._x=this._x*c+n*e,this._y=this._y*c+s*e,this._z=this._z*c+r*e,this._w=this._w*c+o*e,this.normalize();return this}slerpQuaternions(t,e,n){return this.copy(t).slerp(e,n)}random(){let t=2*Math.PI*Math.random(),e=2*Math.PI*Math.random(),n=Math.random(),s=Math.sqrt(1-n),r=Math.sqrt(n);return this.set(s*Math.sin(t),s*Math.cos(t),r*Math.sin(e),r*Math.cos(e))}equals(t){return t._x===this._x&&t._y===this._y&&t._z===this._z&&t._w===this._w}fromArray(t,e=0){return this._x=t[e],this._y=t[e+1],this._z=t[e+2],this._w=t[e+3],this._onChangeCallback(),this}toArray(t=[],e=0){return t[e]=this._x,t[e+1]=this._y,t[e+2]=this._z,t[e+3]=this._w,t}fromBufferAttribute(t,e){return this._x=t.getX(e),this._y=t.getY(e),this._z=t.getZ(e),this._w=t.getW(e),this._onChangeCallback(),this}toJSON(){return this.toArray()}_onChange(t){return this._onChangeCallback=t,this}_onChangeCallback(){}*[Symbol.iterator](){yield this._x,yield this._y,yield this._z,yield this._w}},R=class{static{this.prototype.isVector3=!0}constructor(t=0,e=0,n=0){this.x=t,this.y=e,this.z=n}set(t,e,n){return n===void 0&&(n=this.z),this.x=t,this.y=e,this.z=n,this}setScalar(t){return this.x=t,this.y=t,this.z=t,this}setX(t){return this.x=t,this}setY(t){return this.y=t,this}setZ(t){return this.z=t,this}setComponent(t,e){switch(t){case 0:this.x=e;break;case 1:this.y=e;break;case 2:this.z=e;break;default:throw new Error("THREE.Vector3: index is out of range: "+t)}return this}getComponent(t){switch(t){case 0:return this.x;case 1:return this.y;case 2:return this.z;default:throw new Error("THREE.Vector3: index is out of range: "+t)}}clone(){return new this.constructor(this.x,this.y,this.z)}copy(t){return this.x=t.x,this.y=t.y,this.z=t.z,this}add(t){return this.x+=t.x,this.y+=t.y,this.z+=t.z,this}addScalar(t){return this.x+=t,this.y+=t,this.z+=t,this}addVectors(t,e){return this.x=t.x+e.x,this.y=t.y+e.y,this.z=t.z+e.z,this}addScaledVector(t,e){return this.x+=t.x*e,this.y+=t.y*e,this.z+=t.z*e,this}sub(t){return this.x-=t.x,this.y-=t.y,this.z-=t.z,this}subScalar(t){return this.x-=t,this.y-=t,this.z-=t,this}subVectors(t,e){return this.x=t.x-e.x,this.y=t.y-e.y,this.z=t.z-e.z,this}multiply(t){return this.x*=t.x,this.y*=t.y,this.z*=t.z,this}multiplyScalar(t){return this.x*=t,this.y*=t,this.z*=t,this}multiplyVectors(t,e){return this.x=t.x*e.x,this.y=t.y*e.y,this.z=t.z*e.z,this}applyEuler(t){return this.applyQuaternion(Np.setFromEuler(t))}applyAxisAngle(t,e){return this.applyQuaternion(Np.setFromAxisAngle(t,e))}applyMatrix3(t){let e=this.x,n=this.y,s=this.z,r=t.elements;return this.x=r[0]*e+r[3]*n+r[6]*s,this.y=r[1]*e+r[4]*n+r[7]*s,this.z=r[2]*e+r[5]*n+r[8]*s,this}applyNormalMatrix(t){return this.applyMatrix3(t).normalize()}applyMatrix4(t){let e=this.x,n=this.y,s=this.z,r=t.elements,o=1/(r[3]*e+r[7]*n+r[11]*s+r[15]);return this.x=(r[0]*e+r[4]*n+r[8]*s+r[12])*o,this.y=(r[1]*e+r[5]*n+r[9]*s+r[13])*o,this.z=(r[2]*e+r[6]*n+r[10]*s+r[14])*o,this}applyQuaternion(t){let e=this.x,n=this.y,s=this.z,r=t.x,o=t.y,a=t.z,c=t.w,l=2*(o*s-a*n),u=2*(a*e-r*s),h=2*(r*n-o*e);return this.x=e+c*l+o*h-a*u,this.y=n+c*u+a*l-r*h,this.z=s+c*h+r*u-o*l,this}project(t){return this.applyMatrix4(t.matrixWorldInverse).applyMatrix4(t.projectionMatrix)}unproject(t){return this.applyMatrix4(t.projectionMatrixInverse).applyMatrix4(t.matrixWorld)}transformDirection(t){let e=this.x,n=this.y,s=this.z,r=t.elements;return this.x=r[0]*e+r[4]*n+r[8]*s,this.y=r[1]*e+r[5]*n+r[9]*s,this.z=r[2]*e+r[6]*n+r[10]*s,this.normalize()}divide(t){return this.x/=t.x,this.y/=t.y,this.z/=t.z,this}divideScalar(t){return this.multiplyScalar(1/t)}min(t){return this.x=Math.min(this.x,t.x),this.y=Math.min(this.y,t.y),this.z=Math.min(this.z,t.z),this}max(t){return this.x=Math.max(this.x,t.x),this.y=Math.max(this.y,t.y),this.z=Math.max(this.z,t.z),this}clamp(t,e){return this.x=he(this.x,t.x,e.x),this.y=he(this.y,t.y,e.y),this.z=he(this.z,t.z,e.z),this}clampScalar(t,e){return this.x=he(this.x,t,e),this.y=he(this.y,t,e),this.z=he(this.z,t,e),this}clampLength(t,e){let n=this.length();return this.divideScalar(n||1).multiplyScalar(he(n,t,e))}floor(){return this.x=Math.floor(this.x),this.y=Math.floor(this.y),this.z=Math.floor(this.z),this}ceil(){return this.x=Math.ceil(this.x),this.y=Math.ceil(this.y),this.z=Math.ceil(this.z),this}round(){return this.x=Math.round(this.x),this.y=Math.round(this.y),this.z=Math.round(this.z),this}roundToZero(){return this.x=Math.trunc(this.x),this.y=Math.trunc(this.y),this.z=Math.trunc(this.z),this}negate(){return this.x=-this.x,this.y=-this.y,this.z=-this.z,this}dot(t){return this.x*t.x+this.y*t.y+this.z*t.z}lengthSq(){return this.x*this.x+this.y*this.y+this.z*this.z}length(){return Math.sqrt(this.x*this.x+this.y*this.y+this.z*this.z)}manhattanLength(){return Math.abs(this.x)+Math.abs(this.y)+Math.abs(this.z)}normalize(){return this.divideScalar(this.length()||1)}setLength(t){return this.normalize().multiplyScalar(t)}lerp(t,e){return this.x+=(t.x-this.x)*e,this.y+=(t.y-this.y)*e,this.z+=(t.z-this.z)*e,this}lerpVectors(t,e,n){return this.x=t.x+(e.x-t.x)*n,this.y=t.y+(e.y-t.y)*n,this.z=t.z+(e.z-t.z)*n,this}cross(t){return this.crossVectors(this,t)}crossVectors(t,e){let n=t.x,s=t.y,r=t.z,o=e.x,a=e.y,c=e.z;return this.x=s*c-r*a,this.y=r*o-n*c,this.z=n*a-s*o,this}projectOnVector(t){let e=t.lengthSq();if(e===0)return this.set(0,0,0);let n=t.dot(this)/e;return this.copy(t).multiplyScalar(n)}projectOnPlane(t){return Bu.copy(this).projectOnVector(t),this.sub(Bu)}reflect(t){return this.sub(Bu.copy(t).multiplyScalar(2*this.dot(t)))}angleTo(t){let e=Math.sqrt(this.lengthSq()*t.lengthSq());if(e===0)return Math.PI/2;let n=this.dot(t)/e;return Math.acos(he(n,-1,1))}distanceTo(t){return Math.sqrt(this.distanceToSquared(t))}distanceToSquared(t){let e=this.x-t.x,n=this.y-t.y,s=this.z-t.z;return e*e+n*n+s*s}manhattanDistanceTo(t){return Math.abs(this.x-t.x)+Math.abs(this.y-t.y)+Math.abs(this.z-t.z)}setFromSpherical(t){return this.setFromSphericalCoords(t.radius,t.phi,t.theta)}setFromSphericalCoords(t,e,n){let s=Math.sin(e)*t;return this.x=s*Math.sin(n),this.y=Math.cos(e)*t,this.z=s*Math.cos(n),this}setFromCylindrical(t){return this.setFromCylindricalCoords(t.radius,t.theta,t.y)}setFromCylindricalCoords(t,e,n){return this.x=t*Math.sin(e),this.y=n,this.z=t*Math.cos(e),this}setFromMatrixPosition(t){let e=t.elements;return this.x=e[12],this.y=e[13],this.z=e[14],this}setFromMatrixScale(t){let e=this.setFromMatrixColumn(t,0).length(),n=this.setFromMatrixColumn(t,1).length(),s=this.setFromMatrixColumn(t,2).length();return this.x=e,this.y=n,this.z=s,this}setFromMatrixColumn(t,e){return this.fromArray(t.elements,e*4)}setFromMatrix3Column(t,e){return this.fromArray(t.elements,e*3)}setFromEuler(t){return this.x=t._x,this.y=t._y,this.z=t._z,this}setFromColor(t){return this.x=t.r,this.y=t.g,this.z=t.b,this}equals(t){return t.x===this.x&&t.y===this.y&&t.z===this.z}fromArray(t,e=0){return this.x=t[e],this.y=t[e+1],this.z=t[e+2],this}toArray(t=[],e=0){return t[e]=this.x,t[e+1]=this.y,t[e+2]=this.z,t}fromBufferAttribute(t,e){return this.x=t.getX(e),this.y=t.getY(e),this.z=t.getZ(e),this}random(){return this.x=Math.random(),this.y=Math.random(),this.z=Math.random(),this}randomDirection(){let t=Math.random()*Math.PI*2,e=Math.random()*2-1,n=Math.sqrt(1-e*e);return this.x=n*Math.cos(t),this.y=e,this.z=n*Math.sin(t),this}*[Symbol.iterator](){yield this.x,yield this.y,yield this.z}},Bu=new R,Np=new Xe,re=class{static{this.prototype.isMatrix3=!0}constructor(t,e,n,s,r,o,a,c,l){this.elements=[1,0,0,0,1,0,0,0,1],t!==void 0&&this.set(t,e,n,s,r,o,a,c,l)}set(t,e,n,s,r,o,a,c,l){let u=this.elements;return u[0]=t,u[1]=s,u[2]=a,u[3]=e,u[4]=r,u[5]=c,u[6]=n,u[7]=o,u[8]=l,this}identity(){return this.set(1,0,0,0,1,0,0,0,1),this}copy(t){let e=this.elements,n=t.elements;return e[0]=n[0],e[1]=n[1],e[2]=n[2],e[3]=n[3],e[4]=n[4],e[5]=n[5],e[6]=n[6],e[7]=n[7],e[8]=n[8],this}extractBasis(t,e,n){return t.setFromMatrix3Column(this,0),e.setFromMatrix3Column(this,1),n.setFromMatrix3Column(this,2),this}setFromMatrix4(t){let e=t.elements;return this.set(e[0],e[4],e[8],e[1],e[5],e[9],e[2],e[6],e[10]),this}multiply(t){return this.multiplyMatrices(this,t)}premultiply(t){return this.multiplyMatrices(t,this)}multiplyMatrices(t,e){let n=t.elements,s=e.elements,r=this.elements,o=n[0],a=n[3],c=n[6],l=n[1],u=n[4],h=n[7],d=n[2],f=n[5],p=n[8],_=s[0],m=s[3],g=s[6],x=s[1],E=s[4],S=s[7],M=s[2],T=s[5],y=s[8];return r[0]=o*_+a*x+c*M,r[3]=o*m+a*E+c*T,r[6]=o*g+a*S+c*y,r[1]=l*_+u*x+h*M,r[4]=l*m+u*E+h*T,r[7]=l*g+u*S+h*y,r[2]=d*_+f*x+p*M,r[5]=d*m+f*E+p*T,r[8]=d*g+f*S+p*y,this}multiplyScalar(t){let e=this.elements;return e[0]*=t,e[3]*=t,e[6]*=t,e[1]*=t,e[4]*=t,e[7]*=t,e[2]*=t,e[5]*=t,e[8]*=t,this}determinant(){let t=this.elements,e=t[0],n=t[1],s=t[2],r=t[3],o=t[4],a=t[5],c=t[6],l=t[7],u=t[8];return e*o*u-e*a*l-n*r*u+n*a*c+s*r*l-s*o*c}invert(){let t=this.elements,e=t[0],n=t[1],s=t[2],r=t[3],o=t[4],a=t[5],c=t[6],l=t[7],u=t[8],h=u*o-a*l,d=a*c-u*r,f=l*r-o*c,p=e*h+n*d+s*f;if(p===0)return this.set(0,0,0,0,0,0,0,0,0);let _=1/p;return t[0]=h*_,t[1]=(s*l-u*n)*_,t[2]=(a*n-s*o)*_,t[3]=d*_,t[4]=(u*e-s*c)*_,t[5]=(s*r-a*e)*_,t[6]=f*_,t[7]=(n*c-l*e)*_,t[8]=(o*e-n*r)*_,this}transpose(){let t,e=this.elements;return t=e[1],e[1]=e[3],e[3]=t,t=e[2],e[2]=e[6],e[6]=t,t=e[5],e[5]=e[7],e[7]=t,this}getNormalMatrix(t){return this.setFromMatrix4(t).invert().transpose()}transposeIntoArray(t){let e=this.elements;return t[0]=e[0],t[1]=e[3],t[2]=e[6],t[3]=e[1],t[4]=e[4],t[5]=e[7],t[6]=e[2],t[7]=e[5],t[8]=e[8],this}setUvTransform(t,e,n,s,r,o,a){let c=Math.cos(r),l=Math.sin(r);return this.set(n*c,n*l,-n*(c*o+l*a)+o+t,-s*l,s*c,-s*(-l*o+c*a)+a+e,0,0,1),this}scale(t,e){return wa("Matrix3: .scale() is deprecated. Use .makeScale() instead."),this.premultiply(ku.makeScale(t,e)),this}rotate(t){return wa("Matrix3: .rotate() is deprecated. Use .makeRotation() instead."),this.premultiply(ku.makeRotation(-t)),this}translate(t,e){return wa("Matrix3: .translate() is deprecated. Use .makeTranslation() instead."),this.premultiply(ku.makeTranslation(t,e)),this}makeTranslation(t,e){return t.isVector2?this.set(1,0,t.x,0,1,t.y,0,0,1):this.set(1,0,t,0,1,e,0,0,1),this}makeRotation(t){let e=Math.cos(t),n=Math.sin(t);return this.set(e,-n,0,n,e,0,0,0,1),this}makeScale(t,e){return this.set(t,0,0,0,e,0,0,0,1),this}equals(t){let e=this.elements,n=t.elements;for(let s=0;s<9;s++)if(e[s]!==n[s])return!1;return!0}fromArray(t,e=0){for(let n=0;n<9;n++)this.elements[n]=t[n+e];return this}toArray(t=[],e=0){let n=this.elements;return t[e]=n[0],t[e+1]=n[1],t[e+2]=n[2],t[e+3]=n[3],t[e+4]=n[4],t[e+5]=n[5],t[e+6]=n[6],t[e+7]=n[7],t[e+8]=n[8],t}clone(){return new this.constructor().fromArray(this.elements)}},ku=new re,Up=new re().set(.4123908,.3575843,.1804808,.212639,.7151687,.0721923,.0193308,.1191948,.9505322),Op=new re().set(3.2409699,-1.5373832,-.4986108,-.9692436,1.8759675,.0415551,.0556301,-.203977,1.0569715);function ry(){let i={enabled:!0,workingColorSpace:Ca,spaces:{},convert:function(s,r,o){return this.enabled===!1||r===o||!r||!o||(this.spaces[r].transfer===Pe&&(s.r=Rs(s.r),s.g=Rs(s.g),s.b=Rs(s.b)),this.spaces[r].primaries!==this.spaces[o].primaries&&(s.applyMatrix3(this.spaces[r].toXYZ),s.applyMatrix3(this.spaces[o].fromXYZ)),this.spaces[o].transfer===Pe&&(s.r=bo(s.r),s.g=bo(s.g),s.b=bo(s.b))),s},workingToColorSpace:function(s,r){return this.convert(s,this.workingColorSpace,r)},colorSpaceToWorking:function(s,r){return this.convert(s,r,this.workingColorSpace)},getPrimaries:function(s){return this.spaces[s].primaries},getTransfer:function(s){return s===ks?Ra:this.spaces[s].transfer},getToneMappingMode:function(s){return this.spaces[s].outputColorSpaceConfig.toneMappingMode||"standard"},getLuminanceCoefficients:function(s,r=this.workingColorSpace){return s.fromArray(this.spaces[r].luminanceCoefficients)},define:function(s){Object.assign(this.spaces,s)},_getMatrix:function(s,r,o){return s.copy(this.spaces[o].fromXYZ).multiply(this.spaces[r].toXYZ)},_getDrawingBufferColorSpace:function(s){return this.spaces[s].outputColorSpaceConfig.drawingBufferColorSpace},_getUnpackColorSpace:function(s=this.workingColorSpace){return this.spaces[s].workingColorSpaceConfig.unpackColorSpace}},t=[.64,.33,.3,.6,.15,.06],e=[.2126,.7152,.0722],n=[.3127,.329];return i.define({[Ca]:{primaries:t,whitePoint:n,transfer:Ra,toXYZ:Up,fromXYZ:Op,luminanceCoefficients:e,workingColorSpaceConfig:{unpackColorSpace:Ae},outputColorSpaceConfig:{drawingBufferColorSpace:Ae}},[Ae]:{primaries:t,whitePoint:n,transfer:Pe,toXYZ:Up,fromXYZ:Op,luminanceCoefficients:e,outputColorSpaceConfig:{drawingBufferColorSpace:Ae}}}),i}var Se=ry();function Rs(i){return i<.04045?i*.0773993808:Math.pow(i*.9478672986+.0521327014,2.4)}function bo(i){return i<.0031308?i*12.92:1.055*Math.pow(i,.41666)-.055}var no,Mc=class{static getDataURL(t,e="image/png"){if(/^data:/i.test(t.src)||typeof HTMLCanvasElement>"u")return t.src;let n;if(t instanceof HTMLCanvasElement)n=t;else{no===void 0&&(no=Pa("canvas")),no.width=t.width,no.height=t.height;let s=no.getContext("2d");t instanceof ImageData?s.putImageData(t,0,0):s.drawImage(t,0,0,t.width,t.height),n=no}return n.toDataURL(e)}static sRGBToLinear(t){if(typeof HTMLImageElement<"u"&&t instanceof HTMLImageElement||typeof HTMLCanvasElement<"u"&&t instanceof HTMLCanvasElement||typeof ImageBitmap<"u"&&t instanceof ImageBitmap){let e=Pa("canvas");e.width=t.width,e.height=t.height;let n=e.getContext("2d");n.drawImage(t,0,0,t.width,t.height);let s=n.getImageData(0,0,t.width,t.height),r=s.data;for(let o=0;o<r.length;o++)r[o]=Rs(r[o]/255)*255;return n.putImageData(s,0,0),e}else if(t.data){let e=t.data.slice(0);for(let n=0;n<e.length;n++)e instanceof Uint8Array||e instanceof Uint8ClampedArray?e[n]=Math.floor(Rs(e[n]/255)*255):e[n]=Rs(e[n]);return{data:e,width:t.width,height:t.height}}else return jt("ImageUtils.sRGBToLinear(): Unsupported image type. No color space conversion applied."),t}},oy=0,Co=class{constructor(t=null){this.isTextureSource=!0,Object.defineProperty(this,"id",{value:oy++}),this.uuid=fr(),this.data=t,this.dataReady=!0,this.version=0}getSize(t){let e=this.data;return typeof HTMLVideoElement<"u"&&e instanceof HTMLVideoElement?t.set(e.videoWidth,e.videoHeight,0):typeof VideoFrame<"u"&&e instanceof VideoFrame?t.set(e.displayWidth,e.displayHeight,0):e!==null?t.set(e.width||0,e.height||0,e.depth||0):t.set(0,0,0),t}set needsUpdate(t){t===!0&&this.version++}toJSON(t){let e=t===void 0||typeof t=="string";if(!e&&t.images[this.uuid]!==void 0)return t.images[this.uuid];let n={uuid:this.uuid,url:""},s=this.data;if(s!==null){let r;if(Array.isArray(s)){r=[];for(let o=0,a=s.length;o<a;o++)s[o].isDataTexture?r.push(zu(s[o].image)):r.push(zu(s[o]))}else r=zu(s);n.url=r}return e||(t.images[this.uuid]=n),n}};function zu(i){return typeof HTMLImageElement<"u"&&i instanceof HTMLImageElement||typeof HTMLCanvasElement<"u"&&i instanceof HTMLCanvasElement||typeof ImageBitmap<"u"&&i instanceof ImageBitmap?Mc.getDataURL(i):i.data?{data:Array.from(i.data),width:i.width,height:i.height,type:i.data.constructor.name}:(jt("Texture: Unable to serialize Texture."),{})}var ay=0,Vu=new R,Wn=class i extends qi{constructor(t=i.DEFAULT_IMAGE,e=i.DEFAULT_MAPPING,n=cs,s=cs,r=li,o=Fs,a=Ji,c=gi,l=i.DEFAULT_ANISOTROPY,u=ks){super(),this.isTexture=!0,Object.defineProperty(this,"id",{value:ay++}),this.uuid=fr(),this.name="",this.source=new Co(t),this.mipmaps=[],this.mapping=e,this.channel=0,this.wrapS=n,this.wrapT=s,this.magFilter=r,this.minFilter=o,this.anisotropy=l,this.format=a,this.internalFormat=null,this.type=c,this.offset=new kt(0,0),this.repeat=new kt(1,1),this.center=new kt(0,0),this.rotation=0,this.matrixAutoUpdate=!0,this.matrix=new re,this.generateMipmaps=!0,this.mipmapsAutoUpdate=!0,this.premultiplyAlpha=!1,this.flipY=!0,this.unpackAlignment=4,this.colorSpace=u,this.userData={},this.updateRanges=[],this.version=0,this.onUpdate=null,this.renderTarget=null,this.isRenderTargetTexture=!1,this.isArrayTexture=!!(t&&t.depth&&t.depth>1),this.pmremVersion=0,this.isPMREMTexture=!1,this.normalized=!1}get width(){return this.source.getSize(Vu).x}get height(){return this.source.getSize(Vu).y}get depth(){return this.source.getSize(Vu).z}get image(){return this.source.data}set image(t){this.source.data=t}updateMatrix(){this.matrix.setUvTransform(this.offset.x,this.offset.y,this.repeat.x,this.repeat.y,this.rotation,this.center.x,this.center.y)}addUpdateRange(t,e){this.updateRanges.push({start:t,count:e})}clearUpdateRanges(){this.updateRanges.length=0}clone(){return new this.constructor().copy(this)}copy(t){return this.name=t.name,this.source=t.source,this.mipmaps=t.mipmaps.slice(0),this.mapping=t.mapping,this.channel=t.channel,this.wrapS=t.wrapS,this.wrapT=t.wrapT,this.magFilter=t.magFilter,this.minFilter=t.minFilter,this.anisotropy=t.anisotropy,this.format=t.format,this.internalFormat=t.internalFormat,this.type=t.type,this.normalized=t.normalized,this.offset.copy(t.offset),this.repeat.copy(t.repeat),this.center.copy(t.center),this.rotation=t.rotation,this.matrixAutoUpdate=t.matrixAutoUpdate,this.matrix.copy(t.matrix),this.generateMipmaps=t.generateMipmaps,this.mipmapsAutoUpdate=t.mipmapsAutoUpdate,this.premultiplyAlpha=t.premultiplyAlpha,this.flipY=t.flipY,this.unpackAlignment=t.unpackAlignment,this.colorSpace=t.colorSpace,this.renderTarget=t.renderTarget,this.isRenderTargetTexture=t.isRenderTargetTexture,this.isPMREMTexture=t.isPMREMTexture,this.isArrayTexture=t.isArrayTexture,this.userData=JSON.parse(JSON.stringify(t.userData)),this.needsUpdate=!0,this}setValues(t){for(let e in t){let n=t[e];if(n===void 0){jt(`Texture.setValues(): parameter '${e}' has value of undefined.`);continue}let s=this[e];if(s===void 0){jt(`Texture.setValues(): property '${e}' does not exist.`);continue}s&&n&&s.isVector2&&n.isVector2||s&&n&&s.isVector3&&n.isVector3||s&&n&&s.isMatrix3&&n.isMatrix3?s.copy(n):this[e]=n}}toJSON(t){let e=t===void 0||typeof t=="string";if(!e&&t.textures[this.uuid]!==void 0)return t.textures[this.uuid];let n={metadata:{version:4.7,type:"Texture",generator:"Texture.toJSON"},uuid:this.uuid,name:this.name,image:this.source.toJSON(t).uuid,mapping:this.mapping,channel:this.channel,repeat:[this.repeat.x,this.repeat.y],offset:[this.offset.x,this.offset.y],center:[this.center.x,this.center.y],rotation:this.rotation,wrap:[this.wrapS,this.wrapT],format:this.format,internalFormat:this.internalFormat,type:this.type,normalized:this.normalized,colorSpace:this.colorSpace,minFilter:this.minFilter,magFilter:this.magFilter,anisotropy:this.anisotropy,flipY:this.flipY,generateMipmaps:this.generateMipmaps,mipmapsAutoUpdate:this.mipmapsAutoUpdate,premultiplyAlpha:this.premultiplyAlpha,unpackAlignment:this.unpackAlignment};return Object.keys(this.userData).length>0&&(n.userData=this.userData),e||(t.textures[this.uuid]=n),n}dispose(){this.dispatchEvent({type:"dispose"})}transformUv(t){if(this.mapping!==Ld)return t;if(t.applyMatrix3(this.matrix),t.x<0||t.x>1)switch(this.wrapS){case To:t.x=t.x-Math.floor(t.x);break;case cs:t.x=t.x<0?0:1;break;case vc:Math.abs(Math.floor(t.x)%2)===1?t.x=Math.ceil(t.x)-t.x:t.x=t.x-Math.floor(t.x);break}if(t.y<0||t.y>1)switch(this.wrapT){case To:t.y=t.y-Math.floor(t.y);break;case cs:t.y=t.y<0?0:1;break;case vc:Math.abs(Math.floor(t.y)%2)===1?t.y=Math.ceil(t.y)-t.y:t.y=t.y-Math.floor(t.y);break}return this.flipY&&(t.y=1-t.y),t}set needsUpdate(t){t===!0&&(this.version++,this.source.needsUpdate=!0)}set needsPMREMUpdate(t){t===!0&&this.pmremVersion++}};Wn.DEFAULT_IMAGE=null;Wn.DEFAULT_MAPPING=Ld;Wn.DEFAULT_ANISOTROPY=1;var Le=class{static{this.prototype.isVector4=!0}constructor(t=0,e=0,n=0,s=1){this.x=t,this.y=e,this.z=n,this.w=s}get width(){return this.z}set width(t){this.z=t}get height(){return this.w}set height(t){this.w=t}set(t,e,n,s){return this.x=t,this.y=e,this.z=n,this.w=s,this}setScalar(t){return this.x=t,this.y=t,this.z=t,this.w=t,this}setX(t){return this.x=t,this}setY(t){return this.y=t,this}setZ(t){return this.z=t,this}setW(t){return this.w=t,this}setComponent(t,e){switch(t){case 0:this.x=e;break;case 1:this.y=e;break;case 2:this.z=e;break;case 3:this.w=e;break;default:throw new Error("THREE.Vector4: index is out of range: "+t)}return this}getComponent(t){switch(t){case 0:return this.x;case 1:return this.y;case 2:return this.z;case 3:return this.w;default:throw new Error("THREE.Vector4: index is out of range: "+t)}}clone(){return new this.constructor(this.x,this.y,this.z,this.w)}copy(t){return this.x=t.x,this.y=t.y,this.z=t.z,this.w=t.w!==void 0?t.w:1,this}add(t){return this.x+=t.x,this.y+=t.y,this.z+=t.z,this.w+=t.w,this}addScalar(t){return this.x+=t,this.y+=t,this.z+=t,this.w+=t,this}addVectors(t,e){return this.x=t.x+e.x,this.y=t.y+e.y,this.z=t.z+e.z,this.w=t.w+e.w,this}addScaledVector(t,e){return this.x+=t.x*e,this.y+=t.y*e,this.z+=t.z*e,this.w+=t.w*e,this}sub(t){return this.x-=t.x,this.y-=t.y,this.z-=t.z,this.w-=t.w,this}subScalar(t){return this.x-=t,this.y-=t,this.z-=t,this.w-=t,this}subVectors(t,e){return this.x=t.x-e.x,this.y=t.y-e.y,this.z=t.z-e.z,this.w=t.w-e.w,this}multiply(t){return this.x*=t.x,this.y*=t.y,this.z*=t.z,this.w*=t.w,this}multiplyScalar(t){return this.x*=t,this.y*=t,this.z*=t,this.w*=t,this}applyMatrix4(t){let e=this.x,n=this.y,s=this.z,r=this.w,o=t.elements;return this.x=o[0]*e+o[4]*n+o[8]*s+o[12]*r,this.y=o[1]*e+o[5]*n+o[9]*s+o[13]*r,this.z=o[2]*e+o[6]*n+o[10]*s+o[14]*r,this.w=o[3]*e+o[7]*n+o[11]*s+o[15]*r,this}divide(t){return this.x/=t.x,this.y/=t.y,this.z/=t.z,this.w/=t.w,this}divideScalar(t){return this.multiplyScalar(1/t)}setAxisAngleFromQuaternion(t){this.w=2*Math.acos(t.w);let e=Math.sqrt(1-t.w*t.w);return e<1e-4?(this.x=1,this.y=0,this.z=0):(this.x=t.x/e,this.y=t.y/e,this.z=t.z/e),this}setAxisAngleFromRotationMatrix(t){let e,n,s,r,c=t.elements,l=c[0],u=c[4],h=c[8],d=c[1],f=c[5],p=c[9],_=c[2],m=c[6],g=c[10];if(Math.abs(u-d)<.01&&Math.abs(h-_)<.01&&Math.abs(p-m)<.01){if(Math.abs(u+d)<.1&&Math.abs(h+_)<.1&&Math.abs(p+m)<.1&&Math.abs(l+f+g-3)<.1)return this.set(1,0,0,0),this;e=Math.PI;let E=(l+1)/2,S=(f+1)/2,M=(g+1)/2,T=(u+d)/4,y=(h+_)/4,b=(p+m)/4;return E>S&&E>M?E<.01?(n=0,s=.707106781,r=.707106781):(n=Math.sqrt(E),s=T/n,r=y/n):S>M?S<.01?(n=.707106781,s=0,r=.707106781):(s=Math.sqrt(S),n=T/s,r=b/s):M<.01?(n=.707106781,s=.707106781,r=0):(r=Math.sqrt(M),n=y/r,s=b/r),this.set(n,s,r,e),this}let x=Math.sqrt((m-p)*(m-p)+(h-_)*(h-_)+(d-u)*(d-u));return Math.abs(x)<.001&&(x=1),this.x=(m-p)/x,this.y=(h-_)/x,this.z=(d-u)/x,this.w=Math.acos((l+f+g-1)/2),this}setFromMatrixPosition(t){let e=t.elements;return this.x=e[12],this.y=e[13],this.z=e[14],this.w=e[15],this}min(t){return this.x=Math.min(this.x,t.x),this.y=Math.min(this.y,t.y),this.z=Math.min(this.z,t.z),this.w=Math.min(this.w,t.w),this}max(t){return this.x=Math.max(this.x,t.x),this.y=Math.max(this.y,t.y),this.z=Math.max(this.z,t.z),this.w=Math.max(this.w,t.w),this}clamp(t,e){return this.x=he(this.x,t.x,e.x),this.y=he(this.y,t.y,e.y),this.z=he(this.z,t.z,e.z),this.w=he(this.w,t.w,e.w),this}clampScalar(t,e){return this.x=he(this.x,t,e),this.y=he(this.y,t,e),this.z=he(this.z,t,e),this.w=he(this.w,t,e),this}clampLength(t,e){let n=this.length();return this.divideScalar(n||1).multiplyScalar(he(n,t,e))}floor(){return this.x=Math.floor(this.x),this.y=Math.floor(this.y),this.z=Math.floor(this.z),this.w=Math.floor(this.w),this}ceil(){return this.x=Math.ceil(this.x),this.y=Math.ceil(this.y),this.z=Math.ceil(this.z),this.w=Math.ceil(this.w),this}round(){return this.x=Math.round(this.x),this.y=Math.round(this.y),this.z=Math.round(this.z),this.w=Math.round(this.w),this}roundToZero(){return this.x=Math.trunc(this.x),this.y=Math.trunc(this.y),this.z=Math.trunc(this.z),this.w=Math.trunc(this.w),this}negate(){return this.x=-this.x,this.y=-this.y,this.z=-this.z,this.w=-this.w,this}dot(t){return this.x*t.x+this.y*t.y+this.z*t.z+this.w*t.w}lengthSq(){return this.x*this.x+this.y*this.y+this.z*this.z+this.w*this.w}length(){return Math.sqrt(this.x*this.x+this.y*this.y+this.z*this.z+this.w*this.w)}manhattanLength(){return Math.abs(this.x)+Math.abs(this.y)+Math.abs(this.z)+Math.abs(this.w)}normalize(){return this.divideScalar(this.length()||1)}setLength(t){return this.normalize().multiplyScalar(t)}lerp(t,e){return this.x+=(t.x-this.x)*e,this.y+=(t.y-this.y)*e,this.z+=(t.z-this.z)*e,this.w+=(t.w-this.w)*e,this}lerpVectors(t,e,n){return this.x=t.x+(e.x-t.x)*n,this.y=t.y+(e.y-t.y)*n,this.z=t.z+(e.z-t.z)*n,this.w=t.w+(e.w-t.w)*n,this}equals(t){return t.x===this.x&&t.y===this.y&&t.z===this.z&&t.w===this.w}fromArray(t,e=0){return this.x=t[e],this.y=t[e+1],this.z=t[e+2],this.w=t[e+3],this}toArray(t=[],e=0){return t[e]=this.x,t[e+1]=this.y,t[e+2]=this.z,t[e+3]=this.w,t}fromBufferAttribute(t,e){return this.x=t.getX(e),this.y=t.getY(e),this.z=t.getZ(e),this.w=t.getW(e),this}random(){return this.x=Math.random(),this.y=Math.random(),this.z=Math.random(),this.w=Math.random(),this}*[Symbol.iterator](){yield this.x,yield this.y,yield this.z,yield this.w}},bc=class extends qi{constructor(t=1,e=1,n={}){super(),n=Object.assign({generateMipmaps:!1,internalFormat:null,minFilter:li,depthBuffer:!0,stencilBuffer:!1,resolveColorBuffer:!0,resolveDepthBuffer:!0,resolveStencilBuffer:!0,storeMultisampledColorBuffer:!0,storeMultisampledDepthBuffer:!0,storeMultisampledStencilBuffer:!0,depthTexture:null,samples:0,count:1,depth:1,multiview:!1,useArrayDepthTexture:!1},n),this.isRenderTarget=!0,this.width=t,this.height=e,this.depth=n.depth,this.scissor=new Le(0,0,t,e),this.scissorTest=!1,this.viewport=new Le(0,0,t,e),this.textures=[];let s=n.count;for(let r=0;r<s;r++)this.textures[r]=new Wn({width:t,height:e,depth:n.depth}),this.textures[r].isRenderTargetTexture=!0,this.textures[r].renderTarget=this;this._setTextureOptions(n),this.depthBuffer=n.depthBuffer,this.stencilBuffer=n.stencilBuffer,this.resolveColorBuffer=n.resolveColorBuffer,this.resolveDepthBuffer=n.resolveDepthBuffer,this.resolveStencilBuffer=n.resolveStencilBuffer,this.storeMultisampledColorBuffer=n.storeMultisampledColorBuffer,this.storeMultisampledDepthBuffer=n.storeMultisampledDepthBuffer,this.storeMultisampledStencilBuffer=n.storeMultisampledStencilBuffer,this._depthTexture=null,this.depthTexture=n.depthTexture,this.samples=n.samples,this.multiview=n.multiview,this.useArrayDepthTexture=n.useArrayDepthTexture}_setTextureOptions(t={}){let e={minFilter:li,generateMipmaps:!1,flipY:!1,internalFormat:null};t.mapping!==void 0&&(e.mapping=t.mapping),t.wrapS!==void 0&&(e.wrapS=t.wrapS),t.wrapT!==void 0&&(e.wrapT=t.wrapT),t.wrapR!==void 0&&(e.wrapR=t.wrapR),t.magFilter!==void 0&&(e.magFilter=t.magFilter),t.minFilter!==void 0&&(e.minFilter=t.minFilter),t.format!==void 0&&(e.format=t.format),t.type!==void 0&&(e.type=t.type),t.anisotropy!==void 0&&(e.anisotropy=t.anisotropy),t.colorSpace!==void 0&&(e.colorSpace=t.colorSpace),t.flipY!==void 0&&(e.flipY=t.flipY),t.generateMipmaps!==void 0&&(e.generateMipmaps=t.generateMipmaps),t.mipmapsAutoUpdate!==void 0&&(e.mipmapsAutoUpdate=t.mipmapsAutoUpdate),t.internalFormat!==void 0&&(e.internalFormat=t.internalFormat);for(let n=0;n<this.textures.length;n++)this.textures[n].setValues(e)}get texture(){return this.textures[0]}set texture(t){this.textures[0]=t}set depthTexture(t){this._depthTexture!==null&&this._depthTexture.renderTarget===this&&(this._depthTexture.renderTarget=null),t!==null&&t.renderTarget===null&&(t.renderTarget=this),this._depthTexture=t}get depthTexture(){return this._depthTexture}setSize(t,e,n=1){if(this.width!==t||this.height!==e||this.depth!==n){this.width=t,this.height=e,this.depth=n;for(let s=0,r=this.textures.length;s<r;s++)this.textures[s].image.width=t,this.textures[s].image.height=e,this.textures[s].image.depth=n,this.textures[s].isData3DTexture!==!0&&(this.textures[s].isArrayTexture=this.textures[s].image.depth>1);this.dispose()}this.viewport.set(0,0,t,e),this.scissor.set(0,0,t,e)}clone(){return new this.constructor().copy(this)}copy(t){this.width=t.width,this.height=t.height,this.depth=t.depth,this.scissor.copy(t.scissor),this.scissorTest=t.scissorTest,this.viewport.copy(t.viewport),this.textures.length=0;for(let e=0,n=t.textures.length;e<n;e++){this.textures[e]=t.textures[e].clone(),this.textures[e].isRenderTargetTexture=!0,this.textures[e].renderTarget=this;let s=Object.assign({},t.textures[e].image);this.textures[e].source=new Co(s)}if(this.depthBuffer=t.depthBuffer,this.stencilBuffer=t.stencilBuffer,this.resolveColorBuffer=t.resolveColorBuffer,this.resolveDepthBuffer=t.resolveDepthBuffer,this.resolveStencilBuffer=t.resolveStencilBuffer,this.storeMultisampledColorBuffer=t.storeMultisampledColorBuffer,this.storeMultisampledDepthBuffer=t.storeMultisampledDepthBuffer,this.storeMultisampledStencilBuffer=t.storeMultisampledStencilBuffer,t.depthTexture!==null)if(t.depthTexture.renderTarget===t){let e=t.depthTexture.clone();e.renderTarget=null,this.depthTexture=e}else this.depthTexture=t.depthTexture;else this.depthTexture=null;return this.samples=t.samples,this.multiview=t.multiview,this.useArrayDepthTexture=t.useArrayDepthTexture,this}dispose(){this.dispatchEvent({type:"dispose"})}},ci=class extends bc{constructor(t=1,e=1,n={}){super(t,e,n),this.isWebGLRenderTarget=!0}},La=class extends Wn{constructor(t=null,e=1,n=1,s=1){super(null),this.isDataArrayTexture=!0,this.image={data:t,width:e,height:n,depth:s},this.magFilter=zn,this.minFilter=zn,this.wrapR=cs,this.generateMipmaps=!1,this.flipY=!1,this.unpackAlignment=1,this.layerUpdates=new Set}copy(t){return super.copy(t),this.wrapR=t.wrapR,this}addLayerUpdate(t){this.layerUpdates.add(t)}clearLayerUpdates(){this.layerUpdates.clear()}};var wc=class extends Wn{constructor(t=null,e=1,n=1,s=1){super(null),this.isData3DTexture=!0,this.image={data:t,width:e,height:n,depth:s},this.magFilter=zn,this.minFilter=zn,this.wrapR=cs,this.generateMipmaps=!1,this.flipY=!1,this.unpackAlignment=1}copy(t){return super.copy(t),this.wrapR=t.wrapR,this}};var qt=class i{static{this.prototype.isMatrix4=!0}constructor(t,e,n,s,r,o,a,c,l,u,h,d,f,p,_,m){this.elements=[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1],t!==void 0&&this.set(t,e,n,s,r,o,a,c,l,u,h,d,f,p,_,m)}set(t,e,n,s,r,o,a,c,l,u,h,d,f,p,_,m){let g=this.elements;return g[0]=t,g[4]=e,g[8]=n,g[12]=s,g[1]=r,g[5]=o,g[9]=a,g[13]=c,g[2]=l,g[6]=u,g[10]=h,g[14]=d,g[3]=f,g[7]=p,g[11]=_,g[15]=m,this}identity(){return this.set(1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1),this}clone(){return new i().fromArray(this.elements)}copy(t){let e=this.elements,n=t.elements;return e[0]=n[0],e[1]=n[1],e[2]=n[2],e[3]=n[3],e[4]=n[4],e[5]=n[5],e[6]=n[6],e[7]=n[7],e[8]=n[8],e[9]=n[9],e[10]=n[10],e[11]=n[11],e[12]=n[12],e[13]=n[13],e[14]=n[14],e[15]=n[15],this}copyPosition(t){let e=this.elements,n=t.elements;return e[12]=n[12],e[13]=n[13],e[14]=n[14],this}setFromMatrix3(t){let e=t.elements;return this.set(e[0],e[3],e[6],0,e[1],e[4],e[7],0,e[2],e[5],e[8],0,0,0,0,1),this}extractBasis(t,e,n){return this.determinantAffine()===0?(t.set(1,0,0),e.set(0,1,0),n.set(0,0,1),this):(t.setFromMatrixColumn(this,0),e.setFromMatrixColumn(this,1),n.setFromMatrixColumn(this,2),this)}makeBasis(t,e,n){return this.set(t.x,e.x,n.x,0,t.y,e.y,n.y,0,t.z,e.z,n.z,0,0,0,0,1),this}extractRotation(t){if(t.determinantAffine()===0)return this.identity();let e=this.elements,n=t.elements,s=1/io.setFromMatrixColumn(t,0).length(),r=1/io.setFromMatrixColumn(t,1).length(),o=1/io.setFromMatrixColumn(t,2).length();return e[0]=n[0]*s,e[1]=n[1]*s,e[2]=n[2]*s,e[3]=0,e[4]=n[4]*r,e[5]=n[5]*r,e[6]=n[6]*r,e[7]=0,e[8]=n[8]*o,e[9]=n[9]*o,e[10]=n[10]*o,e[11]=0,e[12]=0,e[13]=0,e[14]=0,e[15]=1,this}makeRotationFromEuler(t){let e=this.elements,n=t.x,s=t.y,r=t.z,o=Math.cos(n),a=Math.sin(n),c=Math.cos(s),l=Math.sin(s),u=Math.cos(r),h=Math.sin(r);if(t.order==="XYZ"){let d=o*u,f=o*h,p=a*u,_=a*h;e[0]=c*u,e[4]=-c*h,e[8]=l,e[1]=f+p*l,e[5]=d-_*l,e[9]=-a*c,e[2]=_-d*l,e[6]=p+f*l,e[10]=o*c}else if(t.order==="YXZ"){let d=c*u,f=c*h,p=l*u,_=l*h;e[0]=d+_*a,e[4]=p*a-f,e[8]=o*l,e[1]=o*h,e[5]=o*u,e[9]=-a,e[2]=f*a-p,e[6]=_+d*a,e[10]=o*c}else if(t.order==="ZXY"){let d=c*u,f=c*h,p=l*u,_=l*h;e[0]=d-_*a,e[4]=-o*h,e[8]=p+f*a,e[1]=f+p*a,e[5]=o*u,e[9]=_-d*a,e[2]=-o*l,e[6]=a,e[10]=o*c}else if(t.order==="ZYX"){let d=o*u,f=o*h,p=a*u,_=a*h;e[0]=c*u,e[4]=p*l-f,e[8]=d*l+_,e[1]=c*h,e[5]=_*l+d,e[9]=f*l-p,e[2]=-l,e[6]=a*c,e[10]=o*c}else if(t.order==="YZX"){let d=o*c,f=o*l,p=a*c,_=a*l;e[0]=c*u,e[4]=_-d*h,e[8]=p*h+f,e[1]=h,e[5]=o*u,e[9]=-a*u,e[2]=-l*u,e[6]=f*h+p,e[10]=d-_*h}else if(t.order==="XZY"){let d=o*c,f=o*l,p=a*c,_=a*l;e[0]=c*u,e[4]=-h,e[8]=l*u,e[1]=d*h+_,e[5]=o*u,e[9]=f*h-p,e[2]=p*h-f,e[6]=a*u,e[10]=_*h+d}return e[3]=0,e[7]=0,e[11]=0,e[12]=0,e[13]=0,e[14]=0,e[15]=1,this}makeRotationFromQuaternion(t){return this.compose(ly,t,cy)}lookAt(t,e,n){let s=this.elements;return Mi.subVectors(t,e),Mi.lengthSq()===0&&(Mi.z=1),Mi.normalize(),Js.crossVectors(n,Mi),Js.lengthSq()===0&&(Math.abs(n.z)===1?Mi.x+=1e-4:Mi.z+=1e-4,Mi.normalize(),Js.crossVectors(n,Mi)),Js.normalize(),Ul.crossVectors(Mi,Js),s[0]=Js.x,s[4]=Ul.x,s[8]=Mi.x,s[1]=Js.y,s[5]=Ul.y,s[9]=Mi.y,s[2]=Js.z,s[6]=Ul.z,s[10]=Mi.z,this}multiply(t){return this.multiplyMatrices(this,t)}premultiply(t){return this.multiplyMatrices(t,this)}multiplyMatrices(t,e){let n=t.elements,s=e.elements,r=this.elements,o=n[0],a=n[4],c=n[8],l=n[12],u=n[1],h=n[5],d=n[9],f=n[13],p=n[2],_=n[6],m=n[10],g=n[14],x=n[3],E=n[7],S=n[11],M=n[15],T=s[0],y=s[4],b=s[8],U=s[12],I=s[1],L=s[5],B=s[9],W=s[13],P=s[2],k=s[6],Y=s[10],G=s[14],at=s[3],$=s[7],Q=s[11],it=s[15];return r[0]=o*T+a*I+c*P+l*at,r[4]=o*y+a*L+c*k+l*$,r[8]=o*b+a*B+c*Y+l*Q,r[12]=o*U+a*W+c*G+l*it,r[1]=u*T+h*I+d*P+f*at,r[5]=u*y+h*L+d*k+f*$,r[9]=u*b+h*B+d*Y+f*Q,r[13]=u*U+h*W+d*G+f*it,r[2]=p*T+_*I+m*P+g*at,r[6]=p*y+_*L+m*k+g*$,r[10]=p*b+_*B+m*Y+g*Q,r[14]=p*U+_*W+m*G+g*it,r[3]=x*T+E*I+S*P+M*at,r[7]=x*y+E*L+S*k+M*$,r[11]=x*b+E*B+S*Y+M*Q,r[15]=x*U+E*W+S*G+M*it,this}multiplyScalar(t){let e=this.elements;return e[0]*=t,e[4]*=t,e[8]*=t,e[12]*=t,e[1]*=t,e[5]*=t,e[9]*=t,e[13]*=t,e[2]*=t,e[6]*=t,e[10]*=t,e[14]*=t,e[3]*=t,e[7]*=t,e[11]*=t,e[15]*=t,this}determinant(){let t=this.elements,e=t[0],n=t[4],s=t[8],r=t[12],o=t[1],a=t[5],c=t[9],l=t[13],u=t[2],h=t[6],d=t[10],f=t[14],p=t[3],_=t[7],m=t[11],g=t[15],x=c*f-l*d,E=a*f-l*h,S=a*d-c*h,M=o*f-l*u,T=o*d-c*u,y=o*h-a*u;return e*(_*x-m*E+g*S)-n*(p*x-m*M+g*T)+s*(p*E-_*M+g*y)-r*(p*S-_*T+m*y)}determinantAffine(){let t=this.elements,e=t[0],n=t[4],s=t[8],r=t[1],o=t[5],a=t[9],c=t[2],l=t[6],u=t[10];return e*(o*u-a*l)-n*(r*u-a*c)+s*(r*l-o*c)}transpose(){let t=this.elements,e;return e=t[1],t[1]=t[4],t[4]=e,e=t[2],t[2]=t[8],t[8]=e,e=t[6],t[6]=t[9],t[9]=e,e=t[3],t[3]=t[12],t[12]=e,e=t[7],t[7]=t[13],t[13]=e,e=t[11],t[11]=t[14],t[14]=e,this}setPosition(t,e,n){let s=this.elements;return t.isVector3?(s[12]=t.x,s[13]=t.y,s[14]=t.z):(s[12]=t,s[13]=e,s[14]=n),this}invert(){let t=this.elements,e=t[0],n=t[1],s=t[2],r=t[3],o=t[4],a=t[5],c=t[6],l=t[7],u=t[8],h=t[9],d=t[10],f=t[11],p=t[12],_=t[13],m=t[14],g=t[15],x=e*a-n*o,E=e*c-s*o,S=e*l-r*o,M=n*c-s*a,T=n*l-r*a,y=s*l-r*c,b=u*_-h*p,U=u*m-d*p,I=u*g-f*p,L=h*m-d*_,B=h*g-f*_,W=d*g-f*m,P=x*W-E*B+S*L+M*I-T*U+y*b;if(P===0)return this.set(0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0);let k=1/P;return t[0]=(a*W-c*B+l*L)*k,t[1]=(s*B-n*W-r*L)*k,t[2]=(_*y-m*T+g*M)*k,t[3]=(d*T-h*y-f*M)*k,t[4]=(c*I-o*W-l*U)*k,t[5]=(e*W-s*I+r*U)*k,t[6]=(m*S-p*y-g*E)*k,t[7]=(u*y-d*S+f*E)*k,t[8]=(o*B-a*I+l*b)*k,t[9]=(n*I-e*B-r*b)*k,t[10]=(p*T-_*S+g*x)*k,t[11]=(h*S-u*T-f*x)*k,t[12]=(a*U-o*L-c*b)*k,t[13]=(e*L-n*U+s*b)*k,t[14]=(_*E-p*M-m*x)*k,t[15]=(u*M-h*E+d*x)*k,this}scale(t){let e=this.elements,n=t.x,s=t.y,r=t.z;return e[0]*=n,e[4]*=s,e[8]*=r,e[1]*=n,e[5]*=s,e[9]*=r,e[2]*=n,e[6]*=s,e[10]*=r,e[3]*=n,e[7]*=s,e[11]*=r,this}getMaxScaleOnAxis(){let t=this.elements,e=t[0]*t[0]+t[1]*t[1]+t[2]*t[2],n=t[4]*t[4]+t[5]*t[5]+t[6]*t[6],s=t[8]*t[8]+t[9]*t[9]+t[10]*t[10];return Math.sqrt(Math.max(e,n,s))}makeTranslation(t,e,n){return t.isVector3?this.set(1,0,0,t.x,0,1,0,t.y,0,0,1,t.z,0,0,0,1):this.set(1,0,0,t,0,1,0,e,0,0,1,n,0,0,0,1),this}makeRotationX(t){let e=Math.cos(t),n=Math.sin(t);return this.set(1,0,0,0,0,e,-n,0,0,n,e,0,0,0,0,1),this}makeRotationY(t){let e=Math.cos(t),n=Math.sin(t);return this.set(e,0,n,0,0,1,0,0,-n,0,e,0,0,0,0,1),this}makeRotationZ(t){let e=Math.cos(t),n=Math.sin(t);return this.set(e,-n,0,0,n,e,0,0,0,0,1,0,0,0,0,1),this}makeRotationAxis(t,e){let n=Math.cos(e),s=Math.sin(e),r=1-n,o=t.x,a=t.y,c=t.z,l=r*o,u=r*a;return this.set(l*o+n,l*a-s*c,l*c+s*a,0,l*a+s*c,u*a+n,u*c-s*o,0,l*c-s*a,u*c+s*o,r*c*c+n,0,0,0,0,1),this}makeScale(t,e,n){return this.set(t,0,0,0,0,e,0,0,0,0,n,0,0,0,0,1),this}makeShear(t,e,n,s,r,o){return this.set(1,n,r,0,t,1,o,0,e,s,1,0,0,0,0,1),this}compose(t,e,n){let s=this.elements,r=e._x,o=e._y,a=e._z,c=e._w,l=r+r,u=o+o,h=a+a,d=r*l,f=r*u,p=r*h,_=o*u,m=o*h,g=a*h,x=c*l,E=c*u,S=c*h,M=n.x,T=n.y,y=n.z;return s[0]=(1-(_+g))*M,s[1]=(f+S)*M,s[2]=(p-E)*M,s[3]=0,s[4]=(f-S)*T,s[5]=(1-(d+g))*T,s[6]=(m+x)*T,s[7]=0,s[8]=(p+E)*y,s[9]=(m-x)*y,s[10]=(1-(d+_))*y,s[11]=0,s[12]=t.x,s[13]=t.y,s[14]=t.z,s[15]=1,this}decompose(t,e,n){let s=this.elements;t.x=s[12],t.y=s[13],t.z=s[14];let r=this.determinantAffine();if(r===0)return n.set(1,1,1),e.identity(),this;let o=io.set(s[0],s[1],s[2]).length(),a=io.set(s[4],s[5],s[6]).length(),c=io.set(s[8],s[9],s[10]).length();r<0&&(o=-o),Wi.copy(this);let l=1/o,u=1/a,h=1/c;return Wi.elements[0]*=l,Wi.elements[1]*=l,Wi.elements[2]*=l,Wi.elements[4]*=u,Wi.elements[5]*=u,Wi.elements[6]*=u,Wi.elements[8]*=h,Wi.elements[9]*=h,Wi.elements[10]*=h,e.setFromRotationMatrix(Wi),n.x=o,n.y=a,n.z=c,this}makePerspective(t,e,n,s,r,o,a=Di,c=!1){let l=this.elements,u=2*r/(e-t),h=2*r/(n-s),d=(e+t)/(e-t),f=(n+s)/(n-s),p,_;if(c)p=r/(o-r),_=o*r/(o-r);else if(a===Di)p=-(o+r)/(o-r),_=-2*o*r/(o-r);else if(a===Eo)p=-o/(o-r),_=-o*r/(o-r);else throw new Error("THREE.Matrix4.makePerspective(): Invalid coordinate system: "+a);return l[0]=u,l[4]=0,l[8]=d,l[12]=0,l[1]=0,l[5]=h,l[9]=f,l[13]=0,l[2]=0,l[6]=0,l[10]=p,l[14]=_,l[3]=0,l[7]=0,l[11]=-1,l[15]=0,this}makeOrthographic(t,e,n,s,r,o,a=Di,c=!1){let l=this.elements,u=2/(e-t),h=2/(n-s),d=-(e+t)/(e-t),f=-(n+s)/(n-s),p,_;if(c)p=1/(o-r),_=o/(o-r);else if(a===Di)p=-2/(o-r),_=-(o+r)/(o-r);else if(a===Eo)p=-1/(o-r),_=-r/(o-r);else throw new Error("THREE.Matrix4.makeOrthographic(): Invalid coordinate system: "+a);return l[0]=u,l[4]=0,l[8]=0,l[12]=d,l[1]=0,l[5]=h,l[9]=0,l[13]=f,l[2]=0,l[6]=0,l[10]=p,l[14]=_,l[3]=0,l[7]=0,l[11]=0,l[15]=1,this}equals(t){let e=this.elements,n=t.elements;for(let s=0;s<16;s++)if(e[s]!==n[s])return!1;return!0}fromArray(t,e=0){for(let n=0;n<16;n++)this.elements[n]=t[n+e];return this}toArray(t=[],e=0){let n=this.elements;return t[e]=n[0],t[e+1]=n[1],t[e+2]=n[2],t[e+3]=n[3],t[e+4]=n[4],t[e+5]=n[5],t[e+6]=n[6],t[e+7]=n[7],t[e+8]=n[8],t[e+9]=n[9],t[e+10]=n[10],t[e+11]=n[11],t[e+12]=n[12],t[e+13]=n[13],t[e+14]=n[14],t[e+15]=n[15],t}},io=new R,Wi=new qt,ly=new R(0,0,0),cy=new R(1,1,1),Js=new R,Ul=new R,Mi=new R,Fp=new qt,Bp=new Xe,Kn=class i{constructor(t=0,e=0,n=0,s=i.DEFAULT_ORDER){this.isEuler=!0,this._x=t,this._y=e,this._z=n,this._order=s}get x(){return this._x}set x(t){this._x=t,this._onChangeCallback()}get y(){return this._y}set y(t){this._y=t,this._onChangeCallback()}get z(){return this._z}set z(t){this._z=t,this._onChangeCallback()}get order(){return this._order}set order(t){this._order=t,this._onChangeCallback()}set(t,e,n,s=this._order){return this._x=t,this._y=e,this._z=n,this._order=s,this._onChangeCallback(),this}clone(){return new this.constructor(this._x,this._y,this._z,this._order)}copy(t){return this._x=t._x,this._y=t._y,this._z=t._z,this._order=t._order,this._onChangeCallback(),this}setFromRotationMatrix(t,e=this._order,n=!0){let s=t.elements,r=s[0],o=s[4],a=s[8],c=s[1],l=s[5],u=s[9],h=s[2],d=s[6],f=s[10];switch(e){case"XYZ":this._y=Math.asin(he(a,-1,1)),Math.abs(a)<.9999999?(this._x=Math.atan2(-u,f),this._z=Math.atan2(-o,r)):(this._x=Math.atan2(d,l),this._z=0);break;case"YXZ":this._x=Math.asin(-he(u,-1,1)),Math.abs(u)<.9999999?(this._y=Math.atan2(a,f),this._z=Math.atan2(c,l)):(this._y=Math.atan2(-h,r),this._z=0);break;case"ZXY":this._x=Math.asin(he(d,-1,1)),Math.abs(d)<.9999999?(this._y=Math.atan2(-h,f),this._z=Math.atan2(-o,l)):(this._y=0,this._z=Math.atan2(c,r));break;case"ZYX":this._y=Math.asin(-he(h,-1,1)),Math.abs(h)<.9999999?(this._x=Math.atan2(d,f),this._z=Math.atan2(c,r)):(this._x=0,this._z=Math.atan2(-o,l));break;case"YZX":this._z=Math.asin(he(c,-1,1)),Math.abs(c)<.9999999?(this._x=Math.atan2(-u,l),this._y=Math.atan2(-h,r)):(this._x=0,this._y=Math.atan2(a,f));break;case"XZY":this._z=Math.asin(-he(o,-1,1)),Math.abs(o)<.9999999?(this._x=Math.atan2(d,l),this._y=Math.atan2(a,r)):(this._x=Math.atan2(-u,f),this._y=0);break;default:jt("Euler: .setFromRotationMatrix() encountered an unknown order: "+e)}return this._order=e,n===!0&&this._onChangeCallback(),this}setFromQuaternion(t,e,n){return Fp.makeRotationFromQuaternion(t),this.setFromRotationMatrix(Fp,e,n)}setFromVector3(t,e=this._order){return this.set(t.x,t.y,t.z,e)}reorder(t){return Bp.setFromEuler(this),this.setFromQuaternion(Bp,t)}equals(t){return t._x===this._x&&t._y===this._y&&t._z===this._z&&t._order===this._order}fromArray(t){return this._x=t[0],this._y=t[1],this._z=t[2],t[3]!==void 0&&(this._order=t[3]),this._onChangeCallback(),this}toArray(t=[],e=0){return t[e]=this._x,t[e+1]=this._y,t[e+2]=this._z,t[e+3]=this._order,t}_onChange(t){return this._onChangeCallback=t,this}_onChangeCallback(){}*[Symbol.iterator](){yield this._x,yield this._y,yield this._z,yield this._order}};Kn.DEFAULT_ORDER="XYZ";var Ro=class{constructor(){this.mask=1}set(t){this.mask=(1<<t|0)>>>0}enable(t){this.mask|=1<<t|0}enableAll(){this.mask=-1}toggle(t){this.mask^=1<<t|0}disable(t){this.mask&=~(1<<t|0)}disableAll(){this.mask=0}test(t){return(this.mask&t.mask)!==0}isEnabled(t){return(this.mask&(1<<t|0))!==0}},hy=0,kp=new R,so=new Xe,bs=new qt,Ol=new R,pa=new R,uy=new R,dy=new Xe,zp=new R(1,0,0),Vp=new R(0,1,0),Gp=new R(0,0,1),Hp={type:"added"},fy={type:"removed"},ro={type:"childadded",child:null},Gu={type:"childremoved",child:null},De=class i extends qi{constructor(){super(),this.isObject3D=!0,Object.defineProperty(this,"id",{value:hy++}),this.uuid=fr(),this.name="",this.type="Object3D",this.parent=null,this.children=[],this.up=i.DEFAULT_UP.clone();let t=new R,e=new Kn,n=new Xe,s=new R(1,1,1);function r(){n.setFromEuler(e,!1)}function o(){e.setFromQuaternion(n,void 0,!1)}e._onChange(r),n._onChange(o),Object.defineProperties(this,{position:{configurable:!0,enumerable:!0,value:t},rotation:{configurable:!0,enumerable:!0,value:e},quaternion:{configurable:!0,enumerable:!0,value:n},scale:{configurable:!0,enumerable:!0,value:s},modelViewMatrix:{value:new qt},normalMatrix:{value:new re}}),this.matrix=new qt,this.matrixWorld=new qt,this.matrixAutoUpdate=i.DEFAULT_MATRIX_AUTO_UPDATE,this.matrixWorldAutoUpdate=i.DEFAULT_MATRIX_WORLD_AUTO_UPDATE,this.matrixWorldNeedsUpdate=!1,this.layers=new Ro,this.visible=!0,this.castShadow=!1,this.receiveShadow=!1,this.frustumCulled=!0,this.renderOrder=0,this.animations=[],this.customDepthMaterial=void 0,this.customDistanceMaterial=void 0,this.static=!1,this.userData={},this.pivot=null}onBeforeShadow(){}onAfterShadow(){}onBeforeRender(){}onAfterRender(){}applyMatrix4(t){this.matrixAutoUpdate&&this.updateMatrix(),this.matrix.premultiply(t),this.matrix.decompose(this.position,this.quaternion,this.scale),this.pivot!==null&&this.position.copy(this.pivot).applyMatrix4(this.matrix).sub(this.pivot)}applyQuaternion(t){return this.quaternion.premultiply(t),this}setRotationFromAxisAngle(t,e){this.quaternion.setFromAxisAngle(t,e)}setRotationFromEuler(t){this.quaternion.setFromEuler(t,!0)}setRotationFromMatrix(t){this.quaternion.setFromRotationMatrix(t)}setRotationFromQuaternion(t){this.quaternion.copy(t)}rotateOnAxis(t,e){return so.setFromAxisAngle(t,e),this.quaternion.multiply(so),this}rotateOnWorldAxis(t,e){return so.setFromAxisAngle(t,e),this.quaternion.premultiply(so),this}rotateX(t){return this.rotateOnAxis(zp,t)}rotateY(t){return this.rotateOnAxis(Vp,t)}rotateZ(t){return this.rotateOnAxis(Gp,t)}translateOnAxis(t,e){return kp.copy(t).applyQuaternion(this.quaternion),this.position.add(kp.multiplyScalar(e)),this}translateX(t){return this.translateOnAxis(zp,t)}translateY(t){return this.translateOnAxis(Vp,t)}translateZ(t){return this.translateOnAxis(Gp,t)}localToWorld(t){return this.updateWorldMatrix(!0,!1),t.applyMatrix4(this.matrixWorld)}worldToLocal(t){return this.updateWorldMatrix(!0,!1),t.applyMatrix4(bs.copy(this.matrixWorld).invert())}lookAt(t,e,n){t.isVector3?Ol.copy(t):Ol.set(t,e,n);let s=this.parent;this.updateWorldMatrix(!0,!1),pa.setFromMatrixPosition(this.matrixWorld),this.isCamera||this.isLight?bs.lookAt(pa,Ol,this.up):bs.lookAt(Ol,pa,this.up),this.quaternion.setFromRotationMatrix(bs),s&&(bs.extractRotation(s.matrixWorld),so.setFromRotationMatrix(bs),this.quaternion.premultiply(so.invert()))}add(t){if(arguments.length>1){for(let e=0;e<arguments.length;e++)this.add(arguments[e]);return this}return t===this?(te("Object3D.add: object can't be added as a child of itself.",t),this):(t&&t.isObject3D?(t.removeFromParent(),t.parent=this,this.children.push(t),t.dispatchEvent(Hp),ro.child=t,this.dispatchEvent(ro),ro.child=null):te("Object3D.add: object not an instance of THREE.Object3D.",t),this)}remove(t){if(arguments.length>1){for(let n=0;n<arguments.length;n++)this.remove(arguments[n]);return this}let e=this.children.indexOf(t);return e!==-1&&(t.parent=null,this.children.splice(e,1),t.dispatchEvent(fy),Gu.child=t,this.dispatchEvent(Gu),Gu.child=null),this}removeFromParent(){let t=this.parent;return t!==null&&t.remove(this),this}clear(){return this.remove(...this.children)}attach(t){return this.updateWorldMatrix(!0,!1),bs.copy(this.matrixWorld).invert(),t.parent!==null&&(t.parent.updateWorldMatrix(!0,!1),bs.multiply(t.parent.matrixWorld)),t.applyMatrix4(bs),t.removeFromParent(),t.parent=this,this.children.push(t),t.updateWorldMatrix(!1,!0),t.dispatchEvent(Hp),ro.child=t,this.dispatchEvent(ro),ro.child=null,this}getObjectById(t){return this.getObjectByProperty("id",t)}getObjectByName(t){return this.getObjectByProperty("name",t)}getObjectByProperty(t,e){if(this[t]===e)return this;for(let n=0,s=this.children.length;n<s;n++){let o=this.children[n].getObjectByProperty(t,e);if(o!==void 0)return o}}getObjectsByProperty(t,e,n=[]){this[t]===e&&n.push(this);let s=this.children;for(let r=0,o=s.length;r<o;r++)s[r].getObjectsByProperty(t,e,n);return n}getWorldPosition(t){return this.updateWorldMatrix(!0,!1),t.setFromMatrixPosition(this.matrixWorld)}getWorldQuaternion(t){return this.updateWorldMatrix(!0,!1),this.matrixWorld.decompose(pa,t,uy),t}getWorldScale(t){return this.updateWorldMatrix(!0,!1),this.matrixWorld.decompose(pa,dy,t),t}getWorldDirection(t){this.updateWorldMatrix(!0,!1);let e=this.matrixWorld.elements;return t.set(e[8],e[9],e[10]).normalize()}raycast(){}intersectsFrustum(){return!0}traverse(t){t(this);let e=this.children;for(let n=0,s=e.length;n<s;n++)e[n].traverse(t)}traverseVisible(t){if(this.visible===!1)return;t(this);let e=this.children;for(let n=0,s=e.length;n<s;n++)e[n].traverseVisible(t)}traverseAncestors(t){let e=this.parent;e!==null&&(t(e),e.traverseAncestors(t))}updateMatrix(){this.matrix.compose(this.position,this.quaternion,this.scale);let t=this.pivot;if(t!==null){let e=t.x,n=t.y,s=t.z,r=this.matrix.elements;r[12]+=e-r[0]*e-r[4]*n-r[8]*s,r[13]+=n-r[1]*e-r[5]*n-r[9]*s,r[14]+=s-r[2]*e-r[6]*n-r[10]*s}this.matrixWorldNeedsUpdate=!0}updateMatrixWorld(t){this.matrixAutoUpdate&&this.updateMatrix(),(this.matrixWorldNeedsUpdate||t)&&(this.matrixWorldAutoUpdate===!0&&(this.parent===null?this.matrixWorld.copy(this.matrix):this.matrixWorld.multiplyMatrices(this.parent.matrixWorld,this.matrix)),this.matrixWorldNeedsUpdate=!1,t=!0);let e=this.children;for(let n=0,s=e.length;n<s;n++)e[n].updateMatrixWorld(t)}updateWorldMatrix(t,e,n=!1){let s=this.parent;if(t===!0&&s!==null&&s.updateWorldMatrix(!0,!1),this.matrixAutoUpdate&&this.updateMatrix(),(this.matrixWorldNeedsUpdate||n)&&(this.matrixWorldAutoUpdate===!0&&(this.parent===null?this.matrixWorld.copy(this.matrix):this.matrixWorld.multiplyMatrices(this.parent.matrixWorld,this.matrix)),this.matrixWorldNeedsUpdate=!1,n=!0),e===!0){let r=this.children;for(let o=0,a=r.length;o<a;o++)r[o].updateWorldMatrix(!1,!0,n)}}toJSON(t){let e=t===void 0||typeof t=="string",n={};e&&(t={geometries:{},materials:{},textures:{},images:{},shapes:{},skeletons:{},animations:{},nodes:{}},n.metadata={version:4.7,type:"Object",generator:"Object3D.toJSON"});let s={};s.uuid=this.uuid,s.type=this.type,s.name=this.name,s.castShadow=this.castShadow,s.receiveShadow=this.receiveShadow,s.visible=this.visible,s.frustumCulled=this.frustumCulled,s.renderOrder=this.renderOrder,s.static=this.static,s.matrixAutoUpdate=this.matrixAutoUpdate,Object.keys(this.userData).length>0&&(s.userData=this.userData),s.layers=this.layers.mask,s.matrix=this.matrix.toArray(),s.up=this.up.toArray(),this.pivot!==null&&(s.pivot=this.pivot.toArray()),this.morphTargetDictionary!==void 0&&(s.morphTargetDictionary=Object.assign({},this.morphTargetDictionary)),this.morphTargetInfluences!==void 0&&(s.morphTargetInfluences=this.morphTargetInfluences.slice()),this.isInstancedMesh&&(s.type="InstancedMesh",s.count=this.count,s.instanceMatrix=this.instanceMatrix.toJSON(),this.instanceColor!==null&&(s.instanceColor=this.instanceColor.toJSON())),this.isBatchedMesh&&(s.type="BatchedMesh",s.perObjectFrustumCulled=this.perObjectFrustumCulled,s.sortObjects=this.sortObjects,s.drawRanges=this._drawRanges,s.reservedRanges=this._reservedRanges,s.geometryInfo=this._geometryInfo.map(a=>({...a,boundingBox:a.boundingBox?a.boundingBox.toJSON():void 0,boundingSphere:a.boundingSphere?a.boundingSphere.toJSON():void 0})),s.instanceInfo=this._instanceInfo.map(a=>({...a})),s.availableInstanceIds=this._availableInstanceIds.slice(),s.availableGeometryIds=this._availableGeometryIds.slice(),s.nextIndexStart=this._nextIndexStart,s.nextVertexStart=this._nextVertexStart,s.geometryCount=this._geometryCount,s.maxInstanceCount=this._maxInstanceCount,s.maxVertexCount=this._maxVertexCount,s.maxIndexCount=this._maxIndexCount,s.geometryInitialized=this._geometryInitialized,s.matricesTexture=this._matricesTexture.toJSON(t),s.indirectTexture=this._indirectTexture.toJSON(t),this._colorsTexture!==null&&(s.colorsTexture=this._colorsTexture.toJSON(t)),this.boundingSphere!==null&&(s.boundingSphere=this.boundingSphere.toJSON()),this.boundingBox!==null&&(s.boundingBox=this.boundingBox.toJSON()));function r(a,c){return a[c.uuid]===void 0&&(a[c.uuid]=c.toJSON(t)),c.uuid}if(this.isScene)this.background&&(this.background.isColor?s.background=this.background.toJSON():this.background.isTexture&&(s.background=this.background.toJSON(t).uuid)),this.environment&&this.environment.isTexture&&this.environment.isRenderTargetTexture!==!0&&(s.environment=this.environment.toJSON(t).uuid);else if(this.isMesh||this.isLine||this.isPoints){s.geometry=r(t.geometries,this.geometry);let a=this.geometry.parameters;if(a!==void 0&&a.shapes!==void 0){let c=a.shapes;if(Array.isArray(c))for(let l=0,u=c.length;l<u;l++){let h=c[l];r(t.shapes,h)}else r(t.shapes,c)}}if(this.isSkinnedMesh&&(s.bindMode=this.bindMode,s.bindMatrix=this.bindMatrix.toArray(),this.skeleton!==void 0&&(r(t.skeletons,this.skeleton),s.skeleton=this.skeleton.uuid)),this.material!==void 0)if(Array.isArray(this.material)){let a=[];for(let c=0,l=this.material.length;c<l;c++)a.push(r(t.materials,this.material[c]));s.material=a}else s.material=r(t.materials,this.material);if(this.children.length>0){s.children=[];for(let a=0;a<this.children.length;a++)s.children.push(this.children[a].toJSON(t).object)}if(this.animations.length>0){s.animations=[];for(let a=0;a<this.animations.length;a++){let c=this.animations[a];s.animations.push(r(t.animations,c))}}if(e){let a=o(t.geometries),c=o(t.materials),l=o(t.textures),u=o(t.images),h=o(t.shapes),d=o(t.skeletons),f=o(t.animations),p=o(t.nodes);a.length>0&&(n.geometries=a),c.length>0&&(n.materials=c),l.length>0&&(n.textures=l),u.length>0&&(n.images=u),h.length>0&&(n.shapes=h),d.length>0&&(n.skeletons=d),f.length>0&&(n.animations=f),p.length>0&&(n.nodes=p)}return n.object=s,n;function o(a){let c=[];for(let l in a){let u=a[l];delete u.metadata,c.push(u)}return c}}clone(t){return new this.constructor().copy(this,t)}copy(t,e=!0){if(this.name=t.name,this.up.copy(t.up),this.position.copy(t.position),this.rotation.order=t.rotation.order,this.quaternion.copy(t.quaternion),this.scale.copy(t.scale),this.pivot=t.pivot!==null?t.pivot.clone():null,this.matrix.copy(t.matrix),this.matrixWorld.copy(t.matrixWorld),this.matrixAutoUpdate=t.matrixAutoUpdate,this.matrixWorldAutoUpdate=t.matrixWorldAutoUpdate,this.matrixWorldNeedsUpdate=t.matrixWorldNeedsUpdate,this.layers.mask=t.layers.mask,this.visible=t.visible,this.castShadow=t.castShadow,this.receiveShadow=t.receiveShadow,this.frustumCulled=t.frustumCulled,this.renderOrder=t.renderOrder,this.static=t.static,this.animations=t.animations.slice(),this.userData=JSON.parse(JSON.stringify(t.userData)),e===!0)for(let n=0;n<t.children.length;n++){let s=t.children[n];this.add(s.clone())}return this}dispose(){this.dispatchEvent({type:"dispose"})}};De.DEFAULT_UP=new R(0,1,0);De.DEFAULT_MATRIX_AUTO_UPDATE=!0;De.DEFAULT_MATRIX_WORLD_AUTO_UPDATE=!0;var Cn=class extends De{constructor(){super(),this.isGroup=!0,this.type="Group"}},py={type:"move"},Po=class{constructor(){this._targetRay=null,this._grip=null,this._hand=null}getHandSpace(){return this._hand===null&&(this._hand=new Cn,this._hand.matrixAutoUpdate=!1,this._hand.visible=!1,this._hand.joints={},this._hand.inputState={pinching:!1}),this._hand}getTargetRaySpace(){return this._targetRay===null&&(this._targetRay=new Cn,this._targetRay.matrixAutoUpdate=!1,this._targetRay.visible=!1,this._targetRay.hasLinearVelocity=!1,this._targetRay.linearVelocity=new R,this._targetRay.hasAngularVelocity=!1,this._targetRay.angularVelocity=new R),this._targetRay}getGripSpace(){return this._grip===null&&(this._grip=new Cn,this._grip.matrixAutoUpdate=!1,this._grip.visible=!1,this._grip.hasLinearVelocity=!1,this._grip.linearVelocity=new R,this._grip.hasAngularVelocity=!1,this._grip.angularVelocity=new R,this._grip.eventsEnabled=!1),this._grip}dispatchEvent(t){return this._targetRay!==null&&this._targetRay.dispatchEvent(t),this._grip!==null&&this._grip.dispatchEvent(t),this._hand!==null&&this._hand.dispatchEvent(t),this}connect(t){if(t&&t.hand){let e=this._hand;if(e)for(let n of t.hand.values())this._getHandJoint(e,n)}return this.dispatchEvent({type:"connected",data:t}),this}disconnect(t){return this.dispatchEvent({type:"disconnected",data:t}),this._targetRay!==null&&(this._targetRay.visible=!1),this._grip!==null&&(this._grip.visible=!1),this._hand!==null&&(this._hand.visible=!1),this}update(t,e,n){let s=null,r=null,o=null,a=this._targetRay,c=this._grip,l=this._hand;if(t&&e.session.visibilityState!=="visible-blurred"){if(l&&t.hand){o=!0;for(let _ of t.hand.values()){let m=e.getJointPose(_,n),g=this._getHandJoint(l,_);m!==null&&(g.matrix.fromArray(m.transform.matrix),g.matrix.decompose(g.position,g.quaternion,g.scale),g.matrixWorldNeedsUpdate=!0,g.jointRadius=m.radius),g.visible=m!==null}let u=l.joints["index-finger-tip"],h=l.joints["thumb-tip"],d=u.position.distanceTo(h.position),f=.02,p=.005;l.inputState.pinching&&d>f+p?(l.inputState.pinching=!1,this.dispatchEvent({type:"pinchend",handedness:t.handedness,target:this})):!l.inputState.pinching&&d<=f-p&&(l.inputState.pinching=!0,this.dispatchEvent({type:"pinchstart",handedness:t.handedness,target:this}))}else c!==null&&t.gripSpace&&(r=e.getPose(t.gripSpace,n),r!==null&&(c.matrix.fromArray(r.transform.matrix),c.matrix.decompose(c.position,c.quaternion,c.scale),c.matrixWorldNeedsUpdate=!0,r.linearVelocity?(c.hasLinearVelocity=!0,c.linearVelocity.copy(r.linearVelocity)):c.hasLinearVelocity=!1,r.angularVelocity?(c.hasAngularVelocity=!0,c.angularVelocity.copy(r.angularVelocity)):c.hasAngularVelocity=!1,c.eventsEnabled&&c.dispatchEvent({type:"gripUpdated",data:t,target:this})));a!==null&&(s=e.getPose(t.targetRaySpace,n),s===null&&r!==null&&(s=r),s!==null&&(a.matrix.fromArray(s.transform.matrix),a.matrix.decompose(a.position,a.quaternion,a.scale),a.matrixWorldNeedsUpdate=!0,s.linearVelocity?(a.hasLinearVelocity=!0,a.linearVelocity.copy(s.linearVelocity)):a.hasLinearVelocity=!1,s.angularVelocity?(a.hasAngularVelocity=!0,a.angularVelocity.copy(s.angularVelocity)):a.hasAngularVelocity=!1,this.dispatchEvent(py)))}return a!==null&&(a.visible=s!==null),c!==null&&(c.visible=r!==null),l!==null&&(l.visible=o!==null),this}_getHandJoint(t,e){if(t.joints[e.jointName]===void 0){let n=new Cn;n.matrixAutoUpdate=!1,n.visible=!1,t.joints[e.jointName]=n,t.add(n)}return t.joints[e.jointName]}},tg={aliceblue:15792383,antiquewhite:16444375,aqua:65535,aquamarine:8388564,azure:15794175,beige:16119260,bisque:16770244,black:0,blanchedalmond:16772045,blue:255,blueviolet:9055202,brown:10824234,burlywood:14596231,cadetblue:6266528,chartreuse:8388352,chocolate:13789470,coral:16744272,cornflowerblue:6591981,cornsilk:16775388,crimson:14423100,cyan:65535,darkblue:139,darkcyan:35723,darkgoldenrod:12092939,darkgray:11119017,darkgreen:25600,darkgrey:11119017,darkkhaki:12433259,darkmagenta:9109643,darkolivegreen:5597999,darkorange:16747520,darkorchid:10040012,darkred:9109504,darksalmon:15308410,darkseagreen:9419919,darkslateblue:4734347,darkslategray:3100495,darkslategrey:3100495,darkturquoise:52945,darkviolet:9699539,deeppink:16716947,deepskyblue:49151,dimgray:6908265,dimgrey:6908265,dodgerblue:2003199,firebrick:11674146,floralwhite:16775920,forestgreen:2263842,fuchsia:16711935,gainsboro:14474460,ghostwhite:16316671,gold:16766720,goldenrod:14329120,gray:8421504,green:32768,greenyellow:11403055,grey:8421504,honeydew:15794160,hotpink:16738740,indianred:13458524,indigo:4915330,ivory:16777200,khaki:15787660,lavender:15132410,lavenderblush:16773365,lawngreen:8190976,lemonchiffon:16775885,lightblue:11393254,lightcoral:15761536,lightcyan:14745599,lightgoldenrodyellow:16448210,lightgray:13882323,lightgreen:9498256,lightgrey:13882323,lightpink:16758465,lightsalmon:16752762,lightseagreen:2142890,lightskyblue:8900346,lightslategray:7833753,lightslategrey:7833753,lightsteelblue:11584734,lightyellow:16777184,lime:65280,limegreen:3329330,linen:16445670,magenta:16711935,maroon:8388608,mediumaquamarine:6737322,mediumblue:205,mediumorchid:12211667,mediumpurple:9662683,mediumseagreen:3978097,mediumslateblue:8087790,mediumspringgreen:64154,mediumturquoise:4772300,mediumvioletred:13047173,midnightblue:1644912,mintcream:16121850,mistyrose:16770273,moccasin:16770229,navajowhite:16768685,navy:128,oldlace:16643558,olive:8421376,olivedrab:7048739,orange:16753920,orangered:16729344,orchid:14315734,palegoldenrod:15657130,palegreen:10025880,paleturquoise:11529966,palevioletred:14381203,papayawhip:16773077,peachpuff:16767673,peru:13468991,pink:16761035,plum:14524637,powderblue:11591910,purple:8388736,rebeccapurple:6697881,red:16711680,rosybrown:12357519,royalblue:4286945,saddlebrown:9127187,salmon:16416882,sandybrown:16032864,seagreen:3050327,seashell:16774638,sienna:10506797,silver:12632256,skyblue:8900331,slateblue:6970061,slategray:7372944,slategrey:7372944,snow:16775930,springgreen:65407,steelblue:4620980,tan:13808780,teal:32896,thistle:14204888,tomato:16737095,turquoise:4251856,violet:15631086,wheat:16113331,white:16777215,whitesmoke:16119285,yellow:16776960,yellowgreen:10145074},js={h:0,s:0,l:0},Fl={h:0,s:0,l:0};function Hu(i,t,e){return e<0&&(e+=1),e>1&&(e-=1),e<1/6?i+(t-i)*6*e:e<1/2?t:e<2/3?i+(t-i)*6*(2/3-e):i}var Ht=class{constructor(t,e,n){return this.isColor=!0,this.r=1,this.g=1,this.b=1,this.set(t,e,n)}set(t,e,n){if(e===void 0&&n===void 0){let s=t;s&&s.isColor?this.copy(s):typeof s=="number"?this.setHex(s):typeof s=="string"&&this.setStyle(s)}else this.setRGB(t,e,n);return this}setScalar(t){return this.r=t,this.g=t,this.b=t,this}setHex(t,e=Ae){return t=Math.floor(t),this.r=(t>>16&255)/255,this.g=(t>>8&255)/255,this.b=(t&255)/255,Se.colorSpaceToWorking(this,e),this}setRGB(t,e,n,s=Se.workingColorSpace){return this.r=t,this.g=e,this.b=n,Se.colorSpaceToWorking(this,s),this}setHSL(t,e,n,s=Se.workingColorSpace){if(t=Wd(t,1),e=he(e,0,1),n=he(n,0,1),e===0)this.r=this.g=this.b=n;else{let r=n<=.5?n*(1+e):n+e-n*e,o=2*n-r;this.r=Hu(o,r,t+1/3),this.g=Hu(o,r,t),this.b=Hu(o,r,t-1/3)}return Se.colorSpaceToWorking(this,s),this}setStyle(t,e=Ae){function n(r){r!==void 0&&parseFloat(r)<1&&jt("Color: Alpha component of "+t+" will be ignored.")}let s;if(s=/^(\w+)\(([^\)]*)\)/.exec(t)){let r,o=s[1],a=s[2];switch(o){case"rgb":case"rgba":if(r=/^\s*(\d+)\s*,\s*(\d+)\s*,\s*(\d+)\s*(?:,\s*(\d+(?:\.\d+)?|\.\d+)\s*)?$/.exec(a))return n(r[4]),this.setRGB(Math.min(255,parseInt(r[1],10))/255,Math.min(255,parseInt(r[2],10))/255,Math.min(255,parseInt(r[3],10))/255,e);if(r=/^\s*(\d+(?:\.\d+)?|\.\d+)\%\s*,\s*(\d+(?:\.\d+)?|\.\d+)\%\s*,\s*(\d+(?:\.\d+)?|\.\d+)\%\s*(?:,\s*(\d+(?:\.\d+)?|\.\d+)\s*)?$/.exec(a))return n(r[4]),this.setRGB(Math.min(100,parseFloat(r[1]))/100,Math.min(100,parseFloat(r[2]))/100,Math.min(100,parseFloat(r[3]))/100,e);break;case"hsl":case"hsla":if(r=/^\s*([+-]?(?:\d+(?:\.\d+)?|\.\d+))\s*,\s*(\d+(?:\.\d+)?|\.\d+)\%\s*,\s*(\d+(?:\.\d+)?|\.\d+)\%\s*(?:,\s*(\d+(?:\.\d+)?|\.\d+)\s*)?$/.exec(a))return n(r[4]),this.setHSL(parseFloat(r[1])/360,parseFloat(r[2])/100,parseFloat(r[3])/100,e);break;default:jt("Color: Unknown color model "+t)}}else if(s=/^\#([A-Fa-f\d]+)$/.exec(t)){let r=s[1],o=r.length;if(o===3)return this.setRGB(parseInt(r.charAt(0),16)/15,parseInt(r.charAt(1),16)/15,parseInt(r.charAt(2),16)/15,e);if(o===6)return this.setHex(parseInt(r,16),e);jt("Color: Invalid hex color "+t)}else if(t&&t.length>0)return this.setColorName(t,e);return this}setColorName(t,e=Ae){let n=tg[t.toLowerCase()];return n!==void 0?this.setHex(n,e):jt("Color: Unknown color "+t),this}clone(){return new this.constructor(this.r,this.g,this.b)}copy(t){return this.r=t.r,this.g=t.g,this.b=t.b,this}copySRGBToLinear(t){return this.r=Rs(t.r),this.g=Rs(t.g),this.b=Rs(t.b),this}copyLinearToSRGB(t){return this.r=bo(t.r),this.g=bo(t.g),this.b=bo(t.b),this}convertSRGBToLinear(){return this.copySRGBToLinear(this),this}convertLinearToSRGB(){return this.copyLinearToSRGB(this),this}getHex(t=Ae){return Se.workingToColorSpace(jn.copy(this),t),Math.round(he(jn.r*255,0,255))*65536+Math.round(he(jn.g*255,0,255))*256+Math.round(he(jn.b*255,0,255))}getHexString(t=Ae){return("000000"+this.getHex(t).toString(16)).slice(-6)}getHSL(t,e=Se.workingColorSpace){Se.workingToColorSpace(jn.copy(this),e);let n=jn.r,s=jn.g,r=jn.b,o=Math.max(n,s,r),a=Math.min(n,s,r),c,l,u=(a+o)/2;if(a===o)c=0,l=0;else{let h=o-a;switch(l=u<=.5?h/(o+a):h/(2-o-a),o){case n:c=(s-r)/h+(s<r?6:0);break;case s:c=(r-n)/h+2;break;case r:c=(n-s)/h+4;break}c/=6}return t.h=c,t.s=l,t.l=u,t}getRGB(t,e=Se.workingColorSpace){return Se.workingToColorSpace(jn.copy(this),e),t.r=jn.r,t.g=jn.g,t.b=jn.b,t}getStyle(t=Ae){Se.workingToColorSpace(jn.copy(this),t);let e=jn.r,n=jn.g,s=jn.b;return t!==Ae?`color(${t} ${e.toFixed(3)} ${n.toFixed(3)} ${s.toFixed(3)})`:`rgb(${Math.round(e*255)},${Math.round(n*255)},${Math.round(s*255)})`}offsetHSL(t,e,n){return this.getHSL(js),this.setHSL(js.h+t,js.s+e,js.l+n)}add(t){return this.r+=t.r,this.g+=t.g,this.b+=t.b,this}addColors(t,e){return this.r=t.r+e.r,this.g=t.g+e.g,this.b=t.b+e.b,this}addScalar(t){return this.r+=t,this.g+=t,this.b+=t,this}sub(t){return this.r=Math.max(0,this.r-t.r),this.g=Math.max(0,this.g-t.g),this.b=Math.max(0,this.b-t.b),this}multiply(t){return this.r*=t.r,this.g*=t.g,this.b*=t.b,this}multiplyScalar(t){return this.r*=t,this.g*=t,this.b*=t,this}lerp(t,e){return this.r+=(t.r-this.r)*e,this.g+=(t.g-this.g)*e,this.b+=(t.b-this.b)*e,this}lerpColors(t,e,n){return this.r=t.r+(e.r-t.r)*n,this.g=t.g+(e.g-t.g)*n,this.b=t.b+(e.b-t.b)*n,this}lerpHSL(t,e){this.getHSL(js),t.getHSL(Fl);let n=Ea(js.h,Fl.h,e),s=Ea(js.s,Fl.s,e),r=Ea(js.l,Fl.l,e);return this.setHSL(n,s,r),this}setFromVector3(t){return this.r=t.x,this.g=t.y,this.b=t.z,this}applyMatrix3(t){let e=this.r,n=this.g,s=this.b,r=t.elements;return this.r=r[0]*e+r[3]*n+r[6]*s,this.g=r[1]*e+r[4]*n+r[7]*s,this.b=r[2]*e+r[5]*n+r[8]*s,this}equals(t){return t.r===this.r&&t.g===this.g&&t.b===this.b}fromArray(t,e=0){return this.r=t[e],this.g=t[e+1],this.b=t[e+2],this}toArray(t=[],e=0){return t[e]=this.r,t[e+1]=this.g,t[e+2]=this.b,t}fromBufferAttribute(t,e){return this.r=t.getX(e),this.g=t.getY(e),this.b=t.getZ(e),this}toJSON(){return this.getHex()}*[Symbol.iterator](){yield this.r,yield this.g,yield this.b}},jn=new Ht;Ht.NAMES=tg;var Da=class i{constructor(t,e=25e-5){this.isFogExp2=!0,this.name="",this.color=new Ht(t),this.density=e}clone(){return new i(this.color,this.density)}toJSON(){return{type:"FogExp2",name:this.name,color:this.color.getHex(),density:this.density}}},Io=class i{constructor(t,e=1,n=1e3){this.isFog=!0,this.name="",this.color=new Ht(t),this.near=e,this.far=n}clone(){return new i(this.color,this.near,this.far)}toJSON(){return{type:"Fog",name:this.name,color:this.color.getHex(),near:this.near,far:this.far}}},Na=class extends De{constructor(){super(),this.isScene=!0,this.type="Scene",this.background=null,this.environment=null,this.fog=null,this.backgroundBlurriness=0,this.backgroundIntensity=1,this.backgroundRotation=new Kn,this.environmentIntensity=1,this.environmentRotation=new Kn,this.overrideMaterial=null,typeof __THREE_DEVTOOLS__<"u"&&__THREE_DEVTOOLS__.dispatchEvent(new CustomEvent("observe",{detail:this}))}copy(t,e){return super.copy(t,e),this.background=t.background!==null?t.background.clone():null,this.environment=t.environment!==null?t.environment.clone():null,this.fog=t.fog!==null?t.fog.clone():null,this.backgroundBlurriness=t.backgroundBlurriness,this.backgroundIntensity=t.backgroundIntensity,this.backgroundRotation.copy(t.backgroundRotation),this.environmentIntensity=t.environmentIntensity,this.environmentRotation.copy(t.environmentRotation),this.overrideMaterial=t.overrideMaterial!==null?t.overrideMaterial.clone():null,this.matrixAutoUpdate=t.matrixAutoUpdate,this}toJSON(t){let e=super.toJSON(t);return this.fog!==null&&(e.object.fog=this.fog.toJSON()),e.object.backgroundBlurriness=this.backgroundBlurriness,e.object.backgroundIntensity=this.backgroundIntensity,e.object.backgroundRotation=this.backgroundRotation.toArray(),e.object.environmentIntensity=this.environmentIntensity,e.object.environmentRotation=this.environmentRotation.toArray(),e}},Xi=new R,ws=new R,Wu=new R,Ts=new R,oo=new R,ao=new R,Wp=new R,Xu=new R,Yu=new R,qu=new R,$u=new Le,Zu=new Le,Ju=new Le,Cs=class i{constructor(t=new R,e=new R,n=new R){this.a=t,this.b=e,this.c=n}static getNormal(t,e,n,s){s.subVectors(n,e),Xi.subVectors(t,e),s.cross(Xi);let r=s.lengthSq();return r>0?s.multiplyScalar(1/Math.sqrt(r)):s.set(0,0,0)}static getBarycoord(t,e,n,s,r){Xi.subVectors(s,e),ws.subVectors(n,e),Wu.subVectors(t,e);let o=Xi.dot(Xi),a=Xi.dot(ws),c=Xi.dot(Wu),l=ws.dot(ws),u=ws.dot(Wu),h=o*l-a*a;if(h===0)return r.set(0,0,0),null;let d=1/h,f=(l*c-a*u)*d,p=(o*u-a*c)*d;return r.set(1-f-p,p,f)}static containsPoint(t,e,n,s){return this.getBarycoord(t,e,n,s,Ts)===null?!1:Ts.x>=0&&Ts.y>=0&&Ts.x+Ts.y<=1}static getInterpolation(t,e,n,s,r,o,a,c){return this.getBarycoord(t,e,n,s,Ts)===null?(c.x=0,c.y=0,"z"in c&&(c.z=0),"w"in c&&(c.w=0),null):(c.setScalar(0),c.addScaledVector(r,Ts.x),c.addScaledVector(o,Ts.y),c.addScaledVector(a,Ts.z),c)}static getInterpolatedAttribute(t,e,n,s,r,o){return $u.setScalar(0),Zu.setScalar(0),Ju.setScalar(0),$u.fromBufferAttribute(t,e),Zu.fromBufferAttribute(t,n),Ju.fromBufferAttribute(t,s),o.setScalar(0),o.addScaledVector($u,r.x),o.addScaledVector(Zu,r.y),o.addScaledVector(Ju,r.z),o}static isFrontFacing(t,e,n,s){return Xi.subVectors(n,e),ws.subVectors(t,e),Xi.cross(ws).dot(s)<0}set(t,e,n){return this.a.copy(t),this.b.copy(e),this.c.copy(n),this}setFromPointsAndIndices(t,e,n,s){return this.a.copy(t[e]),this.b.copy(t[n]),this.c.copy(t[s]),this}setFromAttributeAndIndices(t,e,n,s){return this.a.fromBufferAttribute(t,e),this.b.fromBufferAttribute(t,n),this.c.fromBufferAttribute(t,s),this}clone(){return new this.constructor().copy(this)}copy(t){return this.a.copy(t.a),this.b.copy(t.b),this.c.copy(t.c),this}getArea(){return Xi.subVectors(this.c,this.b),ws.subVectors(this.a,this.b),Xi.cross(ws).length()*.5}getMidpoint(t){return t.addVectors(this.a,this.b).add(this.c).multiplyScalar(1/3)}getNormal(t){return i.getNormal(this.a,this.b,this.c,t)}getPlane(t){return t.setFromCoplanarPoints(this.a,this.b,this.c)}getBarycoord(t,e){return i.getBarycoord(t,this.a,this.b,this.c,e)}getInterpolation(t,e,n,s,r){return i.getInterpolation(t,this.a,this.b,this.c,e,n,s,r)}containsPoint(t){return i.containsPoint(t,this.a,this.b,this.c)}isFrontFacing(t){return i.isFrontFacing(this.a,this.b,this.c,t)}intersectsBox(t){return t.intersectsTriangle(this)}closestPointToPoint(t,e){let n=this.a,s=this.b,r=this.c,o,a;oo.subVectors(s,n),ao.subVectors(r,n),Xu.subVectors(t,n);let c=oo.dot(Xu),l=ao.dot(Xu);if(c<=0&&l<=0)return e.copy(n);Yu.subVectors(t,s);let u=oo.dot(Yu),h=ao.dot(Yu);if(u>=0&&h<=u)return e.copy(s);let d=c*h-u*l;if(d<=0&&c>=0&&u<=0&&c-u>0)return o=c/(c-u),e.copy(n).addScaledVector(oo,o);qu.subVectors(t,r);let f=oo.dot(qu),p=ao.dot(qu);if(p>=0&&f<=p)return e.copy(r);let _=f*l-c*p;if(_<=0&&l>=0&&p<=0)return a=l/(l-p),e.copy(n).addScaledVector(ao,a);let m=u*p-f*h;if(m<=0&&h-u>=0&&f-p>=0)return Wp.subVectors(r,s),a=(h-u)/(h-u+(f-p)),e.copy(s).addScaledVector(Wp,a);let g=1/(m+_+d);return o=_*g,a=d*g,e.copy(n).addScaledVector(oo,o).addScaledVector(ao,a)}equals(t){return t.a.equals(this.a)&&t.b.equals(this.b)&&t.c.equals(this.c)}},sn=class{constructor(t=new R(1/0,1/0,1/0),e=new R(-1/0,-1/0,-1/0)){this.isBox3=!0,this.min=t,this.max=e}set(t,e){return this.min.copy(t),this.max.copy(e),this}setFromArray(t){this.makeEmpty();for(let e=0,n=t.length;e<n;e+=3)this.expandByPoint(Yi.fromArray(t,e));return this}setFromBufferAttribute(t){this.makeEmpty();for(let e=0,n=t.count;e<n;e++)this.expandByPoint(Yi.fromBufferAttribute(t,e));return this}setFromPoints(t){this.makeEmpty();for(let e=0,n=t.length;e<n;e++)this.expandByPoint(t[e]);return this}setFromCenterAndSize(t,e){let n=Yi.copy(e).multiplyScalar(.5);return this.min.copy(t).sub(n),this.max.copy(t).add(n),this}setFromObject(t,e=!1){return this.makeEmpty(),this.expandByObject(t,e)}clone(){return new this.constructor().copy(this)}copy(t){return this.min.copy(t.min),this.max.copy(t.max),this}makeEmpty(){return this.min.x=this.min.y=this.min.z=1/0,this.max.x=this.max.y=this.max.z=-1/0,this}isEmpty(){return this.max.x<this.min.x||this.max.y<this.min.y||this.max.z<this.min.z}getCenter(t){return this.isEmpty()?t.set(0,0,0):t.addVectors(this.min,this.max).multiplyScalar(.5)}getSize(t){return this.isEmpty()?t.set(0,0,0):t.subVectors(this.max,this.min)}expandByPoint(t){return this.min.min(t),this.max.max(t),this}expandByVector(t){return this.min.sub(t),this.max.add(t),this}expandByScalar(t){return this.min.addScalar(-t),this.max.addScalar(t),this}expandByObject(t,e=!1){t.updateWorldMatrix(!1,!1);let n=t.geometry;if(n!==void 0){let r=n.getAttribute("position");if(e===!0&&r!==void 0&&t.isInstancedMesh!==!0&&t.isBatchedMesh!==!0)for(let o=0,a=r.count;o<a;o++)t.isMesh===!0?t.getVertexPosition(o,Yi):Yi.fromBufferAttribute(r,o),Yi.applyMatrix4(t.matrixWorld),this.expandByPoint(Yi);else t.boundingBox!==void 0?(t.boundingBox===null&&t.computeBoundingBox(),Bl.copy(t.boundingBox)):(n.boundingBox===null&&n.computeBoundingBox(),Bl.copy(n.boundingBox)),Bl.applyMatrix4(t.matrixWorld),this.union(Bl)}let s=t.children;for(let r=0,o=s.length;r<o;r++)this.expandByObject(s[r],e);return this}containsPoint(t){return t.x>=this.min.x&&t.x<=this.max.x&&t.y>=this.min.y&&t.y<=this.max.y&&t.z>=this.min.z&&t.z<=this.max.z}containsBox(t){return this.min.x<=t.min.x&&t.max.x<=this.max.x&&this.min.y<=t.min.y&&t.max.y<=this.max.y&&this.min.z<=t.min.z&&t.max.z<=this.max.z}getParameter(t,e){return e.set((t.x-this.min.x)/(this.max.x-this.min.x),(t.y-this.min.y)/(this.max.y-this.min.y),(t.z-this.min.z)/(this.max.z-this.min.z))}intersectsBox(t){return t.max.x>=this.min.x&&t.min.x<=this.max.x&&t.max.y>=this.min.y&&t.min.y<=this.max.y&&t.max.z>=this.min.z&&t.min.z<=this.max.z}intersectsSphere(t){return this.clampPoint(t.center,Yi),Yi.distanceToSquared(t.center)<=t.radius*t.radius}intersectsPlane(t){let e,n;return t.normal.x>0?(e=t.normal.x*this.min.x,n=t.normal.x*this.max.x):(e=t.normal.x*this.max.x,n=t.normal.x*this.min.x),t.normal.y>0?(e+=t.normal.y*this.min.y,n+=t.normal.y*this.max.y):(e+=t.normal.y*this.max.y,n+=t.normal.y*this.min.y),t.normal.z>0?(e+=t.normal.z*this.min.z,n+=t.normal.z*this.max.z):(e+=t.normal.z*this.max.z,n+=t.normal.z*this.min.z),e<=-t.constant&&n>=-t.constant}intersectsTriangle(t){if(this.isEmpty())return!1;this.getCenter(ma),kl.subVectors(this.max,ma),lo.subVectors(t.a,ma),co.subVectors(t.b,ma),ho.subVectors(t.c,ma),Ks.subVectors(co,lo),Qs.subVectors(ho,co),Sr.subVectors(lo,ho);let e=[0,-Ks.z,Ks.y,0,-Qs.z,Qs.y,0,-Sr.z,Sr.y,Ks.z,0,-Ks.x,Qs.z,0,-Qs.x,Sr.z,0,-Sr.x,-Ks.y,Ks.x,0,-Qs.y,Qs.x,0,-Sr.y,Sr.x,0];return!ju(e,lo,co,ho,kl)||(e=[1,0,0,0,1,0,0,0,1],!ju(e,lo,co,ho,kl))?!1:(zl.crossVectors(Ks,Qs),e=[zl.x,zl.y,zl.z],ju(e,lo,co,ho,kl))}clampPoint(t,e){return e.copy(t).clamp(this.min,this.max)}distanceToPoint(t){return this.clampPoint(t,Yi).distanceTo(t)}getBoundingSphere(t){return this.isEmpty()?t.makeEmpty():(this.getCenter(t.center),t.radius=this.getSize(Yi).length()*.5),t}intersect(t){return this.min.max(t.min),this.max.min(t.max),this.isEmpty()&&this.makeEmpty(),this}union(t){return this.min.min(t.min),this.max.max(t.max),this}applyMatrix4(t){return this.isEmpty()?this:(Es[0].set(this.min.x,this.min.y,this.min.z).applyMatrix4(t),Es[1].set(this.min.x,this.min.y,this.max.z).applyMatrix4(t),Es[2].set(this.min.x,this.max.y,this.min.z).applyMatrix4(t),Es[3].set(this.min.x,this.max.y,this.max.z).applyMatrix4(t),Es[4].set(this.max.x,this.min.y,this.min.z).applyMatrix4(t),Es[5].set(this.max.x,this.min.y,this.max.z).applyMatrix4(t),Es[6].set(this.max.x,this.max.y,this.min.z).applyMatrix4(t),Es[7].set(this.max.x,this.max.y,this.max.z).applyMatrix4(t),this.setFromPoints(Es),this)}translate(t){return this.min.add(t),this.max.add(t),this}equals(t){return t.min.equals(this.min)&&t.max.equals(this.max)}toJSON(){return{min:this.min.toArray(),max:this.max.toArray()}}fromJSON(t){return this.min.fromArray(t.min),this.max.fromArray(t.max),this}},Es=[new R,new R,new R,new R,new R,new R,new R,new R],Yi=new R,Bl=new sn,lo=new R,co=new R,ho=new R,Ks=new R,Qs=new R,Sr=new R,ma=new R,kl=new R,zl=new R,Mr=new R;function ju(i,t,e,n,s){for(let r=0,o=i.length-3;r<=o;r+=3){Mr.fromArray(i,r);let a=s.x*Math.abs(Mr.x)+s.y*Math.abs(Mr.y)+s.z*Math.abs(Mr.z),c=t.dot(Mr),l=e.dot(Mr),u=n.dot(Mr);if(Math.max(-Math.max(c,l,u),Math.min(c,l,u))>a)return!1}return!0}var vn=new R,Vl=new kt,my=0,Ie=class extends qi{constructor(t,e,n=!1){if(super(),Array.isArray(t))throw new TypeError("THREE.BufferAttribute: array should be a Typed Array.");this.isBufferAttribute=!0,Object.defineProperty(this,"id",{value:my++}),this.name="",this.array=t,this.itemSize=e,this.count=t!==void 0?t.length/e:0,this.normalized=n,this.usage=Gd,this.updateRanges=[],this.gpuType=Fi,this.version=0,this._normalizationScale=t!==void 0?Ph(t):void 0}onUploadCallback(){}set needsUpdate(t){t===!0&&this.version++}setUsage(t){return this.usage=t,this}addUpdateRange(t,e){this.updateRanges.push({start:t,count:e})}clearUpdateRanges(){this.updateRanges.length=0}copy(t){return this.name=t.name,this.array=new t.array.constructor(t.array),this.itemSize=t.itemSize,this.count=t.count,this.normalized=t.normalized,this.usage=t.usage,this.gpuType=t.gpuType,this._normalizationScale=t._normalizationScale,this}copyAt(t,e,n){t*=this.itemSize,n*=e.itemSize;for(let s=0,r=this.itemSize;s<r;s++)this.array[t+s]=e.array[n+s];return this}copyArray(t){return this.array.set(t),this}applyMatrix3(t){if(this.itemSize===2)for(let e=0,n=this.count;e<n;e++)Vl.fromBufferAttribute(this,e),Vl.applyMatrix3(t),this.setXY(e,Vl.x,Vl.y);else if(this.itemSize===3)for(let e=0,n=this.count;e<n;e++)vn.fromBufferAttribute(this,e),vn.applyMatrix3(t),this.setXYZ(e,vn.x,vn.y,vn.z);return this}applyMatrix4(t){for(let e=0,n=this.count;e<n;e++)vn.fromBufferAttribute(this,e),vn.applyMatrix4(t),this.setXYZ(e,vn.x,vn.y,vn.z);return this}applyNormalMatrix(t){for(let e=0,n=this.count;e<n;e++)vn.fromBufferAttribute(this,e),vn.applyNormalMatrix(t),this.setXYZ(e,vn.x,vn.y,vn.z);return this}transformDirection(t){for(let e=0,n=this.count;e<n;e++)vn.fromBufferAttribute(this,e),vn.transformDirection(t),this.setXYZ(e,vn.x,vn.y,vn.z);return this}set(t,e=0){return this.array.set(t,e),this}getComponent(t,e){let n=this.array[t*this.itemSize+e];return this.normalized&&(n=this._denormalize(n)),n}setComponent(t,e,n){return this.normalized&&(n=this._normalize(n)),this.array[t*this.itemSize+e]=n,this}getX(t){let e=this.array[t*this.itemSize];return this.normalized&&(e=this._denormalize(e)),e}setX(t,e){return this.normalized&&(e=this._normalize(e)),this.array[t*this.itemSize]=e,this}getY(t){let e=this.array[t*this.itemSize+1];return this.normalized&&(e=this._denormalize(e)),e}setY(t,e){return this.normalized&&(e=this._normalize(e)),this.array[t*this.itemSize+1]=e,this}getZ(t){let e=this.array[t*this.itemSize+2];return this.normalized&&(e=this._denormalize(e)),e}setZ(t,e){return this.normalized&&(e=this._normalize(e)),this.array[t*this.itemSize+2]=e,this}getW(t){let e=this.array[t*this.itemSize+3];return this.normalized&&(e=this._denormalize(e)),e}setW(t,e){return this.normalized&&(e=this._normalize(e)),this.array[t*this.itemSize+3]=e,this}setXY(t,e,n){return t*=this.itemSize,this.normalized&&(e=this._normalize(e),n=this._normalize(n)),this.array[t+0]=e,this.array[t+1]=n,this}setXYZ(t,e,n,s){return t*=this.itemSize,this.normalized&&(e=this._normalize(e),n=this._normalize(n),s=this._normalize(s)),this.array[t+0]=e,this.array[t+1]=n,this.array[t+2]=s,this}setXYZW(t,e,n,s,r){return t*=this.itemSize,this.normalized&&(e=this._normalize(e),n=this._normalize(n),s=this._normalize(s),r=this._normalize(r)),this.array[t+0]=e,this.array[t+1]=n,this.array[t+2]=s,this.array[t+3]=r,this}onUpload(t){return this.onUploadCallback=t,this}clone(){return new this.constructor(this.array,this.itemSize).copy(this)}toJSON(){let t={itemSize:this.itemSize,type:this.array.constructor.name,array:Array.from(this.array),normalized:this.normalized};return t.name=this.name,t.usage=this.usage,t.gpuType=this.gpuType,t}dispose(){this.dispatchEvent({type:"dispose"})}_denormalize(t){let e=this._normalizationScale;return e!==void 0?Math.max(t/e,-1):Yd(t,this.array)}_normalize(t){let e=this._normalizationScale;return e!==void 0?Math.round(t*e):qd(t,this.array)}};var Ua=class extends Ie{constructor(t,e,n){super(new Uint16Array(t),e,n)}};var Oa=class extends Ie{constructor(t,e,n){super(new Uint32Array(t),e,n)}};var se=class extends Ie{constructor(t,e,n){super(new Float32Array(t),e,n)}},gy=new sn,ga=new R,Ku=new R,fi=class{constructor(t=new R,e=-1){this.isSphere=!0,this.center=t,this.radius=e}set(t,e){return this.center.copy(t),this.radius=e,this}setFromPoints(t,e){let n=this.center;e!==void 0?n.copy(e):gy.setFromPoints(t).getCenter(n);let s=0;for(let r=0,o=t.length;r<o;r++)s=Math.max(s,n.distanceToSquared(t[r]));return this.radius=Math.sqrt(s),this}copy(t){return this.center.copy(t.center),this.radius=t.radius,this}isEmpty(){return this.radius<0}makeEmpty(){return this.center.set(0,0,0),this.radius=-1,this}containsPoint(t){return t.distanceToSquared(this.center)<=this.radius*this.radius}distanceToPoint(t){return t.distanceTo(this.center)-this.radius}intersectsSphere(t){let e=this.radius+t.radius;return t.center.distanceToSquared(this.center)<=e*e}intersectsBox(t){return t.intersectsSphere(this)}intersectsPlane(t){return Math.abs(t.distanceToPoint(this.center))<=this.radius}clampPoint(t,e){let n=this.center.distanceToSquared(t);return e.copy(t),n>this.radius*this.radius&&(e.sub(this.center).normalize(),e.multiplyScalar(this.radius).add(this.center)),e}getBoundingBox(t){return this.isEmpty()?(t.makeEmpty(),t):(t.set(this.center,this.center),t.expandByScalar(this.radius),t)}applyMatrix4(t){return this.center.applyMatrix4(t),this.radius=this.radius*t.getMaxScaleOnAxis(),this}translate(t){return this.center.add(t),this}expandByPoint(t){if(this.isEmpty())return this.center.copy(t),this.radius=0,this;ga.subVectors(t,this.center);let e=ga.lengthSq();if(e>this.radius*this.radius){let n=Math.sqrt(e),s=(n-this.radius)*.5;this.center.addScaledVector(ga,s/n),this.radius+=s}return this}union(t){return t.isEmpty()?this:this.isEmpty()?(this.copy(t),this):(this.center.equals(t.center)===!0?this.radius=Math.max(this.radius,t.radius):(Ku.subVectors(t.center,this.center).setLength(t.radius),this.expandByPoint(ga.copy(t.center).add(Ku)),this.expandByPoint(ga.copy(t.center).sub(Ku))),this)}equals(t){return t.center.equals(this.center)&&t.radius===this.radius}clone(){return new this.constructor().copy(this)}toJSON(){return{radius:this.radius,center:this.center.toArray()}}fromJSON(t){return this.radius=t.radius,this.center.fromArray(t.center),this}},_y=0,Li=new qt,Qu=new De,uo=new R,bi=new sn,_a=new sn,kn=new R,pe=class i extends qi{constructor(){super(),this.isBufferGeometry=!0,Object.defineProperty(this,"id",{value:_y++}),this.uuid=fr(),this.name="",this.type="BufferGeometry",this.index=null,this.indirect=null,this.indirectOffset=0,this.attributes={},this.morphAttributes={},this.morphTargetsRelative=!1,this.groups=[],this.boundingBox=null,this.boundingSphere=null,this.drawRange={start:0,count:1/0},this.userData={},this._transformed=!1}getIndex(){return this.index}setIndex(t){return Array.isArray(t)?this.index=new(Gx(t)?Oa:Ua)(t,1):this.index=t,this}setIndirect(t,e=0){return this.indirect=t,this.indirectOffset=e,this}getIndirect(){return this.indirect}getAttribute(t){return this.attributes[t]}setAttribute(t,e){return this.attributes[t]=e,this}deleteAttribute(t){return delete this.attributes[t],this}hasAttribute(t){return this.attributes[t]!==void 0}addGroup(t,e,n=0){this.groups.push({start:t,count:e,materialIndex:n})}clearGroups(){this.groups=[]}setDrawRange(t,e){this.drawRange.start=t,this.drawRange.count=e}applyMatrix4(t){let e=this.attributes.position;e!==void 0&&(e.applyMatrix4(t),e.needsUpdate=!0);let n=this.attributes.normal;if(n!==void 0){let r=new re().getNormalMatrix(t);n.applyNormalMatrix(r),n.needsUpdate=!0}let s=this.attributes.tangent;return s!==void 0&&(s.transformDirection(t),s.needsUpdate=!0),this.boundingBox!==null&&this.computeBoundingBox(),this.boundingSphere!==null&&this.computeBoundingSphere(),this._transformed=!0,this}applyQuaternion(t){return Li.makeRotationFromQuaternion(t),this.applyMatrix4(Li),this}rotateX(t){return Li.makeRotationX(t),this.applyMatrix4(Li),this}rotateY(t){return Li.makeRotationY(t),this.applyMatrix4(Li),this}rotateZ(t){return Li.makeRotationZ(t),this.applyMatrix4(Li),this}translate(t,e,n){return Li.makeTranslation(t,e,n),this.applyMatrix4(Li),this}scale(t,e,n){return Li.makeScale(t,e,n),this.applyMatrix4(Li),this}lookAt(t){return Qu.lookAt(t),Qu.updateMatrix(),this.applyMatrix4(Qu.matrix),this}center(){return this.computeBoundingBox(),this.boundingBox.getCenter(uo).negate(),this.translate(uo.x,uo.y,uo.z),this}setFromPoints(t){let e=this.getAttribute("position");if(e===void 0){let n=[];for(let s=0,r=t.length;s<r;s++){let o=t[s];n.push(o.x,o.y,o.z||0)}this.setAttribute("position",new se(n,3))}else{let n=Math.min(t.length,e.count);for(let s=0;s<n;s++){let r=t[s];e.setXYZ(s,r.x,r.y,r.z||0)}t.length>e.count&&jt("BufferGeometry: Buffer size too small for points data. Use .dispose() and create a new geometry."),e.needsUpdate=!0}return this}computeBoundingBox(){this.boundingBox===null&&(this.boundingBox=new sn);let t=this.attributes.position,e=this.morphAttributes.position;if(t&&t.isGLBufferAttribute){te("BufferGeometry.computeBoundingBox(): GLBufferAttribute requires a manual bounding box.",this),this.boundingBox.set(new R(-1/0,-1/0,-1/0),new R(1/0,1/0,1/0));return}if(t!==void 0){if(this.boundingBox.setFromBufferAttribute(t),e)for(let n=0,s=e.length;n<s;n++){let r=e[n];bi.setFromBufferAttribute(r),this.morphTargetsRelative?(kn.addVectors(this.boundingBox.min,bi.min),this.boundingBox.expandByPoint(kn),kn.addVectors(this.boundingBox.max,bi.max),this.boundingBox.expandByPoint(kn)):(this.boundingBox.expandByPoint(bi.min),this.boundingBox.expandByPoint(bi.max))}}else this.boundingBox.makeEmpty();(isNaN(this.boundingBox.min.x)||isNaN(this.boundingBox.min.y)||isNaN(this.boundingBox.min.z))&&te('BufferGeometry.computeBoundingBox(): Computed min/max have NaN values. The "position" attribute is likely to have NaN values.',this)}computeBoundingSphere(){this.boundingSphere===null&&(this.boundingSphere=new fi);let t=this.attributes.position,e=this.morphAttributes.position;if(t&&t.isGLBufferAttribute){te("BufferGeometry.computeBoundingSphere(): GLBufferAttribute requires a manual bounding sphere.",this),this.boundingSphere.set(new R,1/0);return}if(t){let n=this.boundingSphere.center;if(bi.setFromBufferAttribute(t),e)for(let r=0,o=e.length;r<o;r++){let a=e[r];_a.setFromBufferAttribute(a),this.morphTargetsRelative?(kn.addVectors(bi.min,_a.min),bi.expandByPoint(kn),kn.addVectors(bi.max,_a.max),bi.expandByPoint(kn)):(bi.expandByPoint(_a.min),bi.expandByPoint(_a.max))}bi.getCenter(n);let s=0;for(let r=0,o=t.count;r<o;r++)kn.fromBufferAttribute(t,r),s=Math.max(s,n.distanceToSquared(kn));if(e)for(let r=0,o=e.length;r<o;r++){let a=e[r],c=this.morphTargetsRelative;for(let l=0,u=a.count;l<u;l++)kn.fromBufferAttribute(a,l),c&&(uo.fromBufferAttribute(t,l),kn.add(uo)),s=Math.max(s,n.distanceToSquared(kn))}this.boundingSphere.radius=Math.sqrt(s),isNaN(this.boundingSphere.radius)&&te('BufferGeometry.computeBoundingSphere(): Computed radius is NaN. The "position" attribute is likely to have NaN values.',this)}}computeTangents(){let t=this.index,e=this.attributes;if(t===null||e.position===void 0||e.normal===void 0||e.uv===void 0){te("BufferGeometry: .computeTangents() failed. Missing required attributes (index, position, normal or uv)");return}let n=e.position,s=e.normal,r=e.uv,o=this.getAttribute("tangent");(o===void 0||o.count!==n.count)&&(o=new Ie(new Float32Array(4*n.count),4),this.setAttribute("tangent",o));let a=[],c=[],l=new Uint8Array(n.count);for(let U=0;U<n.count;U++)a[U]=new R,c[U]=new R;let u=new R,h=new R,d=new R,f=new kt,p=new kt,_=new kt,m=new R,g=new R;function x(U,I,L){l[U]=l[I]=l[L]=1,u.fromBufferAttribute(n,U),h.fromBufferAttribute(n,I),d.fromBufferAttribute(n,L),f.fromBufferAttribute(r,U),p.fromBufferAttribute(r,I),_.fromBufferAttribute(r,L),h.sub(u),d.sub(u),p.sub(f),_.sub(f);let B=1/(p.x*_.y-_.x*p.y);isFinite(B)&&(m.copy(h).multiplyScalar(_.y).addScaledVector(d,-p.y).multiplyScalar(B),g.copy(d).multiplyScalar(p.x).addScaledVector(h,-_.x).multiplyScalar(B),a[U].add(m),a[I].add(m),a[L].add(m),c[U].add(g),c[I].add(g),c[L].add(g))}let E=this.groups;E.length===0&&(E=[{start:0,count:t.count}]);for(let U=0,I=E.length;U<I;++U){let L=E[U],B=L.start,W=L.count;for(let P=B,k=B+W;P<k;P+=3)x(t.getX(P+0),t.getX(P+1),t.getX(P+2))}let S=new R,M=new R,T=new R,y=new R;function b(U){T.fromBufferAttribute(s,U),y.copy(T);let I=a[U];S.copy(I),S.sub(T.multiplyScalar(T.dot(I))).normalize(),M.crossVectors(y,I);let B=M.dot(c[U])<0?-1:1;o.setXYZW(U,S.x,S.y,S.z,B)}for(let U=0,I=n.count;U<I;++U)l[U]&&b(U);this._transformed=!0}computeVertexNormals(){let t=this.index,e=this.getAttribute("position");if(e!==void 0){let n=this.getAttribute("normal");if(n===void 0||n.count!==e.count)n=new Ie(new Float32Array(e.count*3),3),this.setAttribute("normal",n);else for(let d=0,f=n.count;d<f;d++)n.setXYZ(d,0,0,0);let s=new R,r=new R,o=new R,a=new R,c=new R,l=new R,u=new R,h=new R;if(t)for(let d=0,f=t.count;d<f;d+=3){let p=t.getX(d+0),_=t.getX(d+1),m=t.getX(d+2);s.fromBufferAttribute(e,p),r.fromBufferAttribute(e,_),o.fromBufferAttribute(e,m),u.subVectors(o,r),h.subVectors(s,r),u.cross(h),a.fromBufferAttribute(n,p),c.fromBufferAttribute(n,_),l.fromBufferAttribute(n,m),a.add(u),c.add(u),l.add(u),n.setXYZ(p,a.x,a.y,a.z),n.setXYZ(_,c.x,c.y,c.z),n.setXYZ(m,l.x,l.y,l.z)}else for(let d=0,f=e.count;d<f;d+=3)s.fromBufferAttribute(e,d+0),r.fromBufferAttribute(e,d+1),o.fromBufferAttribute(e,d+2),u.subVectors(o,r),h.subVectors(s,r),u.cross(h),n.setXYZ(d+0,u.x,u.y,u.z),n.setXYZ(d+1,u.x,u.y,u.z),n.setXYZ(d+2,u.x,u.y,u.z);this.normalizeNormals(),n.needsUpdate=!0}}normalizeNormals(){let t=this.attributes.normal;for(let e=0,n=t.count;e<n;e++)kn.fromBufferAttribute(t,e),kn.normalize(),t.setXYZ(e,kn.x,kn.y,kn.z)}toNonIndexed(){function t(a,c){let l=a.array,u=a.itemSize,h=a.normalized,d=new l.constructor(c.length*u),f=0,p=0;for(let _=0,m=c.length;_<m;_++){a.isInterleavedBufferAttribute?f=c[_]*a.data.stride+a.offset:f=c[_]*u;for(let g=0;g<u;g++)d[p++]=l[f++]}return new Ie(d,u,h)}if(this.index===null)return jt("BufferGeometry.toNonIndexed(): BufferGeometry is already non-indexed."),this;let e=new i,n=this.index.array,s=this.attributes;for(let a in s){let c=s[a],l=t(c,n);e.setAttribute(a,l)}let r=this.morphAttributes;for(let a in r){let c=[],l=r[a];for(let u=0,h=l.length;u<h;u++){let d=l[u],f=t(d,n);c.push(f)}e.morphAttributes[a]=c}e.morphTargetsRelative=this.morphTargetsRelative;let o=this.groups;for(let a=0,c=o.length;a<c;a++){let l=o[a];e.addGroup(l.start,l.count,l.materialIndex)}return e}toJSON(){let t={metadata:{version:4.7,type:"BufferGeometry",generator:"BufferGeometry.toJSON"}};if(t.uuid=this.uuid,t.type=this.parameters!==void 0&&this._transformed===!0?"BufferGeometry":this.type,t.name=this.name,Object.keys(this.userData).length>0&&(t.userData=this.userData),this.parameters!==void 0&&this._transformed!==!0){let c=this.parameters;for(let l in c)c[l]!==void 0&&(t[l]=c[l]);return t}t.data={attributes:{}};let e=this.index;e!==null&&(t.data.index={type:e.array.constructor.name,array:Array.prototype.slice.call(e.array)});let n=this.attributes;for(let c in n){let l=n[c];t.data.attributes[c]=l.toJSON(t.data)}let s={},r=!1;for(let c in this.morphAttributes){let l=this.morphAttributes[c],u=[];for(let h=0,d=l.length;h<d;h++){let f=l[h];u.push(f.toJSON(t.data))}u.length>0&&(s[c]=u,r=!0)}r&&(t.data.morphAttributes=s,t.data.morphTargetsRelative=this.morphTargetsRelative);let o=this.groups;o.length>0&&(t.data.groups=JSON.parse(JSON.stringify(o)));let a=this.boundingSphere;return a!==null&&(t.data.boundingSphere=a.toJSON()),t}clone(){return new this.constructor().copy(this)}copy(t){this.index=null,this.attributes={},this.morphAttributes={},this.groups=[],this.boundingBox=null,this.boundingSphere=null;let e={};this.name=t.name;let n=t.index;n!==null&&this.setIndex(n.clone());let s=t.attributes;for(let l in s){let u=s[l];this.setAttribute(l,u.clone(e))}let r=t.morphAttributes;for(let l in r){let u=[],h=r[l];for(let d=0,f=h.length;d<f;d++)u.push(h[d].clone(e));this.morphAttributes[l]=u}this.morphTargetsRelative=t.morphTargetsRelative;let o=t.groups;for(let l=0,u=o.length;l<u;l++){let h=o[l];this.addGroup(h.start,h.count,h.materialIndex)}let a=t.boundingBox;a!==null&&(this.boundingBox=a.clone());let c=t.boundingSphere;return c!==null&&(this.boundingSphere=c.clone()),this.drawRange.start=t.drawRange.start,this.drawRange.count=t.drawRange.count,this.userData=t.userData,this._transformed=t._transformed,this}dispose(){this.dispatchEvent({type:"dispose"})}},Fa=class{constructor(t,e){this.isInterleavedBuffer=!0,this.array=t,this.stride=e,this.count=t!==void 0?t.length/e:0,this.usage=Gd,this.updateRanges=[],this.version=0,this.uuid=fr()}onUploadCallback(){}set needsUpdate(t){t===!0&&this.version++}setUsage(t){return this.usage=t,this}addUpdateRange(t,e){this.updateRanges.push({start:t,count:e})}clearUpdateRanges(){this.updateRanges.length=0}copy(t){return this.array=new t.array.constructor(t.array),this.count=t.count,this.stride=t.stride,this.usage=t.usage,this}copyAt(t,e,n){t*=this.stride,n*=e.stride;for(let s=0,r=this.stride;s<r;s++)this.array[t+s]=e.array[n+s];return this}set(t,e=0){return this.array.set(t,e),this}clone(t){t.arrayBuffers===void 0&&(t.arrayBuffers={});let e=Xp(this.array);t.arrayBuffers[e]===void 0&&(t.arrayBuffers[e]=this.array.slice(0).buffer);let n=new this.array.constructor(t.arrayBuffers[e]),s=new this.constructor(n,this.stride);return s.setUsage(this.usage),s}onUpload(t){return this.onUploadCallback=t,this}toJSON(t){t.arrayBuffers===void 0&&(t.arrayBuffers={});let e=Xp(this.array);t.arrayBuffers[e]===void 0&&(t.arrayBuffers[e]=Array.from(new Uint32Array(this.array.slice(0).buffer)));let n={uuid:this.uuid,buffer:e,type:this.array.constructor.name,stride:this.stride};return n.usage=this.usage,n}};function Xp(i){return i.buffer._uuid===void 0&&(i.buffer._uuid=fr()),i.byteOffset===0&&i.byteLength===i.buffer.byteLength?i.buffer._uuid:i.buffer._uuid+":"+i.byteOffset+":"+i.byteLength}var ai=new R,wi=class i{constructor(t,e,n,s=!1){this.isInterleavedBufferAttribute=!0,this.name="",this.data=t,this.itemSize=e,this.offset=n,this.normalized=s,this._normalizationScale=t!==void 0?Ph(t.array):void 0}get count(){return this.data.count}get array(){return this.data.array}set needsUpdate(t){this.data.needsUpdate=t}applyMatrix4(t){for(let e=0,n=this.data.count;e<n;e++)ai.fromBufferAttribute(this,e),ai.applyMatrix4(t),this.setXYZ(e,ai.x,ai.y,ai.z);return this}applyNormalMatrix(t){for(let e=0,n=this.count;e<n;e++)ai.fromBufferAttribute(this,e),ai.applyNormalMatrix(t),this.setXYZ(e,ai.x,ai.y,ai.z);return this}transformDirection(t){for(let e=0,n=this.count;e<n;e++)ai.fromBufferAttribute(this,e),ai.transformDirection(t),this.setXYZ(e,ai.x,ai.y,ai.z);return this}getComponent(t,e){let n=this.array[t*this.data.stride+this.offset+e];return this.normalized&&(n=this._denormalize(n)),n}setComponent(t,e,n){return this.normalized&&(n=this._normalize(n)),this.data.array[t*this.data.stride+this.offset+e]=n,this}setX(t,e){return this.normalized&&(e=this._normalize(e)),this.data.array[t*this.data.stride+this.offset]=e,this}setY(t,e){return this.normalized&&(e=this._normalize(e)),this.data.array[t*this.data.stride+this.offset+1]=e,this}setZ(t,e){return this.normalized&&(e=this._normalize(e)),this.data.array[t*this.data.stride+this.offset+2]=e,this}setW(t,e){return this.normalized&&(e=this._normalize(e)),this.data.array[t*this.data.stride+this.offset+3]=e,this}getX(t){let e=this.data.array[t*this.data.stride+this.offset];return this.normalized&&(e=this._denormalize(e)),e}getY(t){let e=this.data.array[t*this.data.stride+this.offset+1];return this.normalized&&(e=this._denormalize(e)),e}getZ(t){let e=this.data.array[t*this.data.stride+this.offset+2];return this.normalized&&(e=this._denormalize(e)),e}getW(t){let e=this.data.array[t*this.data.stride+this.offset+3];return this.normalized&&(e=this._denormalize(e)),e}setXY(t,e,n){return t=t*this.data.stride+this.offset,this.normalized&&(e=this._normalize(e),n=this._normalize(n)),this.data.array[t+0]=e,this.data.array[t+1]=n,this}setXYZ(t,e,n,s){return t=t*this.data.stride+this.offset,this.normalized&&(e=this._normalize(e),n=this._normalize(n),s=this._normalize(s)),this.data.array[t+0]=e,this.data.array[t+1]=n,this.data.array[t+2]=s,this}setXYZW(t,e,n,s,r){return t=t*this.data.stride+this.offset,this.normalized&&(e=this._normalize(e),n=this._normalize(n),s=this._normalize(s),r=this._normalize(r)),this.data.array[t+0]=e,this.data.array[t+1]=n,this.data.array[t+2]=s,this.data.array[t+3]=r,this}clone(t){if(t===void 0){Ia("InterleavedBufferAttribute.clone(): Cloning an interleaved buffer attribute will de-interleave buffer data.");let e=[];for(let n=0;n<this.count;n++){let s=n*this.data.stride+this.offset;for(let r=0;r<this.itemSize;r++)e.push(this.data.array[s+r])}return new Ie(new this.array.constructor(e),this.itemSize,this.normalized)}else return t.interleavedBuffers===void 0&&(t.interleavedBuffers={}),t.interleavedBuffers[this.data.uuid]===void 0&&(t.interleavedBuffers[this.data.uuid]=this.data.clone(t)),new i(t.interleavedBuffers[this.data.uuid],this.itemSize,this.offset,this.normalized)}toJSON(t){if(t===void 0){Ia("InterleavedBufferAttribute.toJSON(): Serializing an interleaved buffer attribute will de-interleave buffer data.");let e=[];for(let n=0;n<this.count;n++){let s=n*this.data.stride+this.offset;for(let r=0;r<this.itemSize;r++)e.push(this.data.array[s+r])}return{itemSize:this.itemSize,type:this.array.constructor.name,array:e,normalized:this.normalized}}else return t.interleavedBuffers===void 0&&(t.interleavedBuffers={}),t.interleavedBuffers[this.data.uuid]===void 0&&(t.interleavedBuffers[this.data.uuid]=this.data.toJSON(t)),{isInterleavedBufferAttribute:!0,itemSize:this.itemSize,data:this.data.uuid,offset:this.offset,normalized:this.normalized}}_denormalize(t){let e=this._normalizationScale;return e!==void 0?Math.max(t/e,-1):Yd(t,this.data.array)}_normalize(t){let e=this._normalizationScale;return e!==void 0?Math.round(t*e):qd(t,this.data.array)}},td=new R,xy=new R,yy=new re,En=class{constructor(t=new R(1,0,0),e=0){this.isPlane=!0,this.normal=t,this.constant=e}set(t,e){return this.normal.copy(t),this.constant=e,this}setComponents(t,e,n,s){return this.normal.set(t,e,n),this.constant=s,this}setFromNormalAndCoplanarPoint(t,e){return this.normal.copy(t),this.constant=-e.dot(this.normal),this}setFromCoplanarPoints(t,e,n){let s=td.subVectors(n,e).cross(xy.subVectors(t,e)).normalize();return this.setFromNormalAndCoplanarPoint(s,t),this}copy(t){return this.normal.copy(t.normal),this.constant=t.constant,this}normalize(){let t=1/this.normal.length();return this.normal.multiplyScalar(t),this.constant*=t,this}negate(){return this.constant*=-1,this.normal.negate(),this}distanceToPoint(t){return this.normal.dot(t)+this.constant}distanceToSphere(t){return this.distanceToPoint(t.center)-t.radius}projectPoint(t,e){return e.copy(t).addScaledVector(this.normal,-this.distanceToPoint(t))}intersectLine(t,e,n=!0){let s=t.delta(td),r=this.normal.dot(s);if(r===0)return this.distanceToPoint(t.start)===0?e.copy(t.start):null;let o=-(t.start.dot(this.normal)+this.constant)/r;return n===!0&&(o<0||o>1)?null:e.copy(t.start).addScaledVector(s,o)}intersectsLine(t){let e=this.distanceToPoint(t.start),n=this.distanceToPoint(t.end);return e<0&&n>0||n<0&&e>0}intersectsBox(t){return t.intersectsPlane(this)}intersectsSphere(t){return t.intersectsPlane(this)}coplanarPoint(t){return t.copy(this.normal).multiplyScalar(-this.constant)}applyMatrix4(t,e){let n=e||yy.getNormalMatrix(t),s=this.coplanarPoint(td).applyMatrix4(t),r=this.normal.applyMatrix3(n).normalize();return this.constant=-s.dot(r),this}translate(t){return this.constant-=t.dot(this.normal),this}equals(t){return t.normal.equals(this.normal)&&t.constant===this.constant}clone(){return new this.constructor().copy(this)}toJSON(){return{normal:this.normal.toArray(),constant:this.constant}}fromJSON(t){return this.normal.fromArray(t.normal),this.constant=t.constant,this}},vy=0,Ni=class extends qi{constructor(){super(),this.isMaterial=!0,Object.defineProperty(this,"id",{value:vy++}),this.uuid=fr(),this.name="",this.type="Material",this.blending=ko,this.side=ur,this.vertexColors=!1,this.opacity=1,this.transparent=!1,this.alphaHash=!1,this.blendSrc=bd,this.blendDst=wd,this.blendEquation=Lr,this.blendSrcAlpha=null,this.blendDstAlpha=null,this.blendEquationAlpha=null,this.blendColor=new Ht(0,0,0),this.blendAlpha=0,this.depthFunc=wo,this.depthTest=!0,this.depthWrite=!0,this.stencilWriteMask=255,this.stencilFunc=Wm,this.stencilRef=0,this.stencilFuncMask=255,this.stencilFail=dc,this.stencilZFail=dc,this.stencilZPass=dc,this.stencilWrite=!1,this.clippingPlanes=null,this.clipIntersection=!1,this.clipShadows=!1,this.shadowSide=null,this.colorWrite=!0,this.precision=null,this.polygonOffset=!1,this.polygonOffsetFactor=0,this.polygonOffsetUnits=0,this.dithering=!1,this.alphaToCoverage=!1,this.premultipliedAlpha=!1,this.forceSinglePass=!1,this.allowOverride=!0,this.visible=!0,this.toneMapped=!0,this.userData={},this.version=0,this._alphaTest=0}get alphaTest(){return this._alphaTest}set alphaTest(t){this._alphaTest>0!=t>0&&this.version++,this._alphaTest=t}onBeforeRender(){}onBeforeCompile(){}customProgramCacheKey(){return this.onBeforeCompile.toString()}setValues(t){if(t!==void 0)for(let e in t){let n=t[e];if(n===void 0){jt(`Material: parameter '${e}' has value of undefined.`);continue}let s=this[e];if(s===void 0){jt(`Material: '${e}' is not a property of THREE.${this.type}.`);continue}s&&s.isColor?s.set(n):s&&s.isVector2&&n&&n.isVector2||s&&s.isEuler&&n&&n.isEuler||s&&s.isVector3&&n&&n.isVector3?s.copy(n):this[e]=n}}toJSON(t){let e=t===void 0||typeof t=="string";e&&(t={textures:{},images:{}});let n={metadata:{version:4.7,type:"Material",generator:"Material.toJSON"}};n.uuid=this.uuid,n.type=this.type,n.blending=this.blending,n.side=this.side,n.shadowSide=this.shadowSide,n.vertexColors=this.vertexColors,n.opacity=this.opacity,n.transparent=this.transparent,n.blendSrc=this.blendSrc,n.blendDst=this.blendDst,n.blendEquation=this.blendEquation,n.blendSrcAlpha=this.blendSrcAlpha,n.blendDstAlpha=this.blendDstAlpha,n.blendEquationAlpha=this.blendEquationAlpha,n.blendColor=this.blendColor.getHex(),n.blendAlpha=this.blendAlpha,n.depthFunc=this.depthFunc,n.depthTest=this.depthTest,n.depthWrite=this.depthWrite,n.colorWrite=this.colorWrite,n.clipIntersection=this.clipIntersection,n.clipShadows=this.clipShadows,n.stencilWriteMask=this.stencilWriteMask,n.stencilFunc=this.stencilFunc,n.stencilRef=this.stencilRef,n.stencilFuncMask=this.stencilFuncMask,n.stencilFail=this.stencilFail,n.stencilZFail=this.stencilZFail,n.stencilZPass=this.stencilZPass,n.stencilWrite=this.stencilWrite,n.polygonOffset=this.polygonOffset,n.polygonOffsetFactor=this.polygonOffsetFactor,n.polygonOffsetUnits=this.polygonOffsetUnits,n.dithering=this.dithering,n.alphaTest=this.alphaTest,n.alphaHash=this.alphaHash,n.alphaToCoverage=this.alphaToCoverage,n.premultipliedAlpha=this.premultipliedAlpha,n.forceSinglePass=this.forceSinglePass,n.allowOverride=this.allowOverride,n.visible=this.visible,n.toneMapped=this.toneMapped,n.name=this.name,this.color&&this.color.isColor&&(n.color=this.color.getHex()),this.roughness!==void 0&&(n.roughness=this.roughness),this.metalness!==void 0&&(n.metalness=this.metalness),this.sheen!==void 0&&(n.sheen=this.sheen),this.sheenColor&&this.sheenColor.isColor&&(n.sheenColor=this.sheenColor.getHex()),this.sheenRoughness!==void 0&&(n.sheenRoughness=this.sheenRoughness),this.emissive&&this.emissive.isColor&&(n.emissive=this.emissive.getHex()),this.emissiveIntensity!==void 0&&(n.emissiveIntensity=this.emissiveIntensity),this.specular&&this.specular.isColor&&(n.specular=this.specular.getHex()),this.specularIntensity!==void 0&&(n.specularIntensity=this.specularIntensity),this.specularColor&&this.specularColor.isColor&&(n.specularColor=this.specularColor.getHex()),this.shininess!==void 0&&(n.shininess=this.shininess),this.clearcoat!==void 0&&(n.clearcoat=this.clearcoat),this.clearcoatRoughness!==void 0&&(n.clearcoatRoughness=this.clearcoatRoughness),this.diffuseRoughness!==void 0&&(n.diffuseRoughness=this.diffuseRoughness),this.diffuseRoughnessMap&&this.diffuseRoughnessMap.isTexture&&(n.diffuseRoughnessMap=this.diffuseRoughnessMap.toJSON(t).uuid),this.clearcoatMap&&this.clearcoatMap.isTexture&&(n.clearcoatMap=this.clearcoatMap.toJSON(t).uuid),this.clearcoatRoughnessMap&&this.clearcoatRoughnessMap.isTexture&&(n.clearcoatRoughnessMap=this.clearcoatRoughnessMap.toJSON(t).uuid),this.clearcoatNormalMap&&this.clearcoatNormalMap.isTexture&&(n.clearcoatNormalMap=this.clearcoatNormalMap.toJSON(t).uuid,n.clearcoatNormalScale=this.clearcoatNormalScale.toArray()),this.sheenColorMap&&this.sheenColorMap.isTexture&&(n.sheenColorMap=this.sheenColorMap.toJSON(t).uuid),this.sheenRoughnessMap&&this.sheenRoughnessMap.isTexture&&(n.sheenRoughnessMap=this.sheenRoughnessMap.toJSON(t).uuid),this.dispersion!==void 0&&(n.dispersion=this.dispersion),this.retroreflectivity!==void 0&&(n.retroreflectivity=this.retroreflectivity),this.iridescence!==void 0&&(n.iridescence=this.iridescence),this.iridescenceIOR!==void 0&&(n.iridescenceIOR=this.iridescenceIOR),this.iridescenceThicknessMinimum!==void 0&&(n.iridescenceThicknessMinimum=this.iridescenceThicknessMinimum),this.iridescenceThicknessMaximum!==void 0&&(n.iridescenceThicknessMaximum=this.iridescenceThicknessMaximum),this.iridescenceMap&&this.iridescenceMap.isTexture&&(n.iridescenceMap=this.iridescenceMap.toJSON(t).uuid),this.iridescenceThicknessMap&&this.iridescenceThicknessMap.isTexture&&(n.iridescenceThicknessMap=this.iridescenceThicknessMap.toJSON(t).uuid),this.anisotropy!==void 0&&(n.anisotropy=this.anisotropy),this.anisotropyRotation!==void 0&&(n.anisotropyRotation=this.anisotropyRotation),this.anisotropyMap&&this.anisotropyMap.isTexture&&(n.anisotropyMap=this.anisotropyMap.toJSON(t).uuid),this.map&&this.map.isTexture&&(n.map=this.map.toJSON(t).uuid),this.matcap&&this.matcap.isTexture&&(n.matcap=this.matcap.toJSON(t).uuid),this.alphaMap&&this.alphaMap.isTexture&&(n.alphaMap=this.alphaMap.toJSON(t).uuid),this.lightMap&&this.lightMap.isTexture&&(n.lightMap=this.lightMap.toJSON(t).uuid,n.lightMapIntensity=this.lightMapIntensity),this.aoMap&&this.aoMap.isTexture&&(n.aoMap=this.aoMap.toJSON(t).uuid,n.aoMapIntensity=this.aoMapIntensity),this.bumpMap&&this.bumpMap.isTexture&&(n.bumpMap=this.bumpMap.toJSON(t).uuid,n.bumpScale=this.bumpScale),this.normalMap&&this.normalMap.isTexture&&(n.normalMap=this.normalMap.toJSON(t).uuid,n.normalMapType=this.normalMapType,n.normalScale=this.normalScale.toArray()),this.displacementMap&&this.displacementMap.isTexture&&(n.displacementMap=this.displacementMap.toJSON(t).uuid,n.displacementScale=this.displacementScale,n.displacementBias=this.displacementBias),this.roughnessMap&&this.roughnessMap.isTexture&&(n.roughnessMap=this.roughnessMap.toJSON(t).uuid),this.metalnessMap&&this.metalnessMap.isTexture&&(n.metalnessMap=this.metalnessMap.toJSON(t).uuid),this.emissiveMap&&this.emissiveMap.isTexture&&(n.emissiveMap=this.emissiveMap.toJSON(t).uuid),this.specularMap&&this.specularMap.isTexture&&(n.specularMap=this.specularMap.toJSON(t).uuid),this.specularIntensityMap&&this.specularIntensityMap.isTexture&&(n.specularIntensityMap=this.specularIntensityMap.toJSON(t).uuid),this.specularColorMap&&this.specularColorMap.isTexture&&(n.specularColorMap=this.specularColorMap.toJSON(t).uuid),this.envMap&&this.envMap.isTexture&&(n.envMap=this.envMap.toJSON(t).uuid,this.combine!==void 0&&(n.combine=this.combine)),this.envMapRotation!==void 0&&(n.envMapRotation=this.envMapRotation.toArray()),this.envMapIntensity!==void 0&&(n.envMapIntensity=this.envMapIntensity),this.reflectivity!==void 0&&(n.reflectivity=this.reflectivity),this.refractionRatio!==void 0&&(n.refractionRatio=this.refractionRatio),this.gradientMap&&this.gradientMap.isTexture&&(n.gradientMap=this.gradientMap.toJSON(t).uuid),this.transmission!==void 0&&(n.transmission=this.transmission),this.transmissionMap&&this.transmissionMap.isTexture&&(n.transmissionMap=this.transmissionMap.toJSON(t).uuid),this.thickness!==void 0&&(n.thickness=this.thickness),this.thicknessMap&&this.thicknessMap.isTexture&&(n.thicknessMap=this.thicknessMap.toJSON(t).uuid),this.attenuationDistance!==void 0&&(n.attenuationDistance=this.attenuationDistance),this.attenuationColor!==void 0&&(n.attenuationColor=this.attenuationColor.getHex()),this.size!==void 0&&(n.size=this.size),this.sizeAttenuation!==void 0&&(n.sizeAttenuation=this.sizeAttenuation),Array.isArray(this.clippingPlanes)&&this.clippingPlanes.length>0&&(n.clippingPlanes=this.clippingPlanes.map(r=>r.toJSON())),this.rotation!==void 0&&(n.rotation=this.rotation),this.depthPacking!==void 0&&(n.depthPacking=this.depthPacking),this.linewidth!==void 0&&(n.linewidth=this.linewidth),this.linecap!==void 0&&(n.linecap=this.linecap),this.linejoin!==void 0&&(n.linejoin=this.linejoin),this.dashSize!==void 0&&(n.dashSize=this.dashSize),this.gapSize!==void 0&&(n.gapSize=this.gapSize),this.scale!==void 0&&(n.scale=this.scale),this.wireframe!==void 0&&(n.wireframe=this.wireframe),this.wireframeLinewidth!==void 0&&(n.wireframeLinewidth=this.wireframeLinewidth),this.wireframeLinecap!==void 0&&(n.wireframeLinecap=this.wireframeLinecap),this.wireframeLinejoin!==void 0&&(n.wireframeLinejoin=this.wireframeLinejoin),this.flatShading!==void 0&&(n.flatShading=this.flatShading),this.fog!==void 0&&(n.fog=this.fog),Object.keys(this.userData).length>0&&(n.userData=this.userData);function s(r){let o=[];for(let a in r){let c=r[a];delete c.metadata,o.push(c)}return o}if(e){let r=s(t.textures),o=s(t.images);r.length>0&&(n.textures=r),o.length>0&&(n.images=o)}return n}fromJSON(t,e){if(t.uuid!==void 0&&(this.uuid=t.uuid),t.name!==void 0&&(this.name=t.name),t.color!==void 0&&this.color!==void 0&&this.color.setHex(t.color),t.roughness!==void 0&&(this.roughness=t.roughness),t.metalness!==void 0&&(this.metalness=t.metalness),t.sheen!==void 0&&(this.sheen=t.sheen),t.sheenColor!==void 0&&(this.sheenColor=new Ht().setHex(t.sheenColor)),t.sheenRoughness!==void 0&&(this.sheenRoughness=t.sheenRoughness),t.emissive!==void 0&&this.emissive!==void 0&&this.emissive.setHex(t.emissive),t.specular!==void 0&&this.specular!==void 0&&this.specular.setHex(t.specular),t.specularIntensity!==void 0&&(this.specularIntensity=t.specularIntensity),t.specularColor!==void 0&&this.specularColor!==void 0&&this.specularColor.setHex(t.specularColor),t.shininess!==void 0&&(this.shininess=t.shininess),t.clearcoat!==void 0&&(this.clearcoat=t.clearcoat),t.clearcoatRoughness!==void 0&&(this.clearcoatRoughness=t.clearcoatRoughness),t.diffuseRoughness!==void 0&&(this.diffuseRoughness=t.diffuseRoughness),t.dispersion!==void 0&&(this.dispersion=t.dispersion),t.retroreflectivity!==void 0&&(this.retroreflectivity=t.retroreflectivity),t.iridescence!==void 0&&(this.iridescence=t.iridescence),t.iridescenceIOR!==void 0&&(this.iridescenceIOR=t.iridescenceIOR),t.iridescenceThicknessMinimum!==void 0&&(this.iridescenceThicknessMinimum=t.iridescenceThicknessMinimum),t.iridescenceThicknessMaximum!==void 0&&(this.iridescenceThicknessMaximum=t.iridescenceThicknessMaximum),t.iridescenceThicknessRange!==void 0&&(this.iridescenceThicknessMinimum=t.iridescenceThicknessRange[0],this.iridescenceThicknessMaximum=t.iridescenceThicknessRange[1]),t.transmission!==void 0&&(this.transmission=t.transmission),t.thickness!==void 0&&(this.thickness=t.thickness),t.attenuationDistance!==void 0&&(this.attenuationDistance=t.attenuationDistance),t.attenuationColor!==void 0&&this.attenuationColor!==void 0&&this.attenuationColor.setHex(t.attenuationColor),t.anisotropy!==void 0&&(this.anisotropy=t.anisotropy),t.anisotropyRotation!==void 0&&(this.anisotropyRotation=t.anisotropyRotation),t.fog!==void 0&&(this.fog=t.fog),t.flatShading!==void 0&&(this.flatShading=t.flatShading),t.blending!==void 0&&(this.blending=t.blending),t.combine!==void 0&&(this.combine=t.combine),t.side!==void 0&&(this.side=t.side),t.shadowSide!==void 0&&(this.shadowSide=t.shadowSide),t.opacity!==void 0&&(this.opacity=t.opacity),t.transparent!==void 0&&(this.transparent=t.transparent),t.alphaTest!==void 0&&(this.alphaTest=t.alphaTest),t.alphaHash!==void 0&&(this.alphaHash=t.alphaHash),t.depthFunc!==void 0&&(this.depthFunc=t.depthFunc),t.depthTest!==void 0&&(this.depthTest=t.depthTest),t.depthWrite!==void 0&&(this.depthWrite=t.depthWrite),t.colorWrite!==void 0&&(this.colorWrite=t.colorWrite),t.clippingPlanes!==void 0&&(this.clippingPlanes=t.clippingPlanes.map(n=>new En().fromJSON(n))),t.clipIntersection!==void 0&&(this.clipIntersection=t.clipIntersection),t.clipShadows!==void 0&&(this.clipShadows=t.clipShadows),t.depthPacking!==void 0&&(this.depthPacking=t.depthPacking),t.blendSrc!==void 0&&(this.blendSrc=t.blendSrc),t.blendDst!==void 0&&(this.blendDst=t.blendDst),t.blendEquation!==void 0&&(this.blendEquation=t.blendEquation),t.blendSrcAlpha!==void 0&&(this.blendSrcAlpha=t.blendSrcAlpha),t.blendDstAlpha!==void 0&&(this.blendDstAlpha=t.blendDstAlpha),t.blendEquationAlpha!==void 0&&(this.blendEquationAlpha=t.blendEquationAlpha),t.blendColor!==void 0&&this.blendColor!==void 0&&this.blendColor.setHex(t.blendColor),t.blendAlpha!==void 0&&(this.blendAlpha=t.blendAlpha),t.stencilWriteMask!==void 0&&(this.stencilWriteMask=t.stencilWriteMask),t.stencilFunc!==void 0&&(this.stencilFunc=t.stencilFunc),t.stencilRef!==void 0&&(this.stencilRef=t.stencilRef),t.stencilFuncMask!==void 0&&(this.stencilFuncMask=t.stencilFuncMask),t.stencilFail!==void 0&&(this.stencilFail=t.stencilFail),t.stencilZFail!==void 0&&(this.stencilZFail=t.stencilZFail),t.stencilZPass!==void 0&&(this.stencilZPass=t.stencilZPass),t.stencilWrite!==void 0&&(this.stencilWrite=t.stencilWrite),t.wireframe!==void 0&&(this.wireframe=t.wireframe),t.wireframeLinewidth!==void 0&&(this.wireframeLinewidth=t.wireframeLinewidth),t.wireframeLinecap!==void 0&&(this.wireframeLinecap=t.wireframeLinecap),t.wireframeLinejoin!==void 0&&(this.wireframeLinejoin=t.wireframeLinejoin),t.rotation!==void 0&&(this.rotation=t.rotation),t.linewidth!==void 0&&(this.linewidth=t.linewidth),t.linecap!==void 0&&(this.linecap=t.linecap),t.linejoin!==void 0&&(this.linejoin=t.linejoin),t.dashSize!==void 0&&(this.dashSize=t.dashSize),t.gapSize!==void 0&&(this.gapSize=t.gapSize),t.scale!==void 0&&(this.scale=t.scale),t.polygonOffset!==void 0&&(this.polygonOffset=t.polygonOffset),t.polygonOffsetFactor!==void 0&&(this.polygonOffsetFactor=t.polygonOffsetFactor),t.polygonOffsetUnits!==void 0&&(this.polygonOffsetUnits=t.polygonOffsetUnits),t.dithering!==void 0&&(this.dithering=t.dithering),t.alphaToCoverage!==void 0&&(this.alphaToCoverage=t.alphaToCoverage),t.premultipliedAlpha!==void 0&&(this.premultipliedAlpha=t.premultipliedAlpha),t.forceSinglePass!==void 0&&(this.forceSinglePass=t.forceSinglePass),t.allowOverride!==void 0&&(this.allowOverride=t.allowOverride),t.visible!==void 0&&(this.visible=t.visible),t.toneMapped!==void 0&&(this.toneMapped=t.toneMapped),t.userData!==void 0&&(this.userData=t.userData),t.vertexColors!==void 0&&(typeof t.vertexColors=="number"?this.vertexColors=t.vertexColors>0:this.vertexColors=t.vertexColors),t.size!==void 0&&(this.size=t.size),t.sizeAttenuation!==void 0&&(this.sizeAttenuation=t.sizeAttenuation),t.map!==void 0&&(this.map=e[t.map]||null),t.matcap!==void 0&&(this.matcap=e[t.matcap]||null),t.alphaMap!==void 0&&(this.alphaMap=e[t.alphaMap]||null),t.bumpMap!==void 0&&(this.bumpMap=e[t.bumpMap]||null),t.bumpScale!==void 0&&(this.bumpScale=t.bumpScale),t.normalMap!==void 0&&(this.normalMap=e[t.normalMap]||null),t.normalMapType!==void 0&&(this.normalMapType=t.normalMapType),t.normalScale!==void 0){let n=t.normalScale;Array.isArray(n)===!1&&(n=[n,n]),this.normalScale=new kt().fromArray(n)}return t.displacementMap!==void 0&&(this.displacementMap=e[t.displacementMap]||null),t.displacementScale!==void 0&&(this.displacementScale=t.displacementScale),t.displacementBias!==void 0&&(this.displacementBias=t.displacementBias),t.roughnessMap!==void 0&&(this.roughnessMap=e[t.roughnessMap]||null),t.metalnessMap!==void 0&&(this.metalnessMap=e[t.metalnessMap]||null),t.emissiveMap!==void 0&&(this.emissiveMap=e[t.emissiveMap]||null),t.emissiveIntensity!==void 0&&(this.emissiveIntensity=t.emissiveIntensity),t.specularMap!==void 0&&(this.specularMap=e[t.specularMap]||null),t.specularIntensityMap!==void 0&&(this.specularIntensityMap=e[t.specularIntensityMap]||null),t.specularColorMap!==void 0&&(this.specularColorMap=e[t.specularColorMap]||null),t.envMap!==void 0&&(this.envMap=e[t.envMap]||null),t.envMapRotation!==void 0&&this.envMapRotation.fromArray(t.envMapRotation),t.envMapIntensity!==void 0&&(this.envMapIntensity=t.envMapIntensity),t.reflectivity!==void 0&&(this.reflectivity=t.reflectivity),t.refractionRatio!==void 0&&(this.refractionRatio=t.refractionRatio),t.lightMap!==void 0&&(this.lightMap=e[t.lightMap]||null),t.lightMapIntensity!==void 0&&(this.lightMapIntensity=t.lightMapIntensity),t.aoMap!==void 0&&(this.aoMap=e[t.aoMap]||null),t.aoMapIntensity!==void 0&&(this.aoMapIntensity=t.aoMapIntensity),t.gradientMap!==void 0&&(this.gradientMap=e[t.gradientMap]||null),t.clearcoatMap!==void 0&&(this.clearcoatMap=e[t.clearcoatMap]||null),t.clearcoatRoughnessMap!==void 0&&(this.clearcoatRoughnessMap=e[t.clearcoatRoughnessMap]||null),t.clearcoatNormalMap!==void 0&&(this.clearcoatNormalMap=e[t.clearcoatNormalMap]||null),t.clearcoatNormalScale!==void 0&&(this.clearcoatNormalScale=new kt().fromArray(t.clearcoatNormalScale)),t.diffuseRoughnessMap!==void 0&&(this.diffuseRoughnessMap=e[t.diffuseRoughnessMap]||null),t.iridescenceMap!==void 0&&(this.iridescenceMap=e[t.iridescenceMap]||null),t.iridescenceThicknessMap!==void 0&&(this.iridescenceThicknessMap=e[t.iridescenceThicknessMap]||null),t.transmissionMap!==void 0&&(this.transmissionMap=e[t.transmissionMap]||null),t.thicknessMap!==void 0&&(this.thicknessMap=e[t.thicknessMap]||null),t.anisotropyMap!==void 0&&(this.anisotropyMap=e[t.anisotropyMap]||null),t.sheenColorMap!==void 0&&(this.sheenColorMap=e[t.sheenColorMap]||null),t.sheenRoughnessMap!==void 0&&(this.sheenRoughnessMap=e[t.sheenRoughnessMap]||null),this}clone(){return new this.constructor().copy(this)}copy(t){this.name=t.name,this.blending=t.blending,this.side=t.side,this.vertexColors=t.vertexColors,this.opacity=t.opacity,this.transparent=t.transparent,this.blendSrc=t.blendSrc,this.blendDst=t.blendDst,this.blendEquation=t.blendEquation,this.blendSrcAlpha=t.blendSrcAlpha,this.blendDstAlpha=t.blendDstAlpha,this.blendEquationAlpha=t.blendEquationAlpha,this.blendColor.copy(t.blendColor),this.blendAlpha=t.blendAlpha,this.depthFunc=t.depthFunc,this.depthTest=t.depthTest,this.depthWrite=t.depthWrite,this.stencilWriteMask=t.stencilWriteMask,this.stencilFunc=t.stencilFunc,this.stencilRef=t.stencilRef,this.stencilFuncMask=t.stencilFuncMask,this.stencilFail=t.stencilFail,this.stencilZFail=t.stencilZFail,this.stencilZPass=t.stencilZPass,this.stencilWrite=t.stencilWrite;let e=t.clippingPlanes,n=null;if(e!==null){let s=e.length;n=new Array(s);for(let r=0;r!==s;++r)n[r]=e[r].clone()}return this.clippingPlanes=n,this.clipIntersection=t.clipIntersection,this.clipShadows=t.clipShadows,this.shadowSide=t.shadowSide,this.colorWrite=t.colorWrite,this.precision=t.precision,this.polygonOffset=t.polygonOffset,this.polygonOffsetFactor=t.polygonOffsetFactor,this.polygonOffsetUnits=t.polygonOffsetUnits,this.dithering=t.dithering,this.alphaTest=t.alphaTest,this.alphaHash=t.alphaHash,this.alphaToCoverage=t.alphaToCoverage,this.premultipliedAlpha=t.premultipliedAlpha,this.forceSinglePass=t.forceSinglePass,this.allowOverride=t.allowOverride,this.visible=t.visible,this.toneMapped=t.toneMapped,this.userData=JSON.parse(JSON.stringify(t.userData)),this}dispose(){this.dispatchEvent({type:"dispose"})}set needsUpdate(t){t===!0&&this.version++}},Lo=class extends Ni{constructor(t){super(),this.isSpriteMaterial=!0,this.type="SpriteMaterial",this.color=new Ht(16777215),this.map=null,this.alphaMap=null,this.rotation=0,this.sizeAttenuation=!0,this.transparent=!0,this.fog=!0,this.setValues(t)}copy(t){return super.copy(t),this.color.copy(t.color),this.map=t.map,this.alphaMap=t.alphaMap,this.rotation=t.rotation,this.sizeAttenuation=t.sizeAttenuation,this.fog=t.fog,this}},fo,xa=new R,po=new R,mo=new R,go=new kt,ya=new kt,eg=new qt,Gl=new R,va=new R,Hl=new R,Yp=new kt,ed=new kt,qp=new kt,Ba=class extends De{constructor(t=new Lo){if(super(),this.isSprite=!0,this.type="Sprite",fo===void 0){fo=new pe;let e=new Float32Array([-.5,-.5,0,0,0,.5,-.5,0,1,0,.5,.5,0,1,1,-.5,.5,0,0,1]),n=new Fa(e,5);fo.setIndex([0,1,2,0,2,3]),fo.setAttribute("position",new wi(n,3,0,!1)),fo.setAttribute("uv",new wi(n,2,3,!1))}this.geometry=fo,this.material=t,this.center=new kt(.5,.5),this.count=1}intersectsFrustum(t){return t.intersectsSprite(this)}raycast(t,e){t.camera===null&&te('Sprite: "Raycaster.camera" needs to be set in order to raycast against sprites.'),po.setFromMatrixScale(this.matrixWorld),eg.copy(t.camera.matrixWorld),this.modelViewMatrix.multiplyMatrices(t.camera.matrixWorldInverse,this.matrixWorld),mo.setFromMatrixPosition(this.modelViewMatrix),t.camera.isPerspectiveCamera&&this.material.sizeAttenuation===!1&&po.multiplyScalar(-mo.z);let n=this.material.rotation,s,r;n!==0&&(r=Math.cos(n),s=Math.sin(n));let o=this.center;Wl(Gl.set(-.5,-.5,0),mo,o,po,s,r),Wl(va.set(.5,-.5,0),mo,o,po,s,r),Wl(Hl.set(.5,.5,0),mo,o,po,s,r),Yp.set(0,0),ed.set(1,0),qp.set(1,1);let a=t.ray.intersectTriangle(Gl,va,Hl,!1,xa);if(a===null&&(Wl(va.set(-.5,.5,0),mo,o,po,s,r),ed.set(0,1),a=t.ray.intersectTriangle(Gl,Hl,va,!1,xa),a===null))return;let c=t.ray.origin.distanceTo(xa);c<t.near||c>t.far||e.push({distance:c,point:xa.clone(),uv:Cs.getInterpolation(xa,Gl,va,Hl,Yp,ed,qp,new kt),face:null,object:this})}copy(t,e){return super.copy(t,e),t.center!==void 0&&this.center.copy(t.center),this.material=t.material,this}toJSON(t){let e=super.toJSON(t);return e.object.center=this.center.toArray(),e}};function Wl(i,t,e,n,s,r){go.subVectors(i,e).addScalar(.5).multiply(n),s!==void 0?(ya.x=r*go.x-s*go.y,ya.y=s*go.x+r*go.y):ya.copy(go),i.copy(t),i.x+=ya.x,i.y+=ya.y,i.applyMatrix4(eg)}var As=new R,nd=new R,Xl=new R,Yl=new R,Is=class{constructor(t=new R,e=new R(0,0,-1)){this.origin=t,this.direction=e}set(t,e){return this.origin.copy(t),this.direction.copy(e),this}copy(t){return this.origin.copy(t.origin),this.direction.copy(t.direction),this}at(t,e){return e.copy(this.origin).addScaledVector(this.direction,t)}lookAt(t){return this.direction.copy(t).sub(this.origin).normalize(),this}recast(t){return this.origin.copy(this.at(t,As)),this}closestPointToPoint(t,e){e.subVectors(t,this.origin);let n=e.dot(this.direction);return n<0?e.copy(this.origin):e.copy(this.origin).addScaledVector(this.direction,n)}distanceToPoint(t){return Math.sqrt(this.distanceSqToPoint(t))}distanceSqToPoint(t){let e=As.subVectors(t,this.origin).dot(this.direction);return e<0?this.origin.distanceToSquared(t):(As.copy(this.origin).addScaledVector(this.direction,e),As.distanceToSquared(t))}distanceSqToSegment(t,e,n,s){nd.copy(t).add(e).multiplyScalar(.5),Xl.copy(e).sub(t).normalize(),Yl.copy(this.origin).sub(nd);let r=t.distanceTo(e)*.5,o=-this.direction.dot(Xl),a=Yl.dot(this.direction),c=-Yl.dot(Xl),l=Yl.lengthSq(),u=Math.abs(1-o*o),h,d,f,p;if(u>0)if(h=o*c-a,d=o*a-c,p=r*u,h>=0)if(d>=-p)if(d<=p){let _=1/u;h*=_,d*=_,f=h*(h+o*d+2*a)+d*(o*h+d+2*c)+l}else d=r,h=Math.max(0,-(o*d+a)),f=-h*h+d*(d+2*c)+l;else d=-r,h=Math.max(0,-(o*d+a)),f=-h*h+d*(d+2*c)+l;else d<=-p?(h=Math.max(0,-(-o*r+a)),d=h>0?-r:Math.min(Math.max(-r,-c),r),f=-h*h+d*(d+2*c)+l):d<=p?(h=0,d=Math.min(Math.max(-r,-c),r),f=d*(d+2*c)+l):(h=Math.max(0,-(o*r+a)),d=h>0?r:Math.min(Math.max(-r,-c),r),f=-h*h+d*(d+2*c)+l);else d=o>0?-r:r,h=Math.max(0,-(o*d+a)),f=-h*h+d*(d+2*c)+l;return n&&n.copy(this.origin).addScaledVector(this.direction,h),s&&s.copy(nd).addScaledVector(Xl,d),f}intersectSphere(t,e){if(t.radius<0)return null;As.subVectors(t.center,this.origin);let n=As.dot(this.direction),s=As.dot(As)-n*n,r=t.radius*t.radius;if(s>r)return null;let o=Math.sqrt(r-s),a=n-o,c=n+o;return c<0?null:a<0?this.at(c,e):this.at(a,e)}intersectsSphere(t){return t.radius<0?!1:this.distanceSqToPoint(t.center)<=t.radius*t.radius}distanceToPlane(t){let e=t.normal.dot(this.direction);if(e===0)return t.distanceToPoint(this.origin)===0?0:null;let n=-(this.origin.dot(t.normal)+t.constant)/e;return n>=0?n:null}intersectPlane(t,e){let n=this.distanceToPlane(t);return n===null?null:this.at(n,e)}intersectsPlane(t){let e=t.distanceToPoint(this.origin);return e===0||t.normal.dot(this.direction)*e<0}intersectBox(t,e){let n,s,r,o,a,c,l=1/this.direction.x,u=1/this.direction.y,h=1/this.direction.z,d=this.origin;return l>=0?(n=(t.min.x-d.x)*l,s=(t.max.x-d.x)*l):(n=(t.max.x-d.x)*l,s=(t.min.x-d.x)*l),u>=0?(r=(t.min.y-d.y)*u,o=(t.max.y-d.y)*u):(r=(t.max.y-d.y)*u,o=(t.min.y-d.y)*u),n>o||r>s||((r>n||isNaN(n))&&(n=r),(o<s||isNaN(s))&&(s=o),h>=0?(a=(t.min.z-d.z)*h,c=(t.max.z-d.z)*h):(a=(t.max.z-d.z)*h,c=(t.min.z-d.z)*h),n>c||a>s)||((a>n||n!==n)&&(n=a),(c<s||s!==s)&&(s=c),s<0)?null:this.at(n>=0?n:s,e)}intersectsBox(t){return this.intersectBox(t,As)!==null}intersectTriangle(t,e,n,s,r){let o=this.origin,a=this.direction,c=a.x,l=a.y,u=a.z,h=t.x-o.x,d=t.y-o.y,f=t.z-o.z,p=e.x-o.x,_=e.y-o.y,m=e.z-o.z,g=n.x-o.x,x=n.y-o.y,E=n.z-o.z,S=Math.abs(c),M=Math.abs(l),T=Math.abs(u),y,b,U,I,L,B,W,P,k,Y,G,at;if(S>=M&&S>=T?(U=c,B=h,k=p,at=g,c>=0?(y=l,b=u,I=d,L=f,W=_,P=m,Y=x,G=E):(y=u,b=l,I=f,L=d,W=m,P=_,Y=E,G=x)):M>=T?(U=l,B=d,k=_,at=x,l>=0?(y=u,b=c,I=f,L=h,W=m,P=p,Y=E,G=g):(y=c,b=u,I=h,L=f,W=p,P=m,Y=g,G=E)):(U=u,B=f,k=m,at=E,u>=0?(y=c,b=l,I=h,L=d,W=p,P=_,Y=g,G=x):(y=l,b=c,I=d,L=h,W=_,P=p,Y=x,G=g)),U===0)return null;let $=y/U,Q=b/U,it=1/U,ut=I-$*B,dt=L-Q*B,tt=W-$*k,mt=P-Q*k,xt=Y-$*at,Rt=G-Q*at,bt=xt*mt-Rt*tt,$t=ut*Rt-dt*xt,le=tt*dt-mt*ut;if(s){if(bt<0||$t<0||le<0)return null}else if((bt<0||$t<0||le<0)&&(bt>0||$t>0||le>0))return null;let Xt=bt+$t+le;if(Xt===0)return null;let ge=it*(bt*B+$t*k+le*at);return(Xt>0?ge<0:ge>0)?null:this.at(ge/Xt,r)}applyMatrix4(t){return this.origin.applyMatrix4(t),this.direction.transformDirection(t),this}equals(t){return t.origin.equals(this.origin)&&t.direction.equals(this.direction)}clone(){return new this.constructor().copy(this)}},Vn=class extends Ni{constructor(t){super(),this.isMeshBasicMaterial=!0,this.type="MeshBasicMaterial",this.color=new Ht(16777215),this.map=null,this.lightMap=null,this.lightMapIntensity=1,this.aoMap=null,this.aoMapIntensity=1,this.specularMap=null,this.alphaMap=null,this.envMap=null,this.envMapRotation=new Kn,this.combine=Hc,this.reflectivity=1,this.refractionRatio=.98,this.wireframe=!1,this.wireframeLinewidth=1,this.wireframeLinecap="round",this.wireframeLinejoin="round",this.fog=!0,this.setValues(t)}copy(t){return super.copy(t),this.color.copy(t.color),this.map=t.map,this.lightMap=t.lightMap,this.lightMapIntensity=t.lightMapIntensity,this.aoMap=t.aoMap,this.aoMapIntensity=t.aoMapIntensity,this.specularMap=t.specularMap,this.alphaMap=t.alphaMap,this.envMap=t.envMap,this.envMapRotation.copy(t.envMapRotation),this.combine=t.combine,this.reflectivity=t.reflectivity,this.refractionRatio=t.refractionRatio,this.wireframe=t.wireframe,this.wireframeLinewidth=t.wireframeLinewidth,this.wireframeLinecap=t.wireframeLinecap,this.wireframeLinejoin=t.wireframeLinejoin,this.fog=t.fog,this}},$p=new qt,br=new Is,ql=new fi,Zp=new R,$l=new R,Zl=new R,Jl=new R,id=new R,jl=new R,Jp=new R,Kl=new R,Mt=class extends De{constructor(t=new pe,e=new Vn){super(),this.isMesh=!0,this.type="Mesh",this.geometry=t,this.material=e,this.morphTargetDictionary=void 0,this.morphTargetInfluences=void 0,this.count=1,this.updateMorphTargets()}copy(t,e){return super.copy(t,e),t.morphTargetInfluences!==void 0?this.morphTargetInfluences=t.morphTargetInfluences.slice():this.morphTargetInfluences=void 0,t.morphTargetDictionary!==void 0?this.morphTargetDictionary=Object.assign({},t.morphTargetDictionary):this.morphTargetDictionary=void 0,this.material=Array.isArray(t.material)?t.material.slice():t.material,this.geometry=t.geometry,this}updateMorphTargets(){let e=this.geometry.morphAttributes,n=Object.keys(e);if(n.length>0){let s=e[n[0]];if(s!==void 0){this.morphTargetInfluences=[],this.morphTargetDictionary={};for(let r=0,o=s.length;r<o;r++){let a=s[r].name||String(r);this.morphTargetInfluences.push(0),this.morphTargetDictionary[a]=r}}}}getVertexPosition(t,e){let n=this.geometry,s=n.attributes.position,r=n.morphAttributes.position,o=n.morphTargetsRelative;e.fromBufferAttribute(s,t);let a=this.morphTargetInfluences;if(r&&a){jl.set(0,0,0);for(let c=0,l=r.length;c<l;c++){let u=a[c],h=r[c];u!==0&&(id.fromBufferAttribute(h,t),o?jl.addScaledVector(id,u):jl.addScaledVector(id.sub(e),u))}e.add(jl)}return e}intersectsFrustum(t){return t.intersectsObject(this)}raycast(t,e){let n=this.geometry,s=this.material,r=this.matrixWorld;s!==void 0&&(n.boundingSphere===null&&n.computeBoundingSphere(),ql.copy(n.boundingSphere),ql.applyMatrix4(r),br.copy(t.ray).recast(t.near),!(ql.containsPoint(br.origin)===!1&&(br.intersectSphere(ql,Zp)===null||br.origin.distanceToSquared(Zp)>(t.far-t.near)**2))&&($p.copy(r).invert(),br.copy(t.ray).applyMatrix4($p),!(n.boundingBox!==null&&br.intersectsBox(n.boundingBox)===!1)&&this._computeIntersections(t,e,br)))}_computeIntersections(t,e,n){let s,r=this.geometry,o=this.material,a=r.index,c=r.attributes.position,l=r.attributes.uv,u=r.attributes.uv1,h=r.attributes.normal,d=r.groups,f=r.drawRange;if(a!==null)if(Array.isArray(o))for(let p=0,_=d.length;p<_;p++){let m=d[p],g=o[m.materialIndex],x=Math.max(m.start,f.start),E=Math.min(a.count,Math.min(m.start+m.count,f.start+f.count));for(let S=x,M=E;S<M;S+=3){let T=a.getX(S),y=a.getX(S+1),b=a.getX(S+2);s=Ql(this,g,t,n,l,u,h,T,y,b),s&&(s.faceIndex=Math.floor(S/3),s.face.materialIndex=m.materialIndex,e.push(s))}}else{let p=Math.max(0,f.start),_=Math.min(a.count,f.start+f.count);for(let m=p,g=_;m<g;m+=3){let x=a.getX(m),E=a.getX(m+1),S=a.getX(m+2);s=Ql(this,o,t,n,l,u,h,x,E,S),s&&(s.faceIndex=Math.floor(m/3),e.push(s))}}else if(c!==void 0)if(Array.isArray(o))for(let p=0,_=d.length;p<_;p++){let m=d[p],g=o[m.materialIndex],x=Math.max(m.start,f.start),E=Math.min(c.count,Math.min(m.start+m.count,f.start+f.count));for(let S=x,M=E;S<M;S+=3){let T=S,y=S+1,b=S+2;s=Ql(this,g,t,n,l,u,h,T,y,b),s&&(s.faceIndex=Math.floor(S/3),s.face.materialIndex=m.materialIndex,e.push(s))}}else{let p=Math.max(0,f.start),_=Math.min(c.count,f.start+f.count);for(let m=p,g=_;m<g;m+=3){let x=m,E=m+1,S=m+2;s=Ql(this,o,t,n,l,u,h,x,E,S),s&&(s.faceIndex=Math.floor(m/3),e.push(s))}}}};function Sy(i,t,e,n,s,r,o,a){let c;if(t.side===Xn?c=n.intersectTriangle(o,r,s,!0,a):c=n.intersectTriangle(s,r,o,t.side===ur,a),c===null)return null;Kl.copy(a),Kl.applyMatrix4(i.matrixWorld);let l=e.ray.origin.distanceTo(Kl);return l<e.near||l>e.far?null:{distance:l,point:Kl.clone(),object:i}}function Ql(i,t,e,n,s,r,o,a,c,l){i.getVertexPosition(a,$l),i.getVertexPosition(c,Zl),i.getVertexPosition(l,Jl);let u=Sy(i,t,e,n,$l,Zl,Jl,Jp);if(u){let h=new R;Cs.getBarycoord(Jp,$l,Zl,Jl,h),s&&(u.uv=Cs.getInterpolatedAttribute(s,a,c,l,h,new kt)),r&&(u.uv1=Cs.getInterpolatedAttribute(r,a,c,l,h,new kt)),o&&(u.normal=Cs.getInterpolatedAttribute(o,a,c,l,h,new R),u.normal.dot(n.direction)>0&&u.normal.multiplyScalar(-1));let d={a,b:c,c:l,normal:new R,materialIndex:0};Cs.getNormal($l,Zl,Jl,d.normal),u.face=d,u.barycoord=h}return u}var Er=class extends Wn{constructor(t=null,e=1,n=1,s,r,o,a,c,l=zn,u=zn,h,d){super(null,o,a,c,l,u,s,r,h,d),this.isDataTexture=!0,this.image={data:t,width:e,height:n},this.generateMipmaps=!1,this.flipY=!1,this.unpackAlignment=1}};var Ar=class extends Ie{constructor(t,e,n,s=1){super(t,e,n),this.isInstancedBufferAttribute=!0,this.meshPerAttribute=s}copy(t){return super.copy(t),this.meshPerAttribute=t.meshPerAttribute,this}toJSON(){let t=super.toJSON();return t.meshPerAttribute=this.meshPerAttribute,t.isInstancedBufferAttribute=!0,t}},_o=new qt,jp=new qt,tc=[],Kp=new sn,My=new qt,Sa=new Mt,Ma=new fi,Ls=class extends Mt{constructor(t,e,n){super(t,e),this.isInstancedMesh=!0,this.instanceMatrix=new Ar(new Float32Array(n*16),16),this.instanceColor=null,this.morphTexture=null,this.count=n,this.boundingBox=null,this.boundingSphere=null;for(let s=0;s<n;s++)this.setMatrixAt(s,My)}computeBoundingBox(){let t=this.geometry,e=this.count;this.boundingBox===null&&(this.boundingBox=new sn),t.boundingBox===null&&t.computeBoundingBox(),this.boundingBox.makeEmpty();for(let n=0;n<e;n++)this.getMatrixAt(n,_o),Kp.copy(t.boundingBox).applyMatrix4(_o),this.boundingBox.union(Kp)}computeBoundingSphere(){let t=this.geometry,e=this.count;this.boundingSphere===null&&(this.boundingSphere=new fi),t.boundingSphere===null&&t.computeBoundingSphere(),this.boundingSphere.makeEmpty();for(let n=0;n<e;n++)this.getMatrixAt(n,_o),Ma.copy(t.boundingSphere).applyMatrix4(_o),this.boundingSphere.union(Ma)}copy(t,e){return super.copy(t,e),this.instanceMatrix.copy(t.instanceMatrix),this.morphTexture=t.morphTexture!==null?t.morphTexture.clone():null,this.instanceColor=t.instanceColor!==null?t.instanceColor.clone():null,this.count=t.count,this.boundingBox=t.boundingBox!==null?t.boundingBox.clone():null,this.boundingSphere=t.boundingSphere!==null?t.boundingSphere.clone():null,this}getColorAt(t,e){return this.instanceColor===null?e.setRGB(1,1,1):e.fromArray(this.instanceColor.array,t*3)}getMatrixAt(t,e){return e.fromArray(this.instanceMatrix.array,t*16)}getMorphAt(t,e){let n=e.morphTargetInfluences,s=this.morphTexture.source.data.data,r=n.length+1,o=t*r+1;for(let a=0;a<n.length;a++)n[a]=s[o+a]}raycast(t,e){let n=this.matrixWorld,s=this.count;if(Sa.geometry=this.geometry,Sa.material=this.material,Sa.material!==void 0&&(this.boundingSphere===null&&this.computeBoundingSphere(),Ma.copy(this.boundingSphere),Ma.applyMatrix4(n),t.ray.intersectsSphere(Ma)!==!1))for(let r=0;r<s;r++){this.getMatrixAt(r,_o),jp.multiplyMatrices(n,_o),Sa.matrixWorld=jp,Sa.raycast(t,tc);for(let o=0,a=tc.length;o<a;o++){let c=tc[o];c.instanceId=r,c.object=this,e.push(c)}tc.length=0}}setColorAt(t,e){return this.instanceColor===null&&(this.instanceColor=new Ar(new Float32Array(this.instanceMatrix.count*3).fill(1),3)),e.toArray(this.instanceColor.array,t*3),this}setMatrixAt(t,e){return e.toArray(this.instanceMatrix.array,t*16),this}setMorphAt(t,e){let n=e.morphTargetInfluences,s=n.length+1;this.morphTexture===null&&(this.morphTexture=new Er(new Float32Array(s*this.count),s,this.count,Jc,Fi));let r=this.morphTexture.source.data.data,o=0;for(let l=0;l<n.length;l++)o+=n[l];let a=this.geometry.morphTargetsRelative?1:1-o,c=s*t;return r[c]=a,r.set(n,c+1),this}updateMorphTargets(){}dispose(){super.dispose(),this.instanceMatrix.dispose(),this.instanceColor!==null&&this.instanceColor.dispose(),this.morphTexture!==null&&(this.morphTexture.dispose(),this.morphTexture=null)}},wr=new fi,by=new kt(.5,.5),ec=new R,er=class{constructor(t=new En,e=new En,n=new En,s=new En,r=new En,o=new En){this.planes=[t,e,n,s,r,o]}set(t,e,n,s,r,o){let a=this.planes;return a[0].copy(t),a[1].copy(e),a[2].copy(n),a[3].copy(s),a[4].copy(r),a[5].copy(o),this}copy(t){let e=this.planes;for(let n=0;n<6;n++)e[n].copy(t.planes[n]);return this}setFromProjectionMatrix(t,e=Di,n=!1){let s=this.planes,r=t.elements,o=r[0],a=r[1],c=r[2],l=r[3],u=r[4],h=r[5],d=r[6],f=r[7],p=r[8],_=r[9],m=r[10],g=r[11],x=r[12],E=r[13],S=r[14],M=r[15];if(s[0].setComponents(l-o,f-u,g-p,M-x).normalize(),s[1].setComponents(l+o,f+u,g+p,M+x).normalize(),s[2].setComponents(l+a,f+h,g+_,M+E).normalize(),s[3].setComponents(l-a,f-h,g-_,M-E).normalize(),n)s[4].setComponents(c,d,m,S).normalize(),s[5].setComponents(l-c,f-d,g-m,M-S).normalize();else if(s[4].setComponents(l-c,f-d,g-m,M-S).normalize(),e===Di)s[5].setComponents(l+c,f+d,g+m,M+S).normalize();else if(e===Eo)s[5].setComponents(c,d,m,S).normalize();else throw new Error("THREE.Frustum.setFromProjectionMatrix(): Invalid coordinate system: "+e);return this}intersectsObject(t){if(t.boundingSphere!==void 0)t.boundingSphere===null&&t.computeBoundingSphere(),wr.copy(t.boundingSphere).applyMatrix4(t.matrixWorld);else{let e=t.geometry;e.boundingSphere===null&&e.computeBoundingSphere(),wr.copy(e.boundingSphere).applyMatrix4(t.matrixWorld)}return this.intersectsSphere(wr)}intersectsSprite(t){wr.center.set(0,0,0);let e=by.distanceTo(t.center);return wr.radius=.7071067811865476+e,wr.applyMatrix4(t.matrixWorld),this.intersectsSphere(wr)}intersectsSphere(t){let e=this.planes,n=t.center,s=-t.radius;for(let r=0;r<6;r++)if(e[r].distanceToPoint(n)<s)return!1;return!0}intersectsBox(t){let e=this.planes;for(let n=0;n<6;n++){let s=e[n];if(ec.x=s.normal.x>0?t.max.x:t.min.x,ec.y=s.normal.y>0?t.max.y:t.min.y,ec.z=s.normal.z>0?t.max.z:t.min.z,s.distanceToPoint(ec)<0)return!1}return!0}containsPoint(t){let e=this.planes;for(let n=0;n<6;n++)if(e[n].distanceToPoint(t)<0)return!1;return!0}clone(){return new this.constructor().copy(this)}},Qp=new qt,Tc=class i{constructor(){this.coordinateSystem=Di,this._frustums=[],this._count=0}setFromArrayCamera(t){let e=t.cameras,n=this._frustums;for(let s=0;s<e.length;s++){let r=e[s];Qp.multiplyMatrices(r.projectionMatrix,r.matrixWorldInverse),n[s]===void 0&&(n[s]=new er),n[s].setFromProjectionMatrix(Qp,r.coordinateSystem,r.reversedDepth)}return this._count=e.length,this}getFrustum(t){return this._frustums[t]}intersectsObject(t){let e=this._frustums;for(let n=0;n<this._count;n++)if(e[n].intersectsObject(t))return!0;return!1}intersectsSprite(t){let e=this._frustums;for(let n=0;n<this._count;n++)if(e[n].intersectsSprite(t))return!0;return!1}intersectsSphere(t){let e=this._frustums;for(let n=0;n<this._count;n++)if(e[n].intersectsSphere(t))return!0;return!1}intersectsBox(t){let e=this._frustums;for(let n=0;n<this._count;n++)if(e[n].intersectsBox(t))return!0;return!1}containsPoint(t){let e=this._frustums;for(let n=0;n<this._count;n++)if(e[n].containsPoint(t))return!0;return!1}copy(t){this.coordinateSystem=t.coordinateSystem;let e=this._frustums,n=t._frustums;for(let s=0;s<t._count;s++)e[s]===void 0&&(e[s]=new er),e[s].copy(n[s]);return this._count=t._count,this}clone(){return new i().copy(this)}};var pi=class extends Ni{constructor(t){super(),this.isLineBasicMaterial=!0,this.type="LineBasicMaterial",this.color=new Ht(16777215),this.map=null,this.linewidth=1,this.linecap="round",this.linejoin="round",this.fog=!0,this.setValues(t)}copy(t){return super.copy(t),this.color.copy(t.color),this.map=t.map,this.linewidth=t.linewidth,this.linecap=t.linecap,this.linejoin=t.linejoin,this.fog=t.fog,this}},Ec=new R,Ac=new R,tm=new qt,ba=new Is,nc=new fi,sd=new R,em=new R,Qn=class extends De{constructor(t=new pe,e=new pi){super(),this.isLine=!0,this.type="Line",this.geometry=t,this.material=e,this.morphTargetDictionary=void 0,this.morphTargetInfluences=void 0,this.updateMorphTargets()}copy(t,e){return super.copy(t,e),t.morphTargetInfluences!==void 0?this.morphTargetInfluences=t.morphTargetInfluences.slice():this.morphTargetInfluences=void 0,t.morphTargetDictionary!==void 0?this.morphTargetDictionary=Object.assign({},t.morphTargetDictionary):this.morphTargetDictionary=void 0,this.material=Array.isArray(t.material)?t.material.slice():t.material,this.geometry=t.geometry,this}computeLineDistances(){let t=this.geometry;if(t.index===null){let e=t.attributes.position,n=[0];for(let s=1,r=e.count;s<r;s++)Ec.fromBufferAttribute(e,s-1),Ac.fromBufferAttribute(e,s),n[s]=n[s-1],n[s]+=Ec.distanceTo(Ac);t.setAttribute("lineDistance",new se(n,1))}else jt("Line.computeLineDistances(): Computation only possible with non-indexed BufferGeometry.");return this}intersectsFrustum(t){return t.intersectsObject(this)}raycast(t,e){let n=this.geometry,s=this.matrixWorld,r=t.params.Line.threshold,o=n.drawRange;if(n.boundingSphere===null&&n.computeBoundingSphere(),nc.copy(n.boundingSphere),nc.applyMatrix4(s),nc.radius+=r,t.ray.intersectsSphere(nc)===!1)return;tm.copy(s).invert(),ba.copy(t.ray).applyMatrix4(tm);let a=r/((this.scale.x+this.scale.y+this.scale.z)/3),c=a*a,l=this.isLineSegments?2:1,u=n.index,d=n.attributes.position;if(u!==null){let f=Math.max(0,o.start),p=Math.min(u.count,o.start+o.count);for(let _=f,m=p-1;_<m;_+=l){let g=u.getX(_),x=u.getX(_+1),E=ic(this,t,ba,c,g,x,_);E&&e.push(E)}if(this.isLineLoop){let _=u.getX(p-1),m=u.getX(f),g=ic(this,t,ba,c,_,m,p-1);g&&e.push(g)}}else{let f=Math.max(0,o.start),p=Math.min(d.count,o.start+o.count);for(let _=f,m=p-1;_<m;_+=l){let g=ic(this,t,ba,c,_,_+1,_);g&&e.push(g)}if(this.isLineLoop){let _=ic(this,t,ba,c,p-1,f,p-1);_&&e.push(_)}}}updateMorphTargets(){let e=this.geometry.morphAttributes,n=Object.keys(e);if(n.length>0){let s=e[n[0]];if(s!==void 0){this.morphTargetInfluences=[],this.morphTargetDictionary={};for(let r=0,o=s.length;r<o;r++){let a=s[r].name||String(r);this.morphTargetInfluences.push(0),this.morphTargetDictionary[a]=r}}}}};function ic(i,t,e,n,s,r,o){let a=i.geometry.attributes.position;if(Ec.fromBufferAttribute(a,s),Ac.fromBufferAttribute(a,r),e.distanceSqToSegment(Ec,Ac,sd,em)>n)return;sd.applyMatrix4(i.matrixWorld);let l=t.ray.origin.distanceTo(sd);if(!(l<t.near||l>t.far))return{distance:l,point:em.clone().applyMatrix4(i.matrixWorld),index:o,face:null,faceIndex:null,barycoord:null,object:i}}var nm=new R,im=new R,Ds=class extends Qn{constructor(t,e){super(t,e),this.isLineSegments=!0,this.type="LineSegments"}computeLineDistances(){let t=this.geometry;if(t.index===null){let e=t.attributes.position,n=[];for(let s=0,r=e.count;s<r;s+=2)nm.fromBufferAttribute(e,s),im.fromBufferAttribute(e,s+1),n[s]=s===0?0:n[s-1],n[s+1]=n[s]+nm.distanceTo(im);t.setAttribute("lineDistance",new se(n,1))}else jt("LineSegments.computeLineDistances(): Computation only possible with non-indexed BufferGeometry.");return this}};var Ns=class extends Ni{constructor(t){super(),this.isPointsMaterial=!0,this.type="PointsMaterial",this.color=new Ht(16777215),this.map=null,this.alphaMap=null,this.size=1,this.sizeAttenuation=!0,this.fog=!0,this.setValues(t)}copy(t){return super.copy(t),this.color.copy(t.color),this.map=t.map,this.alphaMap=t.alphaMap,this.size=t.size,this.sizeAttenuation=t.sizeAttenuation,this.fog=t.fog,this}},sm=new qt,dd=new Is,sc=new fi,rc=new R,nr=class extends De{constructor(t=new pe,e=new Ns){super(),this.isPoints=!0,this.type="Points",this.geometry=t,this.material=e,this.morphTargetDictionary=void 0,this.morphTargetInfluences=void 0,this.updateMorphTargets()}copy(t,e){return super.copy(t,e),t.morphTargetInfluences!==void 0?this.morphTargetInfluences=t.morphTargetInfluences.slice():this.morphTargetInfluences=void 0,t.morphTargetDictionary!==void 0?this.morphTargetDictionary=Object.assign({},t.morphTargetDictionary):this.morphTargetDictionary=void 0,this.material=Array.isArray(t.material)?t.material.slice():t.material,this.geometry=t.geometry,this}intersectsFrustum(t){return t.intersectsObject(this)}raycast(t,e){let n=this.geometry,s=this.matrixWorld,r=t.params.Points.threshold,o=n.drawRange;if(n.boundingSphere===null&&n.computeBoundingSphere(),sc.copy(n.boundingSphere),sc.applyMatrix4(s),sc.radius+=r,t.ray.intersectsSphere(sc)===!1)return;sm.copy(s).invert(),dd.copy(t.ray).applyMatrix4(sm);let a=r/((this.scale.x+this.scale.y+this.scale.z)/3),c=a*a,l=n.index,h=n.attributes.position;if(l!==null){let d=Math.max(0,o.start),f=Math.min(l.count,o.start+o.count);for(let p=d,_=f;p<_;p++){let m=l.getX(p);rc.fromBufferAttribute(h,m),rm(rc,m,c,s,t,e,this)}}else{let d=Math.max(0,o.start),f=Math.min(h.count,o.start+o.count);for(let p=d,_=f;p<_;p++)rc.fromBufferAttribute(h,p),rm(rc,p,c,s,t,e,this)}}updateMorphTargets(){let e=this.geometry.morphAttributes,n=Object.keys(e);if(n.length>0){let s=e[n[0]];if(s!==void 0){this.morphTargetInfluences=[],this.morphTargetDictionary={};for(let r=0,o=s.length;r<o;r++){let a=s[r].name||String(r);this.morphTargetInfluences.push(0),this.morphTargetDictionary[a]=r}}}}};function rm(i,t,e,n,s,r,o){let a=dd.distanceSqToPoint(i);if(a<e){let c=new R;dd.closestPointToPoint(i,c),c.applyMatrix4(n);let l=s.ray.origin.distanceTo(c);if(l<s.near||l>s.far)return;r.push({distance:l,distanceToRay:Math.sqrt(a),point:c,index:t,face:null,faceIndex:null,barycoord:null,object:o})}}var ka=class extends Wn{constructor(t=[],e=Dr,n,s,r,o,a,c,l,u){super(t,e,n,s,r,o,a,c,l,u),this.isCubeTexture=!0,this.flipY=!1}get images(){return this.image}set images(t){this.image=t}},za=class extends Wn{constructor(t,e,n,s,r,o,a,c,l){super(t,e,n,s,r,o,a,c,l),this.isCanvasTexture=!0,this.needsUpdate=!0}};var Us=class extends Wn{constructor(t,e,n=$i,s,r,o,a=zn,c=zn,l,u=Ps,h=1){if(u!==Ps&&u!==Bs)throw new Error("THREE.DepthTexture: format must be either THREE.DepthFormat or THREE.DepthStencilFormat");let d={width:t,height:e,depth:h};super(d,s,r,o,a,c,u,n,l),this.isDepthTexture=!0,this.flipY=!1,this.generateMipmaps=!1,this.compareFunction=null}copy(t){return super.copy(t),this.source=new Co(Object.assign({},t.image)),this.compareFunction=t.compareFunction,this}toJSON(t){let e=super.toJSON(t);return e.compareFunction=this.compareFunction,e}},Va=class extends Us{constructor(t,e=$i,n=Dr,s,r,o=zn,a=zn,c,l=Ps){let u={width:t,height:t,depth:1},h=[u,u,u,u,u,u];super(t,t,e,n,s,r,o,a,c,l),this.image=h,this.isCubeDepthTexture=!0,this.isCubeTexture=!0}get images(){return this.image}set images(t){this.image=t}},Ga=class extends Wn{constructor(t=null){super(),this.sourceTexture=t,this.isExternalTexture=!0}copy(t){return super.copy(t),this.sourceTexture=t.sourceTexture,this}},Ye=class i extends pe{constructor(t=1,e=1,n=1,s=1,r=1,o=1){super(),this.type="BoxGeometry",this.parameters={width:t,height:e,depth:n,widthSegments:s,heightSegments:r,depthSegments:o};let a=this;s=Math.floor(s),r=Math.floor(r),o=Math.floor(o);let c=[],l=[],u=[],h=[],d=0,f=0;p("z","y","x",-1,-1,n,e,t,o,r,0),p("z","y","x",1,-1,n,e,-t,o,r,1),p("x","z","y",1,1,t,n,e,s,o,2),p("x","z","y",1,-1,t,n,-e,s,o,3),p("x","y","z",1,-1,t,e,n,s,r,4),p("x","y","z",-1,-1,t,e,-n,s,r,5),this.setIndex(c),this.setAttribute("position",new se(l,3)),this.setAttribute("normal",new se(u,3)),this.setAttribute("uv",new se(h,2));function p(_,m,g,x,E,S,M,T,y,b,U){let I=S/y,L=M/b,B=S/2,W=M/2,P=T/2,k=y+1,Y=b+1,G=0,at=0,$=new R;for(let Q=0;Q<Y;Q++){let it=Q*L-W;for(let ut=0;ut<k;ut++){let dt=ut*I-B;$[_]=dt*x,$[m]=it*E,$[g]=P,l.push($.x,$.y,$.z),$[_]=0,$[m]=0,$[g]=T>0?1:-1,u.push($.x,$.y,$.z),h.push(ut/y),h.push(1-Q/b),G+=1}}for(let Q=0;Q<b;Q++)for(let it=0;it<y;it++){let ut=d+it+k*Q,dt=d+it+k*(Q+1),tt=d+(it+1)+k*(Q+1),mt=d+(it+1)+k*Q;c.push(ut,dt,mt),c.push(dt,tt,mt),at+=6}a.addGroup(f,at,U),f+=at,d+=G}}copy(t){return super.copy(t),this.parameters=Object.assign({},t.parameters),this}static fromJSON(t){return new i(t.width,t.height,t.depth,t.widthSegments,t.heightSegments,t.depthSegments)}},Ha=class i extends pe{constructor(t=1,e=1,n=4,s=8,r=1){super(),this.type="CapsuleGeometry",this.parameters={radius:t,height:e,capSegments:n,radialSegments:s,heightSegments:r},e=Math.max(0,e),n=Math.max(1,Math.floor(n)),s=Math.max(3,Math.floor(s)),r=Math.max(1,Math.floor(r));let o=[],a=[],c=[],l=[],u=e/2,h=Math.PI/2*t,d=e,f=2*h+d,p=n*2+r,_=s+1,m=new R,g=new R;for(let x=0;x<=p;x++){let E=0,S=0,M=0,T=0;if(x<=n){let U=x/n,I=U*Math.PI/2;S=-u-t*Math.cos(I),M=t*Math.sin(I),T=-t*Math.cos(I),E=U*h}else if(x<=n+r){let U=(x-n)/r;S=-u+U*e,M=t,T=0,E=h+U*d}else{let U=(x-n-r)/n,I=U*Math.PI/2;S=u+t*Math.sin(I),M=t*Math.cos(I),T=t*Math.sin(I),E=h+d+U*h}let y=Math.max(0,Math.min(1,E/f)),b=0;x===0?b=.5/s:x===p&&(b=-.5/s);for(let U=0;U<=s;U++){let I=U/s,L=I*Math.PI*2,B=Math.sin(L),W=Math.cos(L);g.x=-M*W,g.y=S,g.z=M*B,a.push(g.x,g.y,g.z),m.set(-M*W,T,M*B),m.normalize(),c.push(m.x,m.y,m.z),l.push(I+b,y)}if(x>0){let U=(x-1)*_;for(let I=0;I<s;I++){let L=U+I,B=U+I+1,W=x*_+I,P=x*_+I+1;o.push(L,B,W),o.push(B,P,W)}}}this.setIndex(o),this.setAttribute("position",new se(a,3)),this.setAttribute("normal",new se(c,3)),this.setAttribute("uv",new se(l,2))}copy(t){return super.copy(t),this.parameters=Object.assign({},t.parameters),this}static fromJSON(t){return new i(t.radius,t.height,t.capSegments,t.radialSegments,t.heightSegments)}};var rn=class i extends pe{constructor(t=1,e=1,n=1,s=32,r=1,o=!1,a=0,c=Math.PI*2){super(),this.type="CylinderGeometry",this.parameters={radiusTop:t,radiusBottom:e,height:n,radialSegments:s,heightSegments:r,openEnded:o,thetaStart:a,thetaLength:c};let l=this;s=Math.floor(s),r=Math.floor(r);let u=[],h=[],d=[],f=[],p=0,_=[],m=n/2,g=0;x(),o===!1&&(t>0&&E(!0),e>0&&E(!1)),this.setIndex(u),this.setAttribute("position",new se(h,3)),this.setAttribute("normal",new se(d,3)),this.setAttribute("uv",new se(f,2));function x(){let S=new R,M=new R,T=0,y=(e-t)/n;for(let b=0;b<=r;b++){let U=[],I=b/r,L=I*(e-t)+t;for(let B=0;B<=s;B++){let W=B/s,P=W*c+a,k=Math.sin(P),Y=Math.cos(P);M.x=L*k,M.y=-I*n+m,M.z=L*Y,h.push(M.x,M.y,M.z),S.set(k,y,Y).normalize(),d.push(S.x,S.y,S.z),f.push(W,1-I),U.push(p++)}_.push(U)}for(let b=0;b<s;b++)for(let U=0;U<r;U++){let I=_[U][b],L=_[U+1][b],B=_[U+1][b+1],W=_[U][b+1];(t>0||U!==0)&&(u.push(I,L,W),T+=3),(e>0||U!==r-1)&&(u.push(L,B,W),T+=3)}l.addGroup(g,T,0),g+=T}function E(S){let M=p,T=new kt,y=new R,b=0,U=S===!0?t:e,I=S===!0?1:-1;for(let B=1;B<=s;B++)h.push(0,m*I,0),d.push(0,I,0),f.push(.5,.5),p++;let L=p;for(let B=0;B<=s;B++){let P=B/s*c+a,k=Math.cos(P),Y=Math.sin(P);y.x=U*Y,y.y=m*I,y.z=U*k,h.push(y.x,y.y,y.z),d.push(0,I,0),T.x=k*.5+.5,T.y=Y*.5*I+.5,f.push(T.x,T.y),p++}for(let B=0;B<s;B++){let W=M+B,P=L+B;S===!0?u.push(P,P+1,W):u.push(P+1,P,W),b+=3}l.addGroup(g,b,S===!0?1:2),g+=b}}copy(t){return super.copy(t),this.parameters=Object.assign({},t.parameters),this}static fromJSON(t){return new i(t.radiusTop,t.radiusBottom,t.height,t.radialSegments,t.heightSegments,t.openEnded,t.thetaStart,t.thetaLength)}},Do=class i extends rn{constructor(t=1,e=1,n=32,s=1,r=!1,o=0,a=Math.PI*2){super(0,t,e,n,s,r,o,a),this.type="ConeGeometry",this.parameters={radius:t,height:e,radialSegments:n,heightSegments:s,openEnded:r,thetaStart:o,thetaLength:a}}static fromJSON(t){return new i(t.radius,t.height,t.radialSegments,t.heightSegments,t.openEnded,t.thetaStart,t.thetaLength)}},Cc=class i extends pe{constructor(t=[],e=[],n=1,s=0){super(),this.type="PolyhedronGeometry",this.parameters={vertices:t,indices:e,radius:n,detail:s};let r=[],o=[];a(s),l(n),u(),this.setAttribute("position",new se(r,3)),this.setAttribute("normal",new se(r.slice(),3)),this.setAttribute("uv",new se(o,2)),s===0?this.computeVertexNormals():this.normalizeNormals();function a(x){let E=new R,S=new R,M=new R;for(let T=0;T<e.length;T+=3)f(e[T+0],E),f(e[T+1],S),f(e[T+2],M),c(E,S,M,x)}function c(x,E,S,M){let T=M+1,y=[];for(let b=0;b<=T;b++){y[b]=[];let U=x.clone().lerp(S,b/T),I=E.clone().lerp(S,b/T),L=T-b;for(let B=0;B<=L;B++)B===0&&b===T?y[b][B]=U:y[b][B]=U.clone().lerp(I,B/L)}for(let b=0;b<T;b++)for(let U=0;U<2*(T-b)-1;U++){let I=Math.floor(U/2);U%2===0?(d(y[b][I+1]),d(y[b+1][I]),d(y[b][I])):(d(y[b][I+1]),d(y[b+1][I+1]),d(y[b+1][I]))}}function l(x){let E=new R;for(let S=0;S<r.length;S+=3)E.x=r[S+0],E.y=r[S+1],E.z=r[S+2],E.normalize().multiplyScalar(x),r[S+0]=E.x,r[S+1]=E.y,r[S+2]=E.z}function u(){let x=new R;for(let E=0;E<r.length;E+=3){x.x=r[E+0],x.y=r[E+1],x.z=r[E+2];let S=m(x)/2/Math.PI+.5,M=g(x)/Math.PI+.5;o.push(S,1-M)}p(),h()}function h(){for(let x=0;x<o.length;x+=6){let E=o[x+0],S=o[x+2],M=o[x+4],T=Math.max(E,S,M),y=Math.min(E,S,M);T>.9&&y<.1&&(E<.2&&(o[x+0]+=1),S<.2&&(o[x+2]+=1),M<.2&&(o[x+4]+=1))}}function d(x){r.push(x.x,x.y,x.z)}function f(x,E){let S=x*3;E.x=t[S+0],E.y=t[S+1],E.z=t[S+2]}function p(){let x=new R,E=new R,S=new R,M=new R,T=new kt,y=new kt,b=new kt;for(let U=0,I=0;U<r.length;U+=9,I+=6){x.set(r[U+0],r[U+1],r[U+2]),E.set(r[U+3],r[U+4],r[U+5]),S.set(r[U+6],r[U+7],r[U+8]),T.set(o[I+0],o[I+1]),y.set(o[I+2],o[I+3]),b.set(o[I+4],o[I+5]),M.copy(x).add(E).add(S).divideScalar(3);let L=m(M);_(T,I+0,x,L),_(y,I+2,E,L),_(b,I+4,S,L)}}function _(x,E,S,M){M<0&&x.x===1&&(o[E]=x.x-1),S.x===0&&S.z===0&&(o[E]=M/2/Math.PI+.5)}function m(x){return Math.atan2(x.z,-x.x)}function g(x){return Math.atan2(-x.y,Math.sqrt(x.x*x.x+x.z*x.z))}}copy(t){return super.copy(t),this.parameters=Object.assign({},t.parameters),this}static fromJSON(t){return new i(t.vertices,t.indices,t.radius,t.detail)}};var ir=class i extends Cc{constructor(t=1,e=0){let n=[1,0,0,-1,0,0,0,1,0,0,-1,0,0,0,1,0,0,-1],s=[0,2,4,0,4,3,0,3,5,0,5,2,1,2,5,1,5,3,1,3,4,1,4,2];super(n,s,t,e),this.type="OctahedronGeometry",this.parameters={radius:t,detail:e}}static fromJSON(t){return new i(t.radius,t.detail)}},Ui=class i extends pe{constructor(t=1,e=1,n=1,s=1){super(),this.type="PlaneGeometry",this.parameters={width:t,height:e,widthSegments:n,heightSegments:s};let r=t/2,o=e/2,a=Math.floor(n),c=Math.floor(s),l=a+1,u=c+1,h=t/a,d=e/c,f=[],p=[],_=[],m=[];for(let g=0;g<u;g++){let x=g*d-o;for(let E=0;E<l;E++){let S=E*h-r;p.push(S,-x,0),_.push(0,0,1),m.push(E/a),m.push(1-g/c)}}for(let g=0;g<c;g++)for(let x=0;x<a;x++){let E=x+l*g,S=x+l*(g+1),M=x+1+l*(g+1),T=x+1+l*g;f.push(E,S,T),f.push(S,M,T)}this.setIndex(f),this.setAttribute("position",new se(p,3)),this.setAttribute("normal",new se(_,3)),this.setAttribute("uv",new se(m,2))}copy(t){return super.copy(t),this.parameters=Object.assign({},t.parameters),this}static fromJSON(t){return new i(t.width,t.height,t.widthSegments,t.heightSegments)}};var hi=class i extends pe{constructor(t=1,e=32,n=16,s=0,r=Math.PI*2,o=0,a=Math.PI){super(),this.type="SphereGeometry",this.parameters={radius:t,widthSegments:e,heightSegments:n,phiStart:s,phiLength:r,thetaStart:o,thetaLength:a},e=Math.max(3,Math.floor(e)),n=Math.max(2,Math.floor(n));let c=Math.min(o+a,Math.PI),l=0,u=[],h=new R,d=new R,f=[],p=[],_=[],m=[];for(let g=0;g<=n;g++){let x=[],E=g/n,S=o+E*a,M=t*Math.cos(S),T=Math.sqrt(t*t-M*M),y=0;g===0&&o===0?y=.5/e:g===n&&c===Math.PI&&(y=-.5/e);for(let b=0;b<=e;b++){let U=b/e,I=s+U*r;h.x=-T*Math.cos(I),h.y=M,h.z=T*Math.sin(I),p.push(h.x,h.y,h.z),d.copy(h).normalize(),_.push(d.x,d.y,d.z),m.push(U+y,1-E),x.push(l++)}u.push(x)}for(let g=0;g<n;g++)for(let x=0;x<e;x++){let E=u[g][x+1],S=u[g][x],M=u[g+1][x],T=u[g+1][x+1];(g!==0||o>0)&&f.push(E,S,T),(g!==n-1||c<Math.PI)&&f.push(S,M,T)}this.setIndex(f),this.setAttribute("position",new se(p,3)),this.setAttribute("normal",new se(_,3)),this.setAttribute("uv",new se(m,2))}copy(t){return super.copy(t),this.parameters=Object.assign({},t.parameters),this}static fromJSON(t){return new i(t.radius,t.widthSegments,t.heightSegments,t.phiStart,t.phiLength,t.thetaStart,t.thetaLength)}};var Os=class i extends pe{constructor(t=1,e=.4,n=12,s=48,r=Math.PI*2,o=0,a=Math.PI*2){super(),this.type="TorusGeometry",this.parameters={radius:t,tube:e,radialSegments:n,tubularSegments:s,arc:r,thetaStart:o,thetaLength:a},n=Math.floor(n),s=Math.floor(s);let c=[],l=[],u=[],h=[],d=new R,f=new R,p=new R;for(let _=0;_<=n;_++){let m=o+_/n*a;for(let g=0;g<=s;g++){let x=g/s*r;f.x=(t+e*Math.cos(m))*Math.cos(x),f.y=(t+e*Math.cos(m))*Math.sin(x),f.z=e*Math.sin(m),l.push(f.x,f.y,f.z),d.x=t*Math.cos(x),d.y=t*Math.sin(x),p.subVectors(f,d).normalize(),u.push(p.x,p.y,p.z),h.push(g/s),h.push(_/n)}}for(let _=1;_<=n;_++)for(let m=1;m<=s;m++){let g=(s+1)*_+m-1,x=(s+1)*(_-1)+m-1,E=(s+1)*(_-1)+m,S=(s+1)*_+m;c.push(g,x,S),c.push(x,E,S)}this.setIndex(c),this.setAttribute("position",new se(l,3)),this.setAttribute("normal",new se(u,3)),this.setAttribute("uv",new se(h,2))}copy(t){return super.copy(t),this.parameters=Object.assign({},t.parameters),this}static fromJSON(t){return new i(t.radius,t.tube,t.radialSegments,t.tubularSegments,t.arc,t.thetaStart,t.thetaLength)}};var Wa=class extends pe{constructor(t=null){if(super(),this.type="WireframeGeometry",this.parameters={geometry:t},t!==null){let e=[],n=new Set,s=new R,r=new R;if(t.index!==null){let o=t.attributes.position,a=t.index,c=t.groups;c.length===0&&(c=[{start:0,count:a.count,materialIndex:0}]);for(let l=0,u=c.length;l<u;++l){let h=c[l],d=h.start,f=h.count;for(let p=d,_=d+f;p<_;p+=3)for(let m=0;m<3;m++){let g=a.getX(p+m),x=a.getX(p+(m+1)%3);s.fromBufferAttribute(o,g),r.fromBufferAttribute(o,x),om(s,r,n)===!0&&(e.push(s.x,s.y,s.z),e.push(r.x,r.y,r.z))}}}else{let o=t.attributes.position;for(let a=0,c=o.count/3;a<c;a++)for(let l=0;l<3;l++){let u=3*a+l,h=3*a+(l+1)%3;s.fromBufferAttribute(o,u),r.fromBufferAttribute(o,h),om(s,r,n)===!0&&(e.push(s.x,s.y,s.z),e.push(r.x,r.y,r.z))}}this.setAttribute("position",new se(e,3))}}copy(t){return super.copy(t),this.parameters=Object.assign({},t.parameters),this}};function om(i,t,e){let n=`${i.x},${i.y},${i.z}-${t.x},${t.y},${t.z}`,s=`${t.x},${t.y},${t.z}-${i.x},${i.y},${i.z}`;return e.has(n)===!0||e.has(s)===!0?!1:(e.add(n),e.add(s),!0)}function Ur(i){let t={};for(let e in i){t[e]={};for(let n in i[e]){let s=i[e][n];if(am(s))s.isRenderTargetTexture?(jt("UniformsUtils: Textures of render targets cannot be cloned via cloneUniforms() or mergeUniforms()."),t[e][n]=null):t[e][n]=s.clone();else if(Array.isArray(s))if(am(s[0])){let r=[];for(let o=0,a=s.length;o<a;o++)r[o]=s[o].clone();t[e][n]=r}else t[e][n]=s.slice();else t[e][n]=s}}return t}function ti(i){let t={};for(let e=0;e<i.length;e++){let n=Ur(i[e]);for(let s in n)t[s]=n[s]}return t}function am(i){return i&&(i.isColor||i.isMatrix3||i.isMatrix4||i.isVector2||i.isVector3||i.isVector4||i.isTexture||i.isQuaternion)}function wy(i){let t=[];for(let e=0;e<i.length;e++)t.push(i[e].clone());return t}function $d(i){let t=i.getRenderTarget();return t===null?i.outputColorSpace:t.isXRRenderTarget===!0?t.texture.colorSpace:Se.workingColorSpace}var dl={clone:Ur,merge:ti},Ty=`void main() {
+	gl_Position = projectionMatrix * modelViewMatrix * vec4( position, 1.0 );
+}`,Ey=`void main() {
+	gl_FragColor = vec4( 1.0, 0.0, 0.0, 1.0 );
+}`,mi=class extends Ni{constructor(t){super(),this.isShaderMaterial=!0,this.type="ShaderMaterial",this.defines={},this.uniforms={},this.uniformsGroups=[],this.vertexShader=Ty,this.fragmentShader=Ey,this.linewidth=1,this.wireframe=!1,this.wireframeLinewidth=1,this.fog=!1,this.lights=!1,this.clipping=!1,this.forceSinglePass=!0,this.extensions={clipCullDistance:!1,multiDraw:!1},this.defaultAttributeValues={color:[1,1,1],uv:[0,0],uv1:[0,0]},this.index0AttributeName=void 0,this.uniformsNeedUpdate=!1,this.glslVersion=null,t!==void 0&&this.setValues(t)}copy(t){return super.copy(t),this.fragmentShader=t.fragmentShader,this.vertexShader=t.vertexShader,this.uniforms=Ur(t.uniforms),this.uniformsGroups=wy(t.uniformsGroups),this.defines=Object.assign({},t.defines),this.wireframe=t.wireframe,this.wireframeLinewidth=t.wireframeLinewidth,this.fog=t.fog,this.lights=t.lights,this.clipping=t.clipping,this.extensions=Object.assign({},t.extensions),this.glslVersion=t.glslVersion,this.defaultAttributeValues=Object.assign({},t.defaultAttributeValues),this.index0AttributeName=t.index0AttributeName,this.uniformsNeedUpdate=t.uniformsNeedUpdate,this}toJSON(t){let e=super.toJSON(t);e.glslVersion=this.glslVersion,e.uniforms={};for(let s in this.uniforms){let o=this.uniforms[s].value;o&&o.isTexture?e.uniforms[s]={type:"t",value:o.toJSON(t).uuid}:o&&o.isColor?e.uniforms[s]={type:"c",value:o.getHex()}:o&&o.isVector2?e.uniforms[s]={type:"v2",value:o.toArray()}:o&&o.isVector3?e.uniforms[s]={type:"v3",value:o.toArray()}:o&&o.isVector4?e.uniforms[s]={type:"v4",value:o.toArray()}:o&&o.isMatrix3?e.uniforms[s]={type:"m3",value:o.toArray()}:o&&o.isMatrix4?e.uniforms[s]={type:"m4",value:o.toArray()}:e.uniforms[s]={value:o}}Object.keys(this.defines).length>0&&(e.defines=this.defines),e.vertexShader=this.vertexShader,e.fragmentShader=this.fragmentShader,e.lights=this.lights,e.clipping=this.clipping;let n={};for(let s in this.extensions)this.extensions[s]===!0&&(n[s]=!0);return Object.keys(n).length>0&&(e.extensions=n),e}fromJSON(t,e){if(super.fromJSON(t,e),t.uniforms!==void 0)for(let n in t.uniforms){let s=t.uniforms[n];switch(this.uniforms[n]={},s.type){case"t":this.uniforms[n].value=e[s.value]||null;break;case"c":this.uniforms[n].value=new Ht().setHex(s.value);break;case"v2":this.uniforms[n].value=new kt().fromArray(s.value);break;case"v3":this.uniforms[n].value=new R().fromArray(s.value);break;case"v4":this.uniforms[n].value=new Le().fromArray(s.value);break;case"m3":this.uniforms[n].value=new re().fromArray(s.value);break;case"m4":this.uniforms[n].value=new qt().fromArray(s.value);break;default:this.uniforms[n].value=s.value}}if(t.defines!==void 0&&(this.defines=t.defines),t.vertexShader!==void 0&&(this.vertexShader=t.vertexShader),t.fragmentShader!==void 0&&(this.fragmentShader=t.fragmentShader),t.glslVersion!==void 0&&(this.glslVersion=t.glslVersion),t.extensions!==void 0)for(let n in t.extensions)this.extensions[n]=t.extensions[n];return t.lights!==void 0&&(this.lights=t.lights),t.clipping!==void 0&&(this.clipping=t.clipping),this}},Rc=class extends mi{constructor(t){super(t),this.isRawShaderMaterial=!0,this.type="RawShaderMaterial"}},Xa=class extends Ni{constructor(t){super(),this.isMeshStandardMaterial=!0,this.type="MeshStandardMaterial",this.defines={STANDARD:""},this.color=new Ht(16777215),this.roughness=1,this.metalness=0,this.map=null,this.lightMap=null,this.lightMapIntensity=1,this.aoMap=null,this.aoMapIntensity=1,this.emissive=new Ht(0),this.emissiveIntensity=1,this.emissiveMap=null,this.bumpMap=null,this.bumpScale=1,this.normalMap=null,this.normalMapType=hl,this.normalScale=new kt(1,1),this.displacementMap=null,this.displacementScale=1,this.displacementBias=0,this.roughnessMap=null,this.metalnessMap=null,this.alphaMap=null,this.envMap=null,this.envMapRotation=new Kn,this.envMapIntensity=1,this.wireframe=!1,this.wireframeLinewidth=1,this.wireframeLinecap="round",this.wireframeLinejoin="round",this.flatShading=!1,this.fog=!0,this.setValues(t)}copy(t){return super.copy(t),this.defines={STANDARD:""},this.color.copy(t.color),this.roughness=t.roughness,this.metalness=t.metalness,this.map=t.map,this.lightMap=t.lightMap,this.lightMapIntensity=t.lightMapIntensity,this.aoMap=t.aoMap,this.aoMapIntensity=t.aoMapIntensity,this.emissive.copy(t.emissive),this.emissiveMap=t.emissiveMap,this.emissiveIntensity=t.emissiveIntensity,this.bumpMap=t.bumpMap,this.bumpScale=t.bumpScale,this.normalMap=t.normalMap,this.normalMapType=t.normalMapType,this.normalScale.copy(t.normalScale),this.displacementMap=t.displacementMap,this.displacementScale=t.displacementScale,this.displacementBias=t.displacementBias,this.roughnessMap=t.roughnessMap,this.metalnessMap=t.metalnessMap,this.alphaMap=t.alphaMap,this.envMap=t.envMap,this.envMapRotation.copy(t.envMapRotation),this.envMapIntensity=t.envMapIntensity,this.wireframe=t.wireframe,this.wireframeLinewidth=t.wireframeLinewidth,this.wireframeLinecap=t.wireframeLinecap,this.wireframeLinejoin=t.wireframeLinejoin,this.flatShading=t.flatShading,this.fog=t.fog,this}};var sr=class extends Ni{constructor(t){super(),this.isMeshLambertMaterial=!0,this.type="MeshLambertMaterial",this.color=new Ht(16777215),this.map=null,this.lightMap=null,this.lightMapIntensity=1,this.aoMap=null,this.aoMapIntensity=1,this.emissive=new Ht(0),this.emissiveIntensity=1,this.emissiveMap=null,this.bumpMap=null,this.bumpScale=1,this.normalMap=null,this.normalMapType=hl,this.normalScale=new kt(1,1),this.displacementMap=null,this.displacementScale=1,this.displacementBias=0,this.specularMap=null,this.alphaMap=null,this.envMap=null,this.envMapRotation=new Kn,this.combine=Hc,this.reflectivity=1,this.envMapIntensity=1,this.refractionRatio=.98,this.wireframe=!1,this.wireframeLinewidth=1,this.wireframeLinecap="round",this.wireframeLinejoin="round",this.flatShading=!1,this.fog=!0,this.setValues(t)}copy(t){return super.copy(t),this.color.copy(t.color),this.map=t.map,this.lightMap=t.lightMap,this.lightMapIntensity=t.lightMapIntensity,this.aoMap=t.aoMap,this.aoMapIntensity=t.aoMapIntensity,this.emissive.copy(t.emissive),this.emissiveMap=t.emissiveMap,this.emissiveIntensity=t.emissiveIntensity,this.bumpMap=t.bumpMap,this.bumpScale=t.bumpScale,this.normalMap=t.normalMap,this.normalMapType=t.normalMapType,this.normalScale.copy(t.normalScale),this.displacementMap=t.displacementMap,this.displacementScale=t.displacementScale,this.displacementBias=t.displacementBias,this.specularMap=t.specularMap,this.alphaMap=t.alphaMap,this.envMap=t.envMap,this.envMapRotation.copy(t.envMapRotation),this.combine=t.combine,this.reflectivity=t.reflectivity,this.envMapIntensity=t.envMapIntensity,this.refractionRatio=t.refractionRatio,this.wireframe=t.wireframe,this.wireframeLinewidth=t.wireframeLinewidth,this.wireframeLinecap=t.wireframeLinecap,this.wireframeLinejoin=t.wireframeLinejoin,this.flatShading=t.flatShading,this.fog=t.fog,this}},Pc=class extends Ni{constructor(t){super(),this.isMeshDepthMaterial=!0,this.type="MeshDepthMaterial",this.depthPacking=Gm,this.map=null,this.alphaMap=null,this.displacementMap=null,this.displacementScale=1,this.displacementBias=0,this.wireframe=!1,this.wireframeLinewidth=1,this.setValues(t)}copy(t){return super.copy(t),this.depthPacking=t.depthPacking,this.map=t.map,this.alphaMap=t.alphaMap,this.displacementMap=t.displacementMap,this.displacementScale=t.displacementScale,this.displacementBias=t.displacementBias,this.wireframe=t.wireframe,this.wireframeLinewidth=t.wireframeLinewidth,this}},Ic=class extends Ni{constructor(t){super(),this.isMeshDistanceMaterial=!0,this.type="MeshDistanceMaterial",this.map=null,this.alphaMap=null,this.displacementMap=null,this.displacementScale=1,this.displacementBias=0,this.setValues(t)}copy(t){return super.copy(t),this.map=t.map,this.alphaMap=t.alphaMap,this.displacementMap=t.displacementMap,this.displacementScale=t.displacementScale,this.displacementBias=t.displacementBias,this}};function xo(i,t){return!i||i.constructor===t?i:typeof t.BYTES_PER_ELEMENT=="number"?new t(i):Array.prototype.slice.call(i)}function oc(i){return i!==void 0&&i.inTangents!==void 0&&i.outTangents!==void 0}var rr=class{constructor(t,e,n,s){this.parameterPositions=t,this._cachedIndex=0,this.resultBuffer=s!==void 0?s:new e.constructor(n),this.sampleValues=e,this.valueSize=n,this.settings=null,this.DefaultSettings_={}}evaluate(t){let e=this.parameterPositions,n=this._cachedIndex,s=e[n],r=e[n-1];n:{t:{let o;e:{i:if(!(t<s)){for(let a=n+2;;){if(s===void 0){if(t<r)break i;return n=e.length,this._cachedIndex=n,this.copySampleValue_(n-1)}if(n===a)break;if(r=s,s=e[++n],t<s)break t}o=e.length;break e}if(!(t>=r)){let a=e[1];t<a&&(n=2,r=a);for(let c=n-2;;){if(r===void 0)return this._cachedIndex=0,this.copySampleValue_(0);if(n===c)break;if(s=r,r=e[--n-1],t>=r)break t}o=n,n=0;break e}break n}for(;n<o;){let a=n+o>>>1;t<e[a]?o=a:n=a+1}if(s=e[n],r=e[n-1],r===void 0)return this._cachedIndex=0,this.copySampleValue_(0);if(s===void 0)return n=e.length,this._cachedIndex=n,this.copySampleValue_(n-1)}this._cachedIndex=n,this.intervalChanged_(n,r,s)}return this.interpolate_(n,r,t,s)}getSettings_(){return this.settings||this.DefaultSettings_}copySampleValue_(t){let e=this.resultBuffer,n=this.sampleValues,s=this.valueSize,r=t*s;for(let o=0;o!==s;++o)e[o]=n[r+o];return e}interpolate_(){throw new Error("THREE.Interpolant: Call to abstract method.")}intervalChanged_(){}},Lc=class extends rr{constructor(t,e,n,s){super(t,e,n,s),this._weightPrev=-0,this._offsetPrev=-0,this._weightNext=-0,this._offsetNext=-0,this.DefaultSettings_={endingStart:cd,endingEnd:cd}}intervalChanged_(t,e,n){let s=this.parameterPositions,r=t-2,o=t+1,a=s[r],c=s[o];if(a===void 0)switch(this.getSettings_().endingStart){case hd:r=t,a=2*e-n;break;case ud:r=s.length-2,a=e+s[r]-s[r+1];break;default:r=t,a=n}if(c===void 0)switch(this.getSettings_().endingEnd){case hd:o=t,c=2*n-e;break;case ud:o=1,c=n+s[1]-s[0];break;default:o=t-1,c=e}let l=(n-e)*.5,u=this.valueSize;this._weightPrev=l/(e-a),this._weightNext=l/(c-n),this._offsetPrev=r*u,this._offsetNext=o*u}interpolate_(t,e,n,s){let r=this.resultBuffer,o=this.sampleValues,a=this.valueSize,c=t*a,l=c-a,u=this._offsetPrev,h=this._offsetNext,d=this._weightPrev,f=this._weightNext,p=(n-e)/(s-e),_=p*p,m=_*p,g=-d*m+2*d*_-d*p,x=(1+d)*m+(-1.5-2*d)*_+(-.5+d)*p+1,E=(-1-f)*m+(1.5+f)*_+.5*p,S=f*m-f*_;for(let M=0;M!==a;++M)r[M]=g*o[u+M]+x*o[l+M]+E*o[c+M]+S*o[h+M];return r}},Dc=class extends rr{constructor(t,e,n,s){super(t,e,n,s)}interpolate_(t,e,n,s){let r=this.resultBuffer,o=this.sampleValues,a=this.valueSize,c=t*a,l=c-a,u=(n-e)/(s-e),h=1-u;for(let d=0;d!==a;++d)r[d]=o[l+d]*h+o[c+d]*u;return r}},Nc=class extends rr{constructor(t,e,n,s){super(t,e,n,s)}interpolate_(t){return this.copySampleValue_(t-1)}},Uc=class extends rr{interpolate_(t,e,n,s){let r=this.resultBuffer,o=this.sampleValues,a=this.valueSize,c=t*a,l=c-a,u=this.inTangents,h=this.outTangents;if(!u||!h){let p=(n-e)/(s-e),_=1-p;for(let m=0;m!==a;++m)r[m]=o[l+m]*_+o[c+m]*p;return r}let d=a*2,f=t-1;for(let p=0;p!==a;++p){let _=o[l+p],m=o[c+p],g=f*d+p*2,x=h[g],E=h[g+1],S=t*d+p*2,M=u[S],T=u[S+1],y=Cy(n,e,x,M,s);r[p]=ng(y,_,E,T,m)}return r}};function ng(i,t,e,n,s){let r=1-i;return r*r*r*t+3*r*r*i*e+3*r*i*i*n+i*i*i*s}function Ay(i,t,e,n,s){let r=1-i;return 3*r*r*(e-t)+6*r*i*(n-e)+3*i*i*(s-n)}function Cy(i,t,e,n,s){let r=(i-t)/(s-t);for(let o=0;o<8;o++){let a=ng(r,t,e,n,s)-i;if(Math.abs(a)<1e-10)break;let c=Ay(r,t,e,n,s);if(Math.abs(c)<1e-10)break;r=Math.max(0,Math.min(1,r-a/c))}return r}var Ti=class{constructor(t,e,n,s){if(t===void 0)throw new Error("THREE.KeyframeTrack: track name is undefined");if(e===void 0||e.length===0)throw new Error("THREE.KeyframeTrack: no keyframes in track named "+t);this.name=t,this.times=xo(e,this.TimeBufferType),this.values=xo(n,this.ValueBufferType),this.setInterpolation(s||this.DefaultInterpolation)}static toJSON(t){let e=t.constructor,n;if(e.toJSON!==this.toJSON)n=e.toJSON(t);else{n={name:t.name,times:xo(t.times,Array),values:xo(t.values,Array)};let s=t.getInterpolation();s!==t.DefaultInterpolation&&(n.interpolation=s),oc(t.settings)&&(n.settings={inTangents:xo(t.settings.inTangents,Array),outTangents:xo(t.settings.outTangents,Array)})}return n.type=t.ValueTypeName,n}InterpolantFactoryMethodDiscrete(t){return new Nc(this.times,this.values,this.getValueSize(),t)}InterpolantFactoryMethodLinear(t){return new Dc(this.times,this.values,this.getValueSize(),t)}InterpolantFactoryMethodSmooth(t){return new Lc(this.times,this.values,this.getValueSize(),t)}InterpolantFactoryMethodBezier(t){let e=new Uc(this.times,this.values,this.getValueSize(),t);return this.settings&&(e.inTangents=this.settings.inTangents,e.outTangents=this.settings.outTangents),e}setInterpolation(t){let e;switch(t){case Aa:e=this.InterpolantFactoryMethodDiscrete;break;case Sc:e=this.InterpolantFactoryMethodLinear;break;case uc:e=this.InterpolantFactoryMethodSmooth;break;case ld:e=this.InterpolantFactoryMethodBezier;break}if(e===void 0){let n="unsupported interpolation for "+this.ValueTypeName+" keyframe track named "+this.name;if(this.createInterpolant===void 0)if(t!==this.DefaultInterpolation)this.setInterpolation(this.DefaultInterpolation);else throw new Error(n);return jt("KeyframeTrack:",n),this}return this.createInterpolant=e,this}getInterpolation(){switch(this.createInterpolant){case this.InterpolantFactoryMethodDiscrete:return Aa;case this.InterpolantFactoryMethodLinear:return Sc;case this.InterpolantFactoryMethodSmooth:return uc;case this.InterpolantFactoryMethodBezier:return ld}}getValueSize(){return this.values.length/this.times.length}shift(t){if(t!==0){let e=this.times;for(let n=0,s=e.length;n!==s;++n)e[n]+=t;oc(this.settings)&&(lm(this.settings.inTangents,t),lm(this.settings.outTangents,t))}return this}scale(t){if(t!==1){let e=this.times;for(let n=0,s=e.length;n!==s;++n)e[n]*=t;oc(this.settings)&&(cm(this.settings.inTangents,t),cm(this.settings.outTangents,t))}return this}trim(t,e){let n=this.times,s=n.length,r=0,o=s-1;for(;r!==s&&n[r]<t;)++r;for(;o!==-1&&n[o]>e;)--o;if(++o,r!==0||o!==s){r>=o&&(o=Math.max(o,1),r=o-1);let a=this.getValueSize();this.times=n.slice(r,o),this.values=this.values.slice(r*a,o*a)}return this}validate(){let t=!0,e=this.getValueSize();e-Math.floor(e)!==0&&(te("KeyframeTrack: Invalid value size in track.",this),t=!1);let n=this.times,s=this.values,r=n.length;r===0&&(te("KeyframeTrack: Track is empty.",this),t=!1);let o=null;for(let a=0;a!==r;a++){let c=n[a];if(typeof c=="number"&&isNaN(c)){te("KeyframeTrack: Time is not a valid number.",this,a,c),t=!1;break}if(o!==null&&o>c){te("KeyframeTrack: Out of order keys.",this,a,c,o),t=!1;break}o=c}if(s!==void 0&&Hx(s))for(let a=0,c=s.length;a!==c;++a){let l=s[a];if(isNaN(l)){te("KeyframeTrack: Value is not a valid number.",this,a,l),t=!1;break}}return t}optimize(){let t=this.times.slice(),e=this.values.slice(),n=this.getValueSize(),s=this.getInterpolation()===uc,r=t.length-1,o=1;for(let a=1;a<r;++a){let c=!1,l=t[a],u=t[a+1];if(l!==u&&(a!==1||l!==t[0]))if(s)c=!0;else{let h=a*n,d=h-n,f=h+n;for(let p=0;p!==n;++p){let _=e[h+p];if(_!==e[d+p]||_!==e[f+p]){c=!0;break}}}if(c){if(a!==o){t[o]=t[a];let h=a*n,d=o*n;for(let f=0;f!==n;++f)e[d+f]=e[h+f]}++o}}if(r>0){t[o]=t[r];for(let a=r*n,c=o*n,l=0;l!==n;++l)e[c+l]=e[a+l];++o}return o!==t.length?(this.times=t.slice(0,o),this.values=e.slice(0,o*n)):(this.times=t,this.values=e),this}clone(){let t=this.times.slice(),e=this.values.slice(),n=this.constructor,s=new n(this.name,t,e);return s.createInterpolant=this.createInterpolant,oc(this.settings)&&(s.settings={inTangents:this.settings.inTangents.slice(),outTangents:this.settings.outTangents.slice()}),s}};function lm(i,t){for(let e=0,n=i.length;e!==n;e+=2)i[e]+=t}function cm(i,t){for(let e=0,n=i.length;e!==n;e+=2)i[e]*=t}Ti.prototype.ValueTypeName="";Ti.prototype.TimeBufferType=Float32Array;Ti.prototype.ValueBufferType=Float32Array;Ti.prototype.DefaultInterpolation=Sc;var or=class extends Ti{constructor(t,e,n){super(t,e,n)}};or.prototype.ValueTypeName="bool";or.prototype.ValueBufferType=Array;or.prototype.DefaultInterpolation=Aa;or.prototype.InterpolantFactoryMethodLinear=void 0;or.prototype.InterpolantFactoryMethodSmooth=void 0;var Oc=class extends Ti{constructor(t,e,n,s){super(t,e,n,s)}};Oc.prototype.ValueTypeName="color";var Fc=class extends Ti{constructor(t,e,n,s){super(t,e,n,s)}};Fc.prototype.ValueTypeName="number";var Bc=class extends rr{constructor(t,e,n,s){super(t,e,n,s)}interpolate_(t,e,n,s){let r=this.resultBuffer,o=this.sampleValues,a=this.valueSize,c=(n-e)/(s-e),l=t*a;for(let u=l+a;l!==u;l+=4)Xe.slerpFlat(r,0,o,l-a,o,l,c);return r}},Ya=class extends Ti{constructor(t,e,n,s){super(t,e,n,s)}InterpolantFactoryMethodLinear(t){return new Bc(this.times,this.values,this.getValueSize(),t)}};Ya.prototype.ValueTypeName="quaternion";Ya.prototype.InterpolantFactoryMethodSmooth=void 0;var ar=class extends Ti{constructor(t,e,n){super(t,e,n)}};ar.prototype.ValueTypeName="string";ar.prototype.ValueBufferType=Array;ar.prototype.DefaultInterpolation=Aa;ar.prototype.InterpolantFactoryMethodLinear=void 0;ar.prototype.InterpolantFactoryMethodSmooth=void 0;var kc=class extends Ti{constructor(t,e,n,s){super(t,e,n,s)}};kc.prototype.ValueTypeName="vector";var zc=class{constructor(t,e,n){let s=this,r=!1,o=0,a=0,c,l=[];this.onStart=void 0,this.onLoad=t,this.onProgress=e,this.onError=n,this._abortController=null,this.itemStart=function(u){a++,r===!1&&s.onStart!==void 0&&s.onStart(u,o,a),r=!0},this.itemEnd=function(u){o++,s.onProgress!==void 0&&s.onProgress(u,o,a),o===a&&(r=!1,s.onLoad!==void 0&&s.onLoad())},this.itemError=function(u){s.onError!==void 0&&s.onError(u)},this.resolveURL=function(u){return u=u.normalize("NFC"),c?c(u):u},this.setURLModifier=function(u){return c=u,this},this.addHandler=function(u,h){return l.push(u,h),this},this.removeHandler=function(u){let h=l.indexOf(u);return h!==-1&&l.splice(h,2),this},this.getHandler=function(u){for(let h=0,d=l.length;h<d;h+=2){let f=l[h],p=l[h+1];if(f.global&&(f.lastIndex=0),f.test(u))return p}return null},this.abort=function(){return this.abortController.abort(),this._abortController=null,this}}get abortController(){return this._abortController||(this._abortController=new AbortController),this._abortController}},ig=new zc,Vc=class{constructor(t){this.manager=t!==void 0?t:ig,this.crossOrigin="anonymous",this.withCredentials=!1,this.path="",this.resourcePath="",this.requestHeader={},this.priority="auto",this.cache="default",typeof __THREE_DEVTOOLS__<"u"&&__THREE_DEVTOOLS__.dispatchEvent(new CustomEvent("observe",{detail:this}))}load(){}loadAsync(t,e){let n=this;return new Promise(function(s,r){n.load(t,s,e,r)})}parse(){}setCrossOrigin(t){return this.crossOrigin=t,this}setWithCredentials(t){return this.withCredentials=t,this}setPath(t){return this.path=t,this}setResourcePath(t){return this.resourcePath=t,this}setRequestHeader(t){return this.requestHeader=t,this}setPriority(t){return this.priority=t,this}setCache(t){return this.cache=t,this}abort(){return this}};Vc.DEFAULT_MATERIAL_NAME="__DEFAULT";var Cr=class extends De{static registerNode(t){this.prototype._lightNode=t}constructor(t,e=1){super(),this.isLight=!0,this.type="Light",this.color=new Ht(t),this.intensity=e}copy(t,e){return super.copy(t,e),this.color.copy(t.color),this.intensity=t.intensity,this}toJSON(t){let e=super.toJSON(t);return e.object.color=this.color.getHex(),e.object.intensity=this.intensity,e}},qa=class extends Cr{constructor(t,e,n){super(t,n),this.isHemisphereLight=!0,this.type="HemisphereLight",this.position.copy(De.DEFAULT_UP),this.updateMatrix(),this.groundColor=new Ht(e)}copy(t,e){return super.copy(t,e),this.groundColor.copy(t.groundColor),this}toJSON(t){let e=super.toJSON(t);return e.object.groundColor=this.groundColor.getHex(),e}},rd=new qt,hm=new R,um=new R,No=class{constructor(t){this.camera=t,this.intensity=1,this.bias=0,this.biasNode=null,this.normalBias=0,this.radius=1,this.blurSamples=8,this.mapSize=new kt(512,512),this.mapType=gi,this.map=null,this.mapPass=null,this.matrix=new qt,this.autoUpdate=!0,this.needsUpdate=!1,this._frustum=new er,this._frameExtents=new kt(1,1),this._viewportCount=1,this._viewports=[new Le(0,0,1,1)]}getViewportCount(){return this._viewportCount}getCamera(){return this.camera}getFrustum(){return this._frustum}updateMatrices(t){let e=this.camera;hm.setFromMatrixPosition(t.matrixWorld),e.position.copy(hm),um.setFromMatrixPosition(t.target.matrixWorld),e.lookAt(um),e.updateMatrixWorld(),this._updateMatrix(e,this.matrix,this._frustum)}_updateMatrix(t,e,n,s){rd.multiplyMatrices(t.projectionMatrix,t.matrixWorldInverse),n.setFromProjectionMatrix(rd,t.coordinateSystem,t.reversedDepth);let r=this._frameExtents,o=s?s.z/r.x:1,a=s?s.w/r.y:1,c=s?s.x/r.x:0,l=s?s.y/r.y:0;t.coordinateSystem===Eo||t.reversedDepth?e.set(.5*o,0,0,.5*o+c,0,.5*a,0,.5*a+l,0,0,1,0,0,0,0,1):e.set(.5*o,0,0,.5*o+c,0,.5*a,0,.5*a+l,0,0,.5,.5,0,0,0,1),e.multiply(rd)}getViewport(t){return this._viewports[t]}getFrameExtents(){return this._frameExtents}dispose(){this.map&&this.map.dispose(),this.mapPass&&this.mapPass.dispose()}copy(t){return this.camera=t.camera.clone(),this.intensity=t.intensity,this.bias=t.bias,this.radius=t.radius,this.autoUpdate=t.autoUpdate,this.needsUpdate=t.needsUpdate,this.normalBias=t.normalBias,this.blurSamples=t.blurSamples,this.mapSize.copy(t.mapSize),this.mapType=t.mapType,this.biasNode=t.biasNode,this}clone(){return new this.constructor().copy(this)}toJSON(){let t={};return t.intensity=this.intensity,t.bias=this.bias,t.normalBias=this.normalBias,t.radius=this.radius,t.blurSamples=this.blurSamples,t.mapSize=this.mapSize.toArray(),t.mapType=this.mapType,t.camera=this.camera.toJSON(!1).object,delete t.camera.matrix,t}},ac=new R,lc=new Xe,ls=new R,$a=class extends De{constructor(){super(),this.isCamera=!0,this.type="Camera",this.matrixWorldInverse=new qt,this.projectionMatrix=new qt,this.projectionMatrixInverse=new qt,this.coordinateSystem=Di,this._reversedDepth=!1}get reversedDepth(){return this._reversedDepth}copy(t,e){return super.copy(t,e),this.matrixWorldInverse.copy(t.matrixWorldInverse),this.projectionMatrix.copy(t.projectionMatrix),this.projectionMatrixInverse.copy(t.projectionMatrixInverse),this.coordinateSystem=t.coordinateSystem,this}getWorldDirection(t){return super.getWorldDirection(t).negate()}updateMatrixWorld(t){super.updateMatrixWorld(t),this.matrixWorld.decompose(ac,lc,ls),ls.x===1&&ls.y===1&&ls.z===1?this.matrixWorldInverse.copy(this.matrixWorld).invert():this.matrixWorldInverse.compose(ac,lc,ls.set(1,1,1)).invert()}updateWorldMatrix(t,e,n=!1){super.updateWorldMatrix(t,e,n),this.matrixWorld.decompose(ac,lc,ls),ls.x===1&&ls.y===1&&ls.z===1?this.matrixWorldInverse.copy(this.matrixWorld).invert():this.matrixWorldInverse.compose(ac,lc,ls.set(1,1,1)).invert()}clone(){return new this.constructor().copy(this)}},tr=new R,dm=new kt,fm=new kt,An=class extends $a{constructor(t=50,e=1,n=.1,s=2e3){super(),this.isPerspectiveCamera=!0,this.type="PerspectiveCamera",this.fov=t,this.zoom=1,this.near=n,this.far=s,this.focus=10,this.aspect=e,this.view=null,this.filmGauge=35,this.filmOffset=0,this.updateProjectionMatrix()}copy(t,e){return super.copy(t,e),this.fov=t.fov,this.zoom=t.zoom,this.near=t.near,this.far=t.far,this.focus=t.focus,this.aspect=t.aspect,this.view=t.view===null?null:Object.assign({},t.view),this.filmGauge=t.filmGauge,this.filmOffset=t.filmOffset,this}setFocalLength(t){let e=.5*this.getFilmHeight()/t;this.fov=Tr*2*Math.atan(e),this.updateProjectionMatrix()}getFocalLength(){let t=Math.tan(Ta*.5*this.fov);return .5*this.getFilmHeight()/t}getEffectiveFOV(){return Tr*2*Math.atan(Math.tan(Ta*.5*this.fov)/this.zoom)}getFilmWidth(){return this.filmGauge*Math.min(this.aspect,1)}getFilmHeight(){return this.filmGauge/Math.max(this.aspect,1)}getViewBounds(t,e,n){tr.set(-1,-1,.5).applyMatrix4(this.projectionMatrixInverse),e.set(tr.x,tr.y).multiplyScalar(-t/tr.z),tr.set(1,1,.5).applyMatrix4(this.projectionMatrixInverse),n.set(tr.x,tr.y).multiplyScalar(-t/tr.z)}getViewSize(t,e){return this.getViewBounds(t,dm,fm),e.subVectors(fm,dm)}setViewOffset(t,e,n,s,r,o){this.aspect=t/e,this.view===null&&(this.view={enabled:!0,fullWidth:1,fullHeight:1,offsetX:0,offsetY:0,width:1,height:1}),this.view.enabled=!0,this.view.fullWidth=t,this.view.fullHeight=e,this.view.offsetX=n,this.view.offsetY=s,this.view.width=r,this.view.height=o,this.updateProjectionMatrix()}clearViewOffset(){this.view!==null&&(this.view.enabled=!1),this.updateProjectionMatrix()}updateProjectionMatrix(){let t=this.near,e=t*Math.tan(Ta*.5*this.fov)/this.zoom,n=2*e,s=this.aspect*n,r=-.5*s,o=this.view;if(this.view!==null&&this.view.enabled){let c=o.fullWidth,l=o.fullHeight;r+=o.offsetX*s/c,e-=o.offsetY*n/l,s*=o.width/c,n*=o.height/l}let a=this.filmOffset;a!==0&&(r+=t*a/this.getFilmWidth()),this.projectionMatrix.makePerspective(r,r+s,e,e-n,t,this.far,this.coordinateSystem,this.reversedDepth),this.projectionMatrixInverse.copy(this.projectionMatrix).invert()}toJSON(t){let e=super.toJSON(t);return e.object.fov=this.fov,e.object.zoom=this.zoom,e.object.near=this.near,e.object.far=this.far,e.object.focus=this.focus,e.object.aspect=this.aspect,this.view!==null&&(e.object.view=Object.assign({},this.view)),e.object.filmGauge=this.filmGauge,e.object.filmOffset=this.filmOffset,e}},fd=class extends No{constructor(){super(new An(50,1,.5,500)),this.isSpotLightShadow=!0,this.focus=1,this.aspect=1}updateMatrices(t){let e=this.camera,n=Tr*2*t.angle*this.focus,s=this.mapSize.width/this.mapSize.height*this.aspect,r=t.distance||e.far;(n!==e.fov||s!==e.aspect||r!==e.far)&&(e.fov=n,e.aspect=s,e.far=r,e.updateProjectionMatrix()),super.updateMatrices(t)}copy(t){return super.copy(t),this.focus=t.focus,this.aspect=t.aspect,this}toJSON(){let t=super.toJSON();return t.focus=this.focus,t.aspect=this.aspect,t}},Za=class extends Cr{constructor(t,e,n=0,s=Math.PI/3,r=0,o=2){super(t,e),this.isSpotLight=!0,this.type="SpotLight",this.position.copy(De.DEFAULT_UP),this.updateMatrix(),this.target=new De,this.distance=n,this.angle=s,this.penumbra=r,this.decay=o,this.map=null,this.shadow=new fd}get power(){return this.intensity*Math.PI}set power(t){this.intensity=t/Math.PI}dispose(){super.dispose(),this.shadow.dispose()}copy(t,e){return super.copy(t,e),this.distance=t.distance,this.angle=t.angle,this.penumbra=t.penumbra,this.decay=t.decay,this.target=t.target.clone(),this.map=t.map,this.shadow=t.shadow.clone(),this}toJSON(t){let e=super.toJSON(t);return e.object.distance=this.distance,e.object.angle=this.angle,e.object.decay=this.decay,e.object.penumbra=this.penumbra,e.object.target=this.target.uuid,this.map&&this.map.isTexture&&(e.object.map=this.map.toJSON(t).uuid),e.object.shadow=this.shadow.toJSON(),e}},pd=class extends No{constructor(){super(new An(90,1,.5,500)),this.isPointLightShadow=!0}},Ja=class extends Cr{constructor(t,e,n=0,s=2){super(t,e),this.isPointLight=!0,this.type="PointLight",this.distance=n,this.decay=s,this.shadow=new pd}get power(){return this.intensity*4*Math.PI}set power(t){this.intensity=t/(4*Math.PI)}dispose(){super.dispose(),this.shadow.dispose()}copy(t,e){return super.copy(t,e),this.distance=t.distance,this.decay=t.decay,this.shadow=t.shadow.clone(),this}toJSON(t){let e=super.toJSON(t);return e.object.distance=this.distance,e.object.decay=this.decay,e.object.shadow=this.shadow.toJSON(),e}},ja=class extends $a{constructor(t=-1,e=1,n=1,s=-1,r=.1,o=2e3){super(),this.isOrthographicCamera=!0,this.type="OrthographicCamera",this.zoom=1,this.view=null,this.left=t,this.right=e,this.top=n,this.bottom=s,this.near=r,this.far=o,this.updateProjectionMatrix()}copy(t,e){return super.copy(t,e),this.left=t.left,this.right=t.right,this.top=t.top,this.bottom=t.bottom,this.near=t.near,this.far=t.far,this.zoom=t.zoom,this.view=t.view===null?null:Object.assign({},t.view),this}setViewOffset(t,e,n,s,r,o){this.view===null&&(this.view={enabled:!0,fullWidth:1,fullHeight:1,offsetX:0,offsetY:0,width:1,height:1}),this.view.enabled=!0,this.view.fullWidth=t,this.view.fullHeight=e,this.view.offsetX=n,this.view.offsetY=s,this.view.width=r,this.view.height=o,this.updateProjectionMatrix()}clearViewOffset(){this.view!==null&&(this.view.enabled=!1),this.updateProjectionMatrix()}updateProjectionMatrix(){let t=(this.right-this.left)/(2*this.zoom),e=(this.top-this.bottom)/(2*this.zoom),n=(this.right+this.left)/2,s=(this.top+this.bottom)/2,r=n-t,o=n+t,a=s+e,c=s-e;if(this.view!==null&&this.view.enabled){let l=(this.right-this.left)/this.view.fullWidth/this.zoom,u=(this.top-this.bottom)/this.view.fullHeight/this.zoom;r+=l*this.view.offsetX,o=r+l*this.view.width,a-=u*this.view.offsetY,c=a-u*this.view.height}this.projectionMatrix.makeOrthographic(r,o,a,c,this.near,this.far,this.coordinateSystem,this.reversedDepth),this.projectionMatrixInverse.copy(this.projectionMatrix).invert()}toJSON(t){let e=super.toJSON(t);return e.object.zoom=this.zoom,e.object.left=this.left,e.object.right=this.right,e.object.top=this.top,e.object.bottom=this.bottom,e.object.near=this.near,e.object.far=this.far,this.view!==null&&(e.object.view=Object.assign({},this.view)),e}},md=class extends No{constructor(){super(new ja(-5,5,5,-5,.5,500)),this.isDirectionalLightShadow=!0}},Uo=class extends Cr{constructor(t,e){super(t,e),this.isDirectionalLight=!0,this.type="DirectionalLight",this.position.copy(De.DEFAULT_UP),this.updateMatrix(),this.target=new De,this.shadow=new md}dispose(){super.dispose(),this.shadow.dispose()}copy(t){return super.copy(t),this.target=t.target.clone(),this.shadow=t.shadow.clone(),this}toJSON(t){let e=super.toJSON(t);return e.object.shadow=this.shadow.toJSON(),e.object.target=this.target.uuid,e}};var Ka=class extends pe{constructor(){super(),this.isInstancedBufferGeometry=!0,this.type="InstancedBufferGeometry",this.instanceCount=1/0}copy(t){return super.copy(t),this.instanceCount=t.instanceCount,this}toJSON(){let t=super.toJSON();return t.instanceCount=this.instanceCount,t.isInstancedBufferGeometry=!0,t}};var yo=-90,vo=1,Oo=class extends De{constructor(t,e,n){super(),this.type="CubeCamera",this.renderTarget=n,this.coordinateSystem=null,this.activeMipmapLevel=0;let s=new An(yo,vo,t,e);s.layers=this.layers,this.add(s);let r=new An(yo,vo,t,e);r.layers=this.layers,this.add(r);let o=new An(yo,vo,t,e);o.layers=this.layers,this.add(o);let a=new An(yo,vo,t,e);a.layers=this.layers,this.add(a);let c=new An(yo,vo,t,e);c.layers=this.layers,this.add(c);let l=new An(yo,vo,t,e);l.layers=this.layers,this.add(l)}updateCoordinateSystem(){let t=this.coordinateSystem,e=this.children.concat(),[n,s,r,o,a,c]=e;for(let l of e)this.remove(l);if(t===Di)n.up.set(0,1,0),n.lookAt(1,0,0),s.up.set(0,1,0),s.lookAt(-1,0,0),r.up.set(0,0,-1),r.lookAt(0,1,0),o.up.set(0,0,1),o.lookAt(0,-1,0),a.up.set(0,1,0),a.lookAt(0,0,1),c.up.set(0,1,0),c.lookAt(0,0,-1);else if(t===Eo)n.up.set(0,-1,0),n.lookAt(-1,0,0),s.up.set(0,-1,0),s.lookAt(1,0,0),r.up.set(0,0,1),r.lookAt(0,1,0),o.up.set(0,0,-1),o.lookAt(0,-1,0),a.up.set(0,-1,0),a.lookAt(0,0,1),c.up.set(0,-1,0),c.lookAt(0,0,-1);else throw new Error("THREE.CubeCamera.updateCoordinateSystem(): Invalid coordinate system: "+t);for(let l of e)this.add(l),l.updateMatrixWorld()}update(t,e){this.parent===null&&this.updateMatrixWorld();let{renderTarget:n,activeMipmapLevel:s}=this;this.coordinateSystem!==t.coordinateSystem&&(this.coordinateSystem=t.coordinateSystem,this.updateCoordinateSystem());let[r,o,a,c,l,u]=this.children,h=t.getRenderTarget(),d=t.getActiveCubeFace(),f=t.getActiveMipmapLevel(),p=t.xr.enabled;t.xr.enabled=!1;let _=n.texture.mipmapsAutoUpdate;n.texture.mipmapsAutoUpdate=!1;let m=!1;t.isWebGLRenderer===!0?m=t.state.buffers.depth.getReversed():m=t.reversedDepthBuffer,t.setRenderTarget(n,0,s),m&&t.autoClear===!1&&t.clearDepth(),t.render(e,r),t.setRenderTarget(n,1,s),m&&t.autoClear===!1&&t.clearDepth(),t.render(e,o),t.setRenderTarget(n,2,s),m&&t.autoClear===!1&&t.clearDepth(),t.render(e,a),t.setRenderTarget(n,3,s),m&&t.autoClear===!1&&t.clearDepth(),t.render(e,c),t.setRenderTarget(n,4,s),m&&t.autoClear===!1&&t.clearDepth(),t.render(e,l),n.texture.mipmapsAutoUpdate=_,t.setRenderTarget(n,5,s),m&&t.autoClear===!1&&t.clearDepth(),t.render(e,u),t.setRenderTarget(h,d,f),t.xr.enabled=p,n.texture.needsPMREMUpdate=!0}},Gc=class extends An{constructor(t=[]){super(),this.isArrayCamera=!0,this.isMultiViewCamera=!1,this.cameras=t,this.perCameraFrustumCulled=!1}};var Zd="\\[\\]\\.:\\/",Ry=new RegExp("["+Zd+"]","g"),Jd="[^"+Zd+"]",Py="[^"+Zd.replace("\\.","")+"]",Iy=/((?:WC+[\/:])*)/.source.replace("WC",Jd),Ly=/(WCOD+)?/.source.replace("WCOD",Py),Dy=/(?:\.(WC+)(?:\[(.+)\])?)?/.source.replace("WC",Jd),Ny=/\.(WC+)(?:\[(.+)\])?/.source.replace("WC",Jd),Uy=new RegExp("^"+Iy+Ly+Dy+Ny+"$"),Oy=["material","materials","bones","map"],gd=class{constructor(t,e,n){let s=n||je.parseTrackName(e);this._targetGroup=t,this._bindings=t.subscribe_(e,s)}getValue(t,e){this.bind();let n=this._targetGroup.nCachedObjects_,s=this._bindings[n];s!==void 0&&s.getValue(t,e)}setValue(t,e){let n=this._bindings;for(let s=this._targetGroup.nCachedObjects_,r=n.length;s!==r;++s)n[s].setValue(t,e)}bind(){let t=this._bindings;for(let e=this._targetGroup.nCachedObjects_,n=t.length;e!==n;++e)t[e].bind()}unbind(){let t=this._bindings;for(let e=this._targetGroup.nCachedObjects_,n=t.length;e!==n;++e)t[e].unbind()}},je=class i{constructor(t,e,n){this.path=e,this.parsedPath=n||i.parseTrackName(e),this.node=i.findNode(t,this.parsedPath.nodeName),this.rootNode=t,this.getValue=this._getValue_unbound,this.setValue=this._setValue_unbound}static create(t,e,n){return t&&t.isAnimationObjectGroup?new i.Composite(t,e,n):new i(t,e,n)}static sanitizeNodeName(t){return t.replace(/\s/g,"_").replace(Ry,"")}static parseTrackName(t){let e=Uy.exec(t);if(e===null)throw new Error("THREE.PropertyBinding: Cannot parse trackName: "+t);let n={nodeName:e[2],objectName:e[3],objectIndex:e[4],propertyName:e[5],propertyIndex:e[6]},s=n.nodeName&&n.nodeName.lastIndexOf(".");if(s!==void 0&&s!==-1){let r=n.nodeName.substring(s+1);Oy.indexOf(r)!==-1&&(n.nodeName=n.nodeName.substring(0,s),n.objectName=r)}if(n.propertyName===null||n.propertyName.length===0)throw new Error("THREE.PropertyBinding: can not parse propertyName from trackName: "+t);return n}static findNode(t,e){if(e===void 0||e===""||e==="."||e===-1||e===t.name||e===t.uuid)return t;if(t.skeleton){let n=t.skeleton.getBoneByName(e);if(n!==void 0)return n}if(t.children){let n=function(r){for(let o=0;o<r.length;o++){let a=r[o];if(a.name===e||a.uuid===e)return a;let c=n(a.children);if(c)return c}return null},s=n(t.children);if(s)return s}return null}_getValue_unavailable(){}_setValue_unavailable(){}_getValue_direct(t,e){t[e]=this.targetObject[this.propertyName]}_getValue_array(t,e){let n=this.resolvedProperty;for(let s=0,r=n.length;s!==r;++s)t[e++]=n[s]}_getValue_arrayElement(t,e){t[e]=this.resolvedProperty[this.propertyIndex]}_getValue_toArray(t,e){this.resolvedProperty.toArray(t,e)}_setValue_direct(t,e){this.targetObject[this.propertyName]=t[e]}_setValue_direct_setNeedsUpdate(t,e){this.targetObject[this.propertyName]=t[e],this.targetObject.needsUpdate=!0}_setValue_direct_setMatrixWorldNeedsUpdate(t,e){this.targetObject[this.propertyName]=t[e],this.targetObject.matrixWorldNeedsUpdate=!0}_setValue_array(t,e){let n=this.resolvedProperty;for(let s=0,r=n.length;s!==r;++s)n[s]=t[e++]}_setValue_array_setNeedsUpdate(t,e){let n=this.resolvedProperty;for(let s=0,r=n.length;s!==r;++s)n[s]=t[e++];this.targetObject.needsUpdate=!0}_setValue_array_setMatrixWorldNeedsUpdate(t,e){let n=this.resolvedProperty;for(let s=0,r=n.length;s!==r;++s)n[s]=t[e++];this.targetObject.matrixWorldNeedsUpdate=!0}_setValue_arrayElement(t,e){this.resolvedProperty[this.propertyIndex]=t[e]}_setValue_arrayElement_setNeedsUpdate(t,e){this.resolvedProperty[this.propertyIndex]=t[e],this.targetObject.needsUpdate=!0}_setValue_arrayElement_setMatrixWorldNeedsUpdate(t,e){this.resolvedProperty[this.propertyIndex]=t[e],this.targetObject.matrixWorldNeedsUpdate=!0}_setValue_fromArray(t,e){this.resolvedProperty.fromArray(t,e)}_setValue_fromArray_setNeedsUpdate(t,e){this.resolvedProperty.fromArray(t,e),this.targetObject.needsUpdate=!0}_setValue_fromArray_setMatrixWorldNeedsUpdate(t,e){this.resolvedProperty.fromArray(t,e),this.targetObject.matrixWorldNeedsUpdate=!0}_getValue_unbound(t,e){this.bind(),this.getValue(t,e)}_setValue_unbound(t,e){this.bind(),this.setValue(t,e)}bind(){let t=this.node,e=this.parsedPath,n=e.objectName,s=e.propertyName,r=e.propertyIndex;if(t||(t=i.findNode(this.rootNode,e.nodeName),this.node=t),this.getValue=this._getValue_unavailable,this.setValue=this._setValue_unavailable,!t){jt("PropertyBinding: No target node found for track: "+this.path+".");return}if(n){let l=e.objectIndex;switch(n){case"materials":if(!t.material){te("PropertyBinding: Can not bind to material as node does not have a material.",this);return}if(!t.material.materials){te("PropertyBinding: Can not bind to material.materials as node.material does not have a materials array.",this);return}t=t.material.materials;break;case"bones":if(!t.skeleton){te("PropertyBinding: Can not bind to bones as node does not have a skeleton.",this);return}t=t.skeleton.bones;for(let u=0;u<t.length;u++)if(t[u].name===l){l=u;break}break;case"map":if("map"in t){t=t.map;break}if(!t.material){te("PropertyBinding: Can not bind to material as node does not have a material.",this);return}if(!t.material.map){te("PropertyBinding: Can not bind to material.map as node.material does not have a map.",this);return}t=t.material.map;break;default:if(t[n]===void 0){te("PropertyBinding: Can not bind to objectName of node undefined.",this);return}t=t[n]}if(l!==void 0){if(t[l]===void 0){te("PropertyBinding: Trying to bind to objectIndex of objectName, but is undefined.",this,t);return}t=t[l]}}let o=t[s];if(o===void 0){let l=e.nodeName;te("PropertyBinding: Trying to update property for track: "+l+"."+s+" but it wasn't found.",t);return}let a=this.Versioning.None;this.targetObject=t,t.isMaterial===!0?a=this.Versioning.NeedsUpdate:t.isObject3D===!0&&(a=this.Versioning.MatrixWorldNeedsUpdate);let c=this.BindingType.Direct;if(r!==void 0){if(s==="morphTargetInfluences"){if(!t.geometry){te("PropertyBinding: Can not bind to morphTargetInfluences because node does not have a geometry.",this);return}if(!t.geometry.morphAttributes){te("PropertyBinding: Can not bind to morphTargetInfluences because node does not have a geometry.morphAttributes.",this);return}t.morphTargetDictionary[r]!==void 0&&(r=t.morphTargetDictionary[r])}c=this.BindingType.ArrayElement,this.resolvedProperty=o,this.propertyIndex=r}else o.fromArray!==void 0&&o.toArray!==void 0?(c=this.BindingType.HasFromToArray,this.resolvedProperty=o):Array.isArray(o)?(c=this.BindingType.EntireArray,this.resolvedProperty=o):this.propertyName=s;this.getValue=this.GetterByBindingType[c],this.setValue=this.SetterByBindingTypeAndVersioning[c][a]}unbind(){this.node=null,this.getValue=this._getValue_unbound,this.setValue=this._setValue_unbound}};je.Composite=gd;je.prototype.BindingType={Direct:0,EntireArray:1,ArrayElement:2,HasFromToArray:3};je.prototype.Versioning={None:0,NeedsUpdate:1,MatrixWorldNeedsUpdate:2};je.prototype.GetterByBindingType=[je.prototype._getValue_direct,je.prototype._getValue_array,je.prototype._getValue_arrayElement,je.prototype._getValue_toArray];je.prototype.SetterByBindingTypeAndVersioning=[[je.prototype._setValue_direct,je.prototype._setValue_direct_setNeedsUpdate,je.prototype._setValue_direct_setMatrixWorldNeedsUpdate],[je.prototype._setValue_array,je.prototype._setValue_array_setNeedsUpdate,je.prototype._setValue_array_setMatrixWorldNeedsUpdate],[je.prototype._setValue_arrayElement,je.prototype._setValue_arrayElement_setNeedsUpdate,je.prototype._setValue_arrayElement_setMatrixWorldNeedsUpdate],[je.prototype._setValue_fromArray,je.prototype._setValue_fromArray_setNeedsUpdate,je.prototype._setValue_fromArray_setMatrixWorldNeedsUpdate]];var NE=new Float32Array(1);var lr=class extends Fa{constructor(t,e,n=1){super(t,e),this.isInstancedInterleavedBuffer=!0,this.meshPerAttribute=n}copy(t){return super.copy(t),this.meshPerAttribute=t.meshPerAttribute,this}clone(t){let e=super.clone(t);return e.meshPerAttribute=this.meshPerAttribute,e}toJSON(t){let e=super.toJSON(t);return e.isInstancedInterleavedBuffer=!0,e.meshPerAttribute=this.meshPerAttribute,e}};var pm=new qt,Oi=class{constructor(t,e,n=0,s=1/0){this.ray=new Is(t,e),this.near=n,this.far=s,this.camera=null,this.layers=new Ro,this.params={Mesh:{},Line:{threshold:1},LOD:{},Points:{threshold:1},Sprite:{}}}set(t,e){this.ray.set(t,e)}setFromCamera(t,e){e.isPerspectiveCamera?(this.ray.origin.setFromMatrixPosition(e.matrixWorld),this.ray.direction.set(t.x,t.y,.5).unproject(e).sub(this.ray.origin).normalize(),this.camera=e):e.isOrthographicCamera?(this.ray.origin.set(t.x,t.y,e.projectionMatrix.elements[14]).unproject(e),this.ray.direction.set(0,0,-1).transformDirection(e.matrixWorld),this.camera=e):te("Raycaster: Unsupported camera type: "+e.type)}setFromXRController(t){return pm.identity().extractRotation(t.matrixWorld),this.ray.origin.setFromMatrixPosition(t.matrixWorld),this.ray.direction.set(0,0,-1).applyMatrix4(pm),this}intersectObject(t,e=!0,n=[]){return _d(t,this,n,e),n.sort(mm),n}intersectObjects(t,e=!0,n=[]){for(let s=0,r=t.length;s<r;s++)_d(t[s],this,n,e);return n.sort(mm),n}};function mm(i,t){return i.distance-t.distance}function _d(i,t,e,n){let s=!0;if(i.layers.test(t.layers)&&i.raycast(t,e)===!1&&(s=!1),s===!0&&n===!0){let r=i.children;for(let o=0,a=r.length;o<a;o++)_d(r[o],t,e,!0)}}var Fo=class{constructor(t=1,e=0,n=0){this.radius=t,this.phi=e,this.theta=n}set(t,e,n){return this.radius=t,this.phi=e,this.theta=n,this}copy(t){return this.radius=t.radius,this.phi=t.phi,this.theta=t.theta,this}makeSafe(){return this.phi=he(this.phi,1e-6,Math.PI-1e-6),this}setFromVector3(t){return this.setFromCartesianCoords(t.x,t.y,t.z)}setFromCartesianCoords(t,e,n){return this.radius=Math.sqrt(t*t+e*e+n*n),this.radius===0?(this.theta=0,this.phi=0):(this.theta=Math.atan2(t,n),this.phi=Math.acos(he(e/this.radius,-1,1))),this}clone(){return new this.constructor().copy(this)}};var xd=class{static{this.prototype.isMatrix2=!0}constructor(t,e,n,s){this.elements=[1,0,0,1],t!==void 0&&this.set(t,e,n,s)}identity(){return this.set(1,0,0,1),this}fromArray(t,e=0){for(let n=0;n<4;n++)this.elements[n]=t[n+e];return this}set(t,e,n,s){let r=this.elements;return r[0]=t,r[2]=e,r[1]=n,r[3]=s,this}};var gm=new R,cc=new R,So=new R,Mo=new R,od=new R,Fy=new R,By=new R,Qa=class{constructor(t=new R,e=new R){this.start=t,this.end=e}set(t,e){return this.start.copy(t),this.end.copy(e),this}copy(t){return this.start.copy(t.start),this.end.copy(t.end),this}getCenter(t){return t.addVectors(this.start,this.end).multiplyScalar(.5)}delta(t){return t.subVectors(this.end,this.start)}distanceSq(){return this.start.distanceToSquared(this.end)}distance(){return this.start.distanceTo(this.end)}at(t,e){return this.delta(e).multiplyScalar(t).add(this.start)}closestPointToPointParameter(t,e){gm.subVectors(t,this.start),cc.subVectors(this.end,this.start);let n=cc.dot(cc);if(n===0)return 0;let r=cc.dot(gm)/n;return e&&(r=he(r,0,1)),r}closestPointToPoint(t,e,n){let s=this.closestPointToPointParameter(t,e);return this.delta(n).multiplyScalar(s).add(this.start)}distanceSqToLine3(t,e=Fy,n=By){let s=10000000000000001e-32,r,o,a=this.start,c=t.start,l=this.end,u=t.end;So.subVectors(l,a),Mo.subVectors(u,c),od.subVectors(a,c);let h=So.dot(So),d=Mo.dot(Mo),f=Mo.dot(od);if(h<=s&&d<=s)return e.copy(a),n.copy(c),e.distanceToSquared(n);if(h<=s)r=0,o=f/d,o=he(o,0,1);else{let p=So.dot(od);if(d<=s)o=0,r=he(-p/h,0,1);else{let _=So.dot(Mo),m=h*d-_*_;m!==0?r=he((_*f-p*d)/m,0,1):r=0,o=(_*r+f)/d,o<0?(o=0,r=he(-p/h,0,1)):o>1&&(o=1,r=he((_-p)/h,0,1))}}return e.copy(a).addScaledVector(So,r),n.copy(c).addScaledVector(Mo,o),e.distanceToSquared(n)}applyMatrix4(t){return this.start.applyMatrix4(t),this.end.applyMatrix4(t),this}equals(t){return t.start.equals(this.start)&&t.end.equals(this.end)}clone(){return new this.constructor().copy(this)}};var tl=class extends Ds{constructor(t=10,e=10,n=4473924,s=8947848){n=new Ht(n),s=new Ht(s);let r=e/2,o=t/e,a=t/2,c=[],l=[];for(let d=0,f=0,p=-a;d<=e;d++,p+=o){c.push(-a,0,p,a,0,p),c.push(p,0,-a,p,0,a);let _=d===r?n:s;_.toArray(l,f),f+=3,_.toArray(l,f),f+=3,_.toArray(l,f),f+=3,_.toArray(l,f),f+=3}let u=new pe;u.setAttribute("position",new se(c,3)),u.setAttribute("color",new se(l,3));let h=new pi({vertexColors:!0,toneMapped:!1});super(u,h),this.type="GridHelper"}dispose(){super.dispose(),this.geometry.dispose(),this.material.dispose()}};var el=class extends Ds{constructor(t,e=16776960){let n=new Uint16Array([0,1,1,2,2,3,3,0,4,5,5,6,6,7,7,4,0,4,1,5,2,6,3,7]),s=[1,1,1,-1,1,1,-1,-1,1,1,-1,1,1,1,-1,-1,1,-1,-1,-1,-1,1,-1,-1],r=new pe;r.setIndex(new Ie(n,1)),r.setAttribute("position",new se(s,3)),super(r,new pi({color:e,toneMapped:!1})),this.box=t,this.type="Box3Helper",this.geometry.computeBoundingSphere()}updateMatrixWorld(t){let e=this.box;e.isEmpty()||(e.getCenter(this.position),e.getSize(this.scale),this.scale.multiplyScalar(.5),super.updateMatrixWorld(t))}dispose(){super.dispose(),this.geometry.dispose(),this.material.dispose()}};var _m=new R,hc,ad,nl=class extends De{constructor(t=new R(0,0,1),e=new R(0,0,0),n=1,s=16776960,r=n*.2,o=r*.2){super(),this.type="ArrowHelper",hc===void 0&&(hc=new pe,hc.setAttribute("position",new se([0,0,0,0,1,0],3)),ad=new Do(.5,1,5,1),ad.translate(0,-.5,0)),this.position.copy(e),this.line=new Qn(hc,new pi({color:s,toneMapped:!1})),this.line.matrixAutoUpdate=!1,this.add(this.line),this.cone=new Mt(ad,new Vn({color:s,toneMapped:!1})),this.cone.matrixAutoUpdate=!1,this.add(this.cone),this.setDirection(t),this.setLength(n,r,o)}setDirection(t){if(t.y>.99999)this.quaternion.set(0,0,0,1);else if(t.y<-.99999)this.quaternion.set(1,0,0,0);else{_m.set(t.z,0,-t.x).normalize();let e=Math.acos(t.y);this.quaternion.setFromAxisAngle(_m,e)}}setLength(t,e=t*.2,n=e*.2){this.line.scale.set(1,Math.max(1e-4,t-e),1),this.line.updateMatrix(),this.cone.scale.set(n,e,n),this.cone.position.y=t,this.cone.updateMatrix()}setColor(t){this.line.material.color.set(t),this.cone.material.color.set(t)}copy(t){return super.copy(t,!1),this.line.copy(t.line),this.cone.copy(t.cone),this}dispose(){super.dispose(),this.line.geometry.dispose(),this.line.material.dispose(),this.cone.geometry.dispose(),this.cone.material.dispose()}};var Rr=class extends qi{constructor(t,e=null){super(),this.object=t,this.domElement=e,this.enabled=!0,this.state=-1,this.keys={},this.mouseButtons={LEFT:null,MIDDLE:null,RIGHT:null},this.touches={ONE:null,TWO:null}}connect(t){this.domElement!==null&&this.disconnect(),this.domElement=t}disconnect(){}dispose(){}update(){}};function jd(i,t,e,n){let s=ky(n);switch(e){case Fd:return i*t;case Jc:return i*t/s.components*s.byteLength;case jc:return i*t/s.components*s.byteLength;case dr:return i*t*2/s.components*s.byteLength;case Kc:return i*t*2/s.components*s.byteLength;case Bd:return i*t*3/s.components*s.byteLength;case Ji:return i*t*4/s.components*s.byteLength;case Qc:return i*t*4/s.components*s.byteLength;case sl:case rl:return Math.floor((i+3)/4)*Math.floor((t+3)/4)*8;case ol:case al:return Math.floor((i+3)/4)*Math.floor((t+3)/4)*16;case eh:case ih:return Math.max(i,16)*Math.max(t,8)/4;case th:case nh:return Math.max(i,8)*Math.max(t,8)/2;case sh:case rh:case ah:case lh:return Math.floor((i+3)/4)*Math.floor((t+3)/4)*8;case oh:case ll:case ch:return Math.floor((i+3)/4)*Math.floor((t+3)/4)*16;case hh:return Math.floor((i+3)/4)*Math.floor((t+3)/4)*16;case uh:return Math.floor((i+4)/5)*Math.floor((t+3)/4)*16;case dh:return Math.floor((i+4)/5)*Math.floor((t+4)/5)*16;case fh:return Math.floor((i+5)/6)*Math.floor((t+4)/5)*16;case ph:return Math.floor((i+5)/6)*Math.floor((t+5)/6)*16;case mh:return Math.floor((i+7)/8)*Math.floor((t+4)/5)*16;case gh:return Math.floor((i+7)/8)*Math.floor((t+5)/6)*16;case _h:return Math.floor((i+7)/8)*Math.floor((t+7)/8)*16;case xh:return Math.floor((i+9)/10)*Math.floor((t+4)/5)*16;case yh:return Math.floor((i+9)/10)*Math.floor((t+5)/6)*16;case vh:return Math.floor((i+9)/10)*Math.floor((t+7)/8)*16;case Sh:return Math.floor((i+9)/10)*Math.floor((t+9)/10)*16;case Mh:return Math.floor((i+11)/12)*Math.floor((t+9)/10)*16;case bh:return Math.floor((i+11)/12)*Math.floor((t+11)/12)*16;case wh:case Th:case Eh:return Math.ceil(i/4)*Math.ceil(t/4)*16;case Ah:case Ch:return Math.ceil(i/4)*Math.ceil(t/4)*8;case cl:case Rh:return Math.ceil(i/4)*Math.ceil(t/4)*16}throw new Error(`Unable to determine texture byte length for ${e} format.`)}function ky(i){switch(i){case gi:case Dd:return{byteLength:1,components:1};case Vo:case Nd:case Zi:return{byteLength:2,components:1};case $c:case Zc:return{byteLength:2,components:4};case $i:case qc:case Fi:return{byteLength:4,components:1};case Ud:case Od:return{byteLength:4,components:3}}throw new Error(`THREE.TextureUtils: Unknown texture type ${i}.`)}typeof __THREE_DEVTOOLS__<"u"&&__THREE_DEVTOOLS__.dispatchEvent(new CustomEvent("register",{detail:{revision:"187"}}));typeof window<"u"&&(window.__THREE__?jt("WARNING: Multiple instances of Three.js being imported."):window.__THREE__="187");function Tg(){let i=null,t=!1,e=null,n=null;function s(r,o){n=i.requestAnimationFrame(s),e(r,o)}return{start:function(){t!==!0&&e!==null&&i!==null&&(n=i.requestAnimationFrame(s),t=!0)},stop:function(){i!==null&&i.cancelAnimationFrame(n),t=!1},setAnimationLoop:function(r){e=r},setContext:function(r){i=r}}}function Vy(i){let t=new WeakMap;function e(a,c){let l=a.array,u=a.usage,h=l.byteLength,d=i.createBuffer();i.bindBuffer(c,d),i.bufferData(c,l,u),a.onUploadCallback();let f;if(l instanceof Float32Array)f=i.FLOAT;else if(typeof Float16Array<"u"&&l instanceof Float16Array)f=i.HALF_FLOAT;else if(l instanceof Uint16Array)a.isFloat16BufferAttribute?f=i.HALF_FLOAT:f=i.UNSIGNED_SHORT;else if(l instanceof Int16Array)f=i.SHORT;else if(l instanceof Uint32Array)f=i.UNSIGNED_INT;else if(l instanceof Int32Array)f=i.INT;else if(l instanceof Int8Array)f=i.BYTE;else if(l instanceof Uint8Array)f=i.UNSIGNED_BYTE;else if(l instanceof Uint8ClampedArray)f=i.UNSIGNED_BYTE;else throw new Error("THREE.WebGLAttributes: Unsupported buffer data format: "+l);return{buffer:d,type:f,bytesPerElement:l.BYTES_PER_ELEMENT,version:a.version,size:h}}function n(a,c,l){let u=c.array,h=c.updateRanges;if(i.bindBuffer(l,a),h.length===0)i.bufferSubData(l,0,u);else{h.sort((f,p)=>f.start-p.start);let d=0;for(let f=1;f<h.length;f++){let p=h[d],_=h[f];_.start<=p.start+p.count+1?p.count=Math.max(p.count,_.start+_.count-p.start):(++d,h[d]=_)}h.length=d+1;for(let f=0,p=h.length;f<p;f++){let _=h[f];i.bufferSubData(l,_.start*u.BYTES_PER_ELEMENT,u,_.start,_.count)}c.clearUpdateRanges()}c.onUploadCallback()}function s(a){return a.isInterleavedBufferAttribute&&(a=a.data),t.get(a)}function r(a){a.isInterleavedBufferAttribute&&(a=a.data);let c=t.get(a);c&&(i.deleteBuffer(c.buffer),t.delete(a))}function o(a,c){if(a.isInterleavedBufferAttribute&&(a=a.data),a.isGLBufferAttribute){let u=t.get(a);(!u||u.version<a.version)&&t.set(a,{buffer:a.buffer,type:a.type,bytesPerElement:a.elementSize,version:a.version});return}let l=t.get(a);if(l===void 0)t.set(a,e(a,c));else if(l.version<a.version){if(l.size!==a.array.byteLength)throw new Error("THREE.WebGLAttributes: The size of the buffer attribute's array buffer does not match the original size. Resizing buffer attributes is not supported.");n(l.buffer,a,c),l.version=a.version}}return{get:s,remove:r,update:o}}var Gy=`#ifdef USE_ALPHAHASH
+	if ( diffuseColor.a < getAlphaHashThreshold( vPosition ) ) discard;
+#endif`,Hy=`#ifdef USE_ALPHAHASH
+	const float ALPHA_HASH_SCALE = 0.05;
+	float hash2D( vec2 value ) {
+		return fract( 1.0e4 * sin( 17.0 * value.x + 0.1 * value.y ) * ( 0.1 + abs( sin( 13.0 * value.y + value.x ) ) ) );
+	}
+	float hash3D( vec3 value ) {
+		return hash2D( vec2( hash2D( value.xy ), value.z ) );
+	}
+	float getAlphaHashThreshold( vec3 position ) {
+		float maxDeriv = max(
+			length( dFdx( position.xyz ) ),
+			length( dFdy( position.xyz ) )
+		);
+		float pixScale = 1.0 / ( ALPHA_HASH_SCALE * maxDeriv );
+		vec2 pixScales = vec2(
+			exp2( floor( log2( pixScale ) ) ),
+			exp2( ceil( log2( pixScale ) ) )
+		);
+		vec2 alpha = vec2(
+			hash3D( floor( pixScales.x * position.xyz ) ),
+			hash3D( floor( pixScales.y * position.xyz ) )
+		);
+		float lerpFactor = fract( log2( pixScale ) );
+		float x = ( 1.0 - lerpFactor ) * alpha.x + lerpFactor * alpha.y;
+		float a = min( lerpFactor, 1.0 - lerpFactor );
+		vec3 cases = vec3(
+			x * x / ( 2.0 * a * ( 1.0 - a ) ),
+			( x - 0.5 * a ) / ( 1.0 - a ),
+			1.0 - ( ( 1.0 - x ) * ( 1.0 - x ) / ( 2.0 * a * ( 1.0 - a ) ) )
+		);
+		float threshold = ( x < ( 1.0 - a ) )
+			? ( ( x < a ) ? cases.x : cases.y )
+			: cases.z;
+		return clamp( threshold , 1.0e-6, 1.0 );
+	}
+#endif`,Wy=`#ifdef USE_ALPHAMAP
+	diffuseColor.a *= texture2D( alphaMap, vAlphaMapUv ).g;
+#endif`,Xy=`#ifdef USE_ALPHAMAP
+	uniform sampler2D alphaMap;
+#endif`,Yy=`#ifdef USE_ALPHATEST
+	#ifdef ALPHA_TO_COVERAGE
+	diffuseColor.a = smoothstep( alphaTest, alphaTest + fwidth( diffuseColor.a ), diffuseColor.a );
+	if ( diffuseColor.a == 0.0 ) discard;
+	#else
+	if ( diffuseColor.a < alphaTest ) discard;
+	#endif
+#endif`,qy=`#ifdef USE_ALPHATEST
+	uniform float alphaTest;
+#endif`,$y=`#ifdef USE_AOMAP
+	float ambientOcclusion = ( texture2D( aoMap, vAoMapUv ).r - 1.0 ) * aoMapIntensity + 1.0;
+	reflectedLight.indirectDiffuse *= ambientOcclusion;
+	#if defined( USE_CLEARCOAT ) 
+		clearcoatSpecularIndirect *= ambientOcclusion;
+	#endif
+	#if defined( USE_SHEEN ) 
+		sheenSpecularIndirect *= ambientOcclusion;
+	#endif
+	#if defined( USE_ENVMAP ) && defined( STANDARD )
+		float dotNV = saturate( dot( geometryNormal, geometryViewDir ) );
+		reflectedLight.indirectSpecular *= computeSpecularOcclusion( dotNV, ambientOcclusion, material.roughness );
+	#endif
+#endif`,Zy=`#ifdef USE_AOMAP
+	uniform sampler2D aoMap;
+	uniform float aoMapIntensity;
+#endif`,Jy=`#ifdef USE_BATCHING
+	#if ! defined( GL_ANGLE_multi_draw )
+	#define gl_DrawID _gl_DrawID
+	uniform int _gl_DrawID;
+	#endif
+	uniform highp sampler2D batchingTexture;
+	uniform highp usampler2D batchingIdTexture;
+	mat4 getBatchingMatrix( const in float i ) {
+		int size = textureSize( batchingTexture, 0 ).x;
+		int j = int( i ) * 4;
+		int x = j % size;
+		int y = j / size;
+		vec4 v1 = texelFetch( batchingTexture, ivec2( x, y ), 0 );
+		vec4 v2 = texelFetch( batchingTexture, ivec2( x + 1, y ), 0 );
+		vec4 v3 = texelFetch( batchingTexture, ivec2( x + 2, y ), 0 );
+		vec4 v4 = texelFetch( batchingTexture, ivec2( x + 3, y ), 0 );
+		return mat4( v1, v2, v3, v4 );
+	}
+	float getIndirectIndex( const in int i ) {
+		int size = textureSize( batchingIdTexture, 0 ).x;
+		int x = i % size;
+		int y = i / size;
+		return float( texelFetch( batchingIdTexture, ivec2( x, y ), 0 ).r );
+	}
+#endif
+#ifdef USE_BATCHING_COLOR
+	uniform sampler2D batchingColorTexture;
+	vec4 getBatchingColor( const in float i ) {
+		int size = textureSize( batchingColorTexture, 0 ).x;
+		int j = int( i );
+		int x = j % size;
+		int y = j / size;
+		return texelFetch( batchingColorTexture, ivec2( x, y ), 0 );
+	}
+#endif`,jy=`#ifdef USE_BATCHING
+	mat4 batchingMatrix = getBatchingMatrix( getIndirectIndex( gl_DrawID ) );
+#endif`,Ky=`vec3 transformed = vec3( position );
+#ifdef USE_ALPHAHASH
+	vPosition = vec3( position );
+#endif`,Qy=`vec3 objectNormal = vec3( normal );
+#ifdef USE_TANGENT
+	vec3 objectTangent = vec3( tangent.xyz );
+#endif`,tv=`float G_BlinnPhong_Implicit( ) {
+	return 0.25;
+}
+float D_BlinnPhong( const in float shininess, const in float dotNH ) {
+	return RECIPROCAL_PI * ( shininess * 0.5 + 1.0 ) * pow( dotNH, shininess );
+}
+vec3 BRDF_BlinnPhong( const in vec3 lightDir, const in vec3 viewDir, const in vec3 normal, const in vec3 specularColor, const in float shininess ) {
+	vec3 halfDir = normalize( lightDir + viewDir );
+	float dotNH = saturate( dot( normal, halfDir ) );
+	float dotVH = saturate( dot( viewDir, halfDir ) );
+	vec3 F = F_Schlick( specularColor, 1.0, dotVH );
+	float G = G_BlinnPhong_Implicit( );
+	float D = D_BlinnPhong( shininess, dotNH );
+	return F * ( G * D );
+} // validated`,ev=`#ifdef USE_IRIDESCENCE
+	const mat3 XYZ_TO_REC709 = mat3(
+		 3.2404542, -0.9692660,  0.0556434,
+		-1.5371385,  1.8760108, -0.2040259,
+		-0.4985314,  0.0415560,  1.0572252
+	);
+	vec3 Fresnel0ToIor( vec3 fresnel0 ) {
+		vec3 sqrtF0 = sqrt( fresnel0 );
+		return ( vec3( 1.0 ) + sqrtF0 ) / ( vec3( 1.0 ) - sqrtF0 );
+	}
+	vec3 IorToFresnel0( vec3 transmittedIor, float incidentIor ) {
+		return pow2( ( transmittedIor - vec3( incidentIor ) ) / ( transmittedIor + vec3( incidentIor ) ) );
+	}
+	float IorToFresnel0( float transmittedIor, float incidentIor ) {
+		return pow2( ( transmittedIor - incidentIor ) / ( transmittedIor + incidentIor ));
+	}
+	vec3 evalSensitivity( float OPD, vec3 shift ) {
+		float phase = 2.0 * PI * OPD * 1.0e-9;
+		vec3 val = vec3( 5.4856e-13, 4.4201e-13, 5.2481e-13 );
+		vec3 pos = vec3( 1.6810e+06, 1.7953e+06, 2.2084e+06 );
+		vec3 var = vec3( 4.3278e+09, 9.3046e+09, 6.6121e+09 );
+		vec3 xyz = val * sqrt( 2.0 * PI * var ) * cos( pos * phase + shift ) * exp( - pow2( phase ) * var );
+		xyz.x += 9.7470e-14 * sqrt( 2.0 * PI * 4.5282e+09 ) * cos( 2.2399e+06 * phase + shift[ 0 ] ) * exp( - 4.5282e+09 * pow2( phase ) );
+		xyz /= 1.0685e-7;
+		vec3 rgb = XYZ_TO_REC709 * xyz;
+		return rgb;
+	}
+	vec3 evalIridescence( float outsideIOR, float eta2, float cosTheta1, float thinFilmThickness, vec3 baseF0 ) {
+		vec3 I;
+		float iridescenceIOR = mix( outsideIOR, eta2, smoothstep( 0.0, 0.03, thinFilmThickness ) );
+		float sinTheta2Sq = pow2( outsideIOR / iridescenceIOR ) * ( 1.0 - pow2( cosTheta1 ) );
+		float cosTheta2Sq = 1.0 - sinTheta2Sq;
+		if ( cosTheta2Sq < 0.0 ) {
+			return vec3( 1.0 );
+		}
+		float cosTheta2 = sqrt( cosTheta2Sq );
+		float R0 = IorToFresnel0( iridescenceIOR, outsideIOR );
+		float R12 = F_Schlick( R0, 1.0, cosTheta1 );
+		float T121 = 1.0 - R12;
+		float phi12 = 0.0;
+		if ( iridescenceIOR < outsideIOR ) phi12 = PI;
+		float phi21 = PI - phi12;
+		vec3 baseIOR = Fresnel0ToIor( clamp( baseF0, 0.0, 0.9999 ) );		vec3 R1 = IorToFresnel0( baseIOR, iridescenceIOR );
+		vec3 R23 = F_Schlick( R1, 1.0, cosTheta2 );
+		vec3 phi23 = vec3( 0.0 );
+		if ( baseIOR[ 0 ] < iridescenceIOR ) phi23[ 0 ] = PI;
+		if ( baseIOR[ 1 ] < iridescenceIOR ) phi23[ 1 ] = PI;
+		if ( baseIOR[ 2 ] < iridescenceIOR ) phi23[ 2 ] = PI;
+		float OPD = 2.0 * iridescenceIOR * thinFilmThickness * cosTheta2;
+		vec3 phi = vec3( phi21 ) + phi23;
+		vec3 R123 = clamp( R12 * R23, 1e-5, 0.9999 );
+		vec3 r123 = sqrt( R123 );
+		vec3 Rs = pow2( T121 ) * R23 / ( vec3( 1.0 ) - R123 );
+		vec3 C0 = R12 + Rs;
+		I = C0;
+		vec3 Cm = Rs - T121;
+		for ( int m = 1; m <= 2; ++ m ) {
+			Cm *= r123;
+			vec3 Sm = 2.0 * evalSensitivity( float( m ) * OPD, float( m ) * phi );
+			I += Cm * Sm;
+		}
+		return max( I, vec3( 0.0 ) );
+	}
+#endif`,nv=`#ifdef USE_BUMPMAP
+	uniform sampler2D bumpMap;
+	uniform float bumpScale;
+	vec2 dHdxy_fwd() {
+		vec2 dSTdx = dFdx( vBumpMapUv );
+		vec2 dSTdy = dFdy( vBumpMapUv );
+		float Hll = bumpScale * texture2D( bumpMap, vBumpMapUv ).x;
+		float dBx = bumpScale * texture2D( bumpMap, vBumpMapUv + dSTdx ).x - Hll;
+		float dBy = bumpScale * texture2D( bumpMap, vBumpMapUv + dSTdy ).x - Hll;
+		return vec2( dBx, dBy );
+	}
+	vec3 perturbNormalArb( vec3 surf_pos, vec3 surf_norm, vec2 dHdxy, float faceDirection ) {
+		vec3 vSigmaX = normalize( dFdx( surf_pos.xyz ) );
+		vec3 vSigmaY = normalize( dFdy( surf_pos.xyz ) );
+		vec3 vN = surf_norm;
+		vec3 R1 = cross( vSigmaY, vN );
+		vec3 R2 = cross( vN, vSigmaX );
+		float fDet = dot( vSigmaX, R1 ) * faceDirection;
+		vec3 vGrad = sign( fDet ) * ( dHdxy.x * R1 + dHdxy.y * R2 );
+		return normalize( abs( fDet ) * surf_norm - vGrad );
+	}
+#endif`,iv=`#if NUM_CLIPPING_PLANES > 0
+	vec4 plane;
+	#ifdef ALPHA_TO_COVERAGE
+		float distanceToPlane, distanceGradient;
+		float clipOpacity = 1.0;
+		#pragma unroll_loop_start
+		for ( int i = 0; i < UNION_CLIPPING_PLANES; i ++ ) {
+			plane = clippingPlanes[ i ];
+			distanceToPlane = - dot( vClipPosition, plane.xyz ) + plane.w;
+			distanceGradient = fwidth( distanceToPlane ) / 2.0;
+			clipOpacity *= smoothstep( - distanceGradient, distanceGradient, distanceToPlane );
+			if ( clipOpacity == 0.0 ) discard;
+		}
+		#pragma unroll_loop_end
+		#if UNION_CLIPPING_PLANES < NUM_CLIPPING_PLANES
+			float unionClipOpacity = 1.0;
+			#pragma unroll_loop_start
+			for ( int i = UNION_CLIPPING_PLANES; i < NUM_CLIPPING_PLANES; i ++ ) {
+				plane = clippingPlanes[ i ];
+				distanceToPlane = - dot( vClipPosition, plane.xyz ) + plane.w;
+				distanceGradient = fwidth( distanceToPlane ) / 2.0;
+				unionClipOpacity *= 1.0 - smoothstep( - distanceGradient, distanceGradient, distanceToPlane );
+			}
+			#pragma unroll_loop_end
+			clipOpacity *= 1.0 - unionClipOpacity;
+		#endif
+		diffuseColor.a *= clipOpacity;
+		if ( diffuseColor.a == 0.0 ) discard;
+	#else
+		#pragma unroll_loop_start
+		for ( int i = 0; i < UNION_CLIPPING_PLANES; i ++ ) {
+			plane = clippingPlanes[ i ];
+			if ( dot( vClipPosition, plane.xyz ) > plane.w ) discard;
+		}
+		#pragma unroll_loop_end
+		#if UNION_CLIPPING_PLANES < NUM_CLIPPING_PLANES
+			bool clipped = true;
+			#pragma unroll_loop_start
+			for ( int i = UNION_CLIPPING_PLANES; i < NUM_CLIPPING_PLANES; i ++ ) {
+				plane = clippingPlanes[ i ];
+				clipped = ( dot( vClipPosition, plane.xyz ) > plane.w ) && clipped;
+			}
+			#pragma unroll_loop_end
+			if ( clipped ) discard;
+		#endif
+	#endif
+#endif`,sv=`#if NUM_CLIPPING_PLANES > 0
+	varying vec3 vClipPosition;
+	uniform vec4 clippingPlanes[ NUM_CLIPPING_PLANES ];
+#endif`,rv=`#if NUM_CLIPPING_PLANES > 0
+	varying vec3 vClipPosition;
+#endif`,ov=`#if NUM_CLIPPING_PLANES > 0
+	vClipPosition = - mvPosition.xyz;
+#endif`,av=`#if defined( USE_COLOR ) || defined( USE_COLOR_ALPHA )
+	diffuseColor *= vColor;
+#endif`,lv=`#if defined( USE_COLOR ) || defined( USE_COLOR_ALPHA )
+	varying vec4 vColor;
+#endif`,cv=`#if defined( USE_COLOR ) || defined( USE_COLOR_ALPHA ) || defined( USE_INSTANCING_COLOR ) || defined( USE_BATCHING_COLOR )
+	varying vec4 vColor;
+#endif`,hv=`#if defined( USE_COLOR ) || defined( USE_COLOR_ALPHA ) || defined( USE_INSTANCING_COLOR ) || defined( USE_BATCHING_COLOR )
+	vColor = vec4( 1.0 );
+#endif
+#ifdef USE_COLOR_ALPHA
+	vColor *= color;
+#elif defined( USE_COLOR )
+	vColor.rgb *= color;
+#endif
+#ifdef USE_INSTANCING_COLOR
+	vColor.rgb *= instanceColor.rgb;
+#endif
+#ifdef USE_BATCHING_COLOR
+	vColor *= getBatchingColor( getIndirectIndex( gl_DrawID ) );
+#endif`,uv=`#define PI 3.141592653589793
+#define PI2 6.283185307179586
+#define PI_HALF 1.5707963267948966
+#define RECIPROCAL_PI 0.3183098861837907
+#define RECIPROCAL_PI2 0.15915494309189535
+#define EPSILON 1e-6
+#ifndef saturate
+#define saturate( a ) clamp( a, 0.0, 1.0 )
+#endif
+#define whiteComplement( a ) ( 1.0 - saturate( a ) )
+float pow2( const in float x ) { return x*x; }
+vec3 pow2( const in vec3 x ) { return x*x; }
+float pow3( const in float x ) { return x*x*x; }
+float pow4( const in float x ) { float x2 = x*x; return x2*x2; }
+float max3( const in vec3 v ) { return max( max( v.x, v.y ), v.z ); }
+float average( const in vec3 v ) { return dot( v, vec3( 0.3333333 ) ); }
+highp float rand( const in vec2 uv ) {
+	const highp float a = 12.9898, b = 78.233, c = 43758.5453;
+	highp float dt = dot( uv.xy, vec2( a,b ) ), sn = mod( dt, PI );
+	return fract( sin( sn ) * c );
+}
+#ifdef HIGH_PRECISION
+	float precisionSafeLength( vec3 v ) { return length( v ); }
+#else
+	float precisionSafeLength( vec3 v ) {
+		float maxComponent = max3( abs( v ) );
+		return length( v / maxComponent ) * maxComponent;
+	}
+#endif
+struct IncidentLight {
+	vec3 color;
+	vec3 direction;
+	bool visible;
+};
+struct ReflectedLight {
+	vec3 directDiffuse;
+	vec3 directSpecular;
+	vec3 indirectDiffuse;
+	vec3 indirectSpecular;
+};
+#ifdef USE_ALPHAHASH
+	varying vec3 vPosition;
+#endif
+vec3 transformDirection( in vec3 dir, in mat4 matrix ) {
+	return normalize( ( matrix * vec4( dir, 0.0 ) ).xyz );
+}
+#define inverseTransformDirection transformDirectionByInverseViewMatrix
+vec3 transformNormalByInverseViewMatrix( in vec3 normal, in mat4 viewMatrix ) {
+	return normalize( ( vec4( normal, 0.0 ) * viewMatrix ).xyz );
+}
+vec3 transformDirectionByInverseViewMatrix( in vec3 dir, in mat4 viewMatrix ) {
+	return normalize( ( vec4( dir, 0.0 ) * viewMatrix ).xyz );
+}
+bool isPerspectiveMatrix( mat4 m ) {
+	return m[ 2 ][ 3 ] == - 1.0;
+}
+vec2 equirectUv( in vec3 dir ) {
+	float u = atan( dir.z, dir.x ) * RECIPROCAL_PI2 + 0.5;
+	float v = asin( clamp( dir.y, - 1.0, 1.0 ) ) * RECIPROCAL_PI + 0.5;
+	return vec2( u, v );
+}
+vec3 BRDF_Lambert( const in vec3 diffuseColor ) {
+	return RECIPROCAL_PI * diffuseColor;
+}
+vec3 F_Schlick( const in vec3 f0, const in float f90, const in float dotVH ) {
+	float fresnel = exp2( ( - 5.55473 * dotVH - 6.98316 ) * dotVH );
+	return f0 * ( 1.0 - fresnel ) + ( f90 * fresnel );
+}
+float F_Schlick( const in float f0, const in float f90, const in float dotVH ) {
+	float fresnel = exp2( ( - 5.55473 * dotVH - 6.98316 ) * dotVH );
+	return f0 * ( 1.0 - fresnel ) + ( f90 * fresnel );
+} // validated`,dv=`vec3 transformedNormal = objectNormal;
+#ifdef USE_TANGENT
+	vec3 transformedTangent = objectTangent;
+#endif
+#ifdef USE_BATCHING
+	mat3 bm = mat3( batchingMatrix );
+	transformedNormal /= vec3( dot( bm[ 0 ], bm[ 0 ] ), dot( bm[ 1 ], bm[ 1 ] ), dot( bm[ 2 ], bm[ 2 ] ) );
+	transformedNormal = bm * transformedNormal;
+	#ifdef USE_TANGENT
+		transformedTangent = bm * transformedTangent;
+	#endif
+#endif
+#ifdef USE_INSTANCING
+	mat3 im = mat3( instanceMatrix );
+	transformedNormal /= vec3( dot( im[ 0 ], im[ 0 ] ), dot( im[ 1 ], im[ 1 ] ), dot( im[ 2 ], im[ 2 ] ) );
+	transformedNormal = im * transformedNormal;
+	#ifdef USE_TANGENT
+		transformedTangent = im * transformedTangent;
+	#endif
+#endif
+transformedNormal = normalMatrix * transformedNormal;
+#ifdef FLIP_SIDED
+	transformedNormal = - transformedNormal;
+#endif
+#ifdef USE_TANGENT
+	transformedTangent = ( modelViewMatrix * vec4( transformedTangent, 0.0 ) ).xyz;
+#endif`,fv=`#ifdef USE_DISPLACEMENTMAP
+	uniform sampler2D displacementMap;
+	uniform float displacementScale;
+	uniform float displacementBias;
+#endif`,pv=`#ifdef USE_DISPLACEMENTMAP
+	transformed += normalize( objectNormal ) * ( texture2D( displacementMap, vDisplacementMapUv ).x * displacementScale + displacementBias );
+#endif`,mv=`#ifdef USE_EMISSIVEMAP
+	vec4 emissiveColor = texture2D( emissiveMap, vEmissiveMapUv );
+	#ifdef DECODE_VIDEO_TEXTURE_EMISSIVE
+		emissiveColor = sRGBTransferEOTF( emissiveColor );
+	#endif
+	totalEmissiveRadiance *= emissiveColor.rgb;
+#endif`,gv=`#ifdef USE_EMISSIVEMAP
+	uniform sampler2D emissiveMap;
+#endif`,_v="gl_FragColor = linearToOutputTexel( gl_FragColor );",xv=`vec4 LinearTransferOETF( in vec4 value ) {
+	return value;
+}
+vec4 sRGBTransferEOTF( in vec4 value ) {
+	return vec4( mix( pow( value.rgb * 0.9478672986 + vec3( 0.0521327014 ), vec3( 2.4 ) ), value.rgb * 0.0773993808, vec3( lessThanEqual( value.rgb, vec3( 0.04045 ) ) ) ), value.a );
+}
+vec4 sRGBTransferOETF( in vec4 value ) {
+	return vec4( mix( pow( value.rgb, vec3( 0.41666 ) ) * 1.055 - vec3( 0.055 ), value.rgb * 12.92, vec3( lessThanEqual( value.rgb, vec3( 0.0031308 ) ) ) ), value.a );
+}`,yv=`#ifdef USE_ENVMAP
+	#ifdef ENV_WORLDPOS
+		vec3 cameraToFrag;
+		if ( isOrthographic ) {
+			cameraToFrag = normalize( vec3( - viewMatrix[ 0 ][ 2 ], - viewMatrix[ 1 ][ 2 ], - viewMatrix[ 2 ][ 2 ] ) );
+		} else {
+			cameraToFrag = normalize( vWorldPosition - cameraPosition );
+		}
+		vec3 worldNormal = transformNormalByInverseViewMatrix( normal, viewMatrix );
+		#ifdef ENVMAP_MODE_REFLECTION
+			vec3 reflectVec = reflect( cameraToFrag, worldNormal );
+		#else
+			vec3 reflectVec = refract( cameraToFrag, worldNormal, refractionRatio );
+		#endif
+	#else
+		vec3 reflectVec = vReflect;
+	#endif
+	#ifdef ENVMAP_TYPE_CUBE
+		vec4 envColor = textureCube( envMap, envMapRotation * reflectVec );
+		#ifdef ENVMAP_BLENDING_MULTIPLY
+			outgoingLight = mix( outgoingLight, outgoingLight * envColor.xyz, specularStrength * reflectivity );
+		#elif defined( ENVMAP_BLENDING_MIX )
+			outgoingLight = mix( outgoingLight, envColor.xyz, specularStrength * reflectivity );
+		#elif defined( ENVMAP_BLENDING_ADD )
+			outgoingLight += envColor.xyz * specularStrength * reflectivity;
+		#endif
+	#endif
+#endif`,vv=`#ifdef USE_ENVMAP
+	uniform float envMapIntensity;
+	uniform mat3 envMapRotation;
+	uniform samplerCube envMap;
+	#ifdef ENVMAP_TYPE_PMREM
+		float roughnessToMip( const in float roughness ) {
+			float r = clamp( roughness, 0.0, 1.0 );
+			return ENVMAP_MAX_LOD * r * ( 2.0 - r );
+		}
+	#endif
+#endif`,Sv=`#ifdef USE_ENVMAP
+	uniform float reflectivity;
+	#if defined( USE_BUMPMAP ) || defined( USE_NORMALMAP ) || defined( PHONG ) || defined( LAMBERT )
+		#define ENV_WORLDPOS
+	#endif
+	#ifdef ENV_WORLDPOS
+		varying vec3 vWorldPosition;
+		uniform float refractionRatio;
+	#else
+		varying vec3 vReflect;
+	#endif
+#endif`,Mv=`#ifdef USE_ENVMAP
+	#if defined( USE_BUMPMAP ) || defined( USE_NORMALMAP ) || defined( PHONG ) || defined( LAMBERT )
+		#define ENV_WORLDPOS
+	#endif
+	#ifdef ENV_WORLDPOS
+		
+		varying vec3 vWorldPosition;
+	#else
+		varying vec3 vReflect;
+		uniform float refractionRatio;
+	#endif
+#endif`,bv=`#ifdef USE_ENVMAP
+	#ifdef ENV_WORLDPOS
+		vWorldPosition = worldPosition.xyz;
+	#else
+		vec3 cameraToVertex;
+		if ( isOrthographic ) {
+			cameraToVertex = normalize( vec3( - viewMatrix[ 0 ][ 2 ], - viewMatrix[ 1 ][ 2 ], - viewMatrix[ 2 ][ 2 ] ) );
+		} else {
+			cameraToVertex = normalize( worldPosition.xyz - cameraPosition );
+		}
+		vec3 worldNormal = transformNormalByInverseViewMatrix( transformedNormal, viewMatrix );
+		#ifdef ENVMAP_MODE_REFLECTION
+			vReflect = reflect( cameraToVertex, worldNormal );
+		#else
+			vReflect = refract( cameraToVertex, worldNormal, refractionRatio );
+		#endif
+	#endif
+#endif`,wv=`#ifdef USE_FOG
+	vFogDepth = - mvPosition.z;
+#endif`,Tv=`#ifdef USE_FOG
+	varying float vFogDepth;
+#endif`,Ev=`#ifdef USE_FOG
+	#ifdef FOG_EXP2
+		float fogFactor = 1.0 - exp( - fogDensity * fogDensity * vFogDepth * vFogDepth );
+	#else
+		float fogFactor = smoothstep( fogNear, fogFar, vFogDepth );
+	#endif
+	gl_FragColor.rgb = mix( gl_FragColor.rgb, fogColor, fogFactor );
+#endif`,Av=`#ifdef USE_FOG
+	uniform vec3 fogColor;
+	varying float vFogDepth;
+	#ifdef FOG_EXP2
+		uniform float fogDensity;
+	#else
+		uniform float fogNear;
+		uniform float fogFar;
+	#endif
+#endif`,Cv=`#ifdef USE_GRADIENTMAP
+	uniform sampler2D gradientMap;
+#endif
+vec3 getGradientIrradiance( vec3 normal, vec3 lightDirection ) {
+	float dotNL = dot( normal, lightDirection );
+	vec2 coord = vec2( dotNL * 0.5 + 0.5, 0.0 );
+	#ifdef USE_GRADIENTMAP
+		return vec3( texture2D( gradientMap, coord ).r );
+	#else
+		vec2 fw = fwidth( coord ) * 0.5;
+		return mix( vec3( 0.7 ), vec3( 1.0 ), smoothstep( 0.7 - fw.x, 0.7 + fw.x, coord.x ) );
+	#endif
+}`,Rv=`#ifdef USE_LIGHTMAP
+	uniform sampler2D lightMap;
+	uniform float lightMapIntensity;
+#endif`,Pv=`LambertMaterial material;
+material.diffuseColor = diffuseColor.rgb;
+material.specularStrength = specularStrength;`,Iv=`varying vec3 vViewPosition;
+struct LambertMaterial {
+	vec3 diffuseColor;
+	float specularStrength;
+};
+void RE_Direct_Lambert( const in IncidentLight directLight, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in LambertMaterial material, inout ReflectedLight reflectedLight ) {
+	float dotNL = saturate( dot( geometryNormal, directLight.direction ) );
+	vec3 irradiance = dotNL * directLight.color;
+	reflectedLight.directDiffuse += irradiance * BRDF_Lambert( material.diffuseColor );
+}
+void RE_IndirectDiffuse_Lambert( const in vec3 irradiance, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in LambertMaterial material, inout ReflectedLight reflectedLight ) {
+	reflectedLight.indirectDiffuse += irradiance * BRDF_Lambert( material.diffuseColor );
+}
+#define RE_Direct				RE_Direct_Lambert
+#define RE_IndirectDiffuse		RE_IndirectDiffuse_Lambert`,Lv=`uniform bool receiveShadow;
+uniform vec3 ambientLightColor;
+#if defined( USE_LIGHT_PROBES )
+	uniform vec3 lightProbe[ 9 ];
+#endif
+vec3 shGetIrradianceAt( in vec3 normal, in vec3 shCoefficients[ 9 ] ) {
+	float x = normal.x, y = normal.y, z = normal.z;
+	vec3 result = shCoefficients[ 0 ] * 0.886227;
+	result += shCoefficients[ 1 ] * 2.0 * 0.511664 * y;
+	result += shCoefficients[ 2 ] * 2.0 * 0.511664 * z;
+	result += shCoefficients[ 3 ] * 2.0 * 0.511664 * x;
+	result += shCoefficients[ 4 ] * 2.0 * 0.429043 * x * y;
+	result += shCoefficients[ 5 ] * 2.0 * 0.429043 * y * z;
+	result += shCoefficients[ 6 ] * ( 0.743125 * z * z - 0.247708 );
+	result += shCoefficients[ 7 ] * 2.0 * 0.429043 * x * z;
+	result += shCoefficients[ 8 ] * 0.429043 * ( x * x - y * y );
+	return result;
+}
+vec3 getLightProbeIrradiance( const in vec3 lightProbe[ 9 ], const in vec3 normal ) {
+	vec3 worldNormal = transformNormalByInverseViewMatrix( normal, viewMatrix );
+	vec3 irradiance = shGetIrradianceAt( worldNormal, lightProbe );
+	return irradiance;
+}
+vec3 getAmbientLightIrradiance( const in vec3 ambientLightColor ) {
+	vec3 irradiance = ambientLightColor;
+	return irradiance;
+}
+float getDistanceAttenuation( const in float lightDistance, const in float cutoffDistance, const in float decayExponent ) {
+	float distanceFalloff = 1.0 / max( pow( lightDistance, decayExponent ), 0.01 );
+	if ( cutoffDistance > 0.0 ) {
+		distanceFalloff *= pow2( saturate( 1.0 - pow4( lightDistance / cutoffDistance ) ) );
+	}
+	return distanceFalloff;
+}
+float getSpotAttenuation( const in float coneCosine, const in float penumbraCosine, const in float angleCosine ) {
+	return smoothstep( coneCosine, penumbraCosine, angleCosine );
+}
+#if NUM_SUN_LIGHTS > 0
+	struct SunLight {
+		vec3 direction;
+		vec3 color;
+	};
+	uniform SunLight sunLights[ NUM_SUN_LIGHTS ];
+	void getSunLightInfo( const in SunLight sunLight, out IncidentLight light ) {
+		light.color = sunLight.color;
+		light.direction = sunLight.direction;
+		light.visible = true;
+	}
+#endif
+#if NUM_DIR_LIGHTS > 0
+	struct DirectionalLight {
+		vec3 direction;
+		vec3 color;
+	};
+	uniform DirectionalLight directionalLights[ NUM_DIR_LIGHTS ];
+	void getDirectionalLightInfo( const in DirectionalLight directionalLight, out IncidentLight light ) {
+		light.color = directionalLight.color;
+		light.direction = directionalLight.direction;
+		light.visible = true;
+	}
+#endif
+#if NUM_POINT_LIGHTS > 0
+	struct PointLight {
+		vec3 position;
+		vec3 color;
+		float distance;
+		float decay;
+	};
+	uniform PointLight pointLights[ NUM_POINT_LIGHTS ];
+	void getPointLightInfo( const in PointLight pointLight, const in vec3 geometryPosition, out IncidentLight light ) {
+		vec3 lVector = pointLight.position - geometryPosition;
+		light.direction = normalize( lVector );
+		float lightDistance = length( lVector );
+		light.color = pointLight.color;
+		light.color *= getDistanceAttenuation( lightDistance, pointLight.distance, pointLight.decay );
+		light.visible = ( light.color != vec3( 0.0 ) );
+	}
+#endif
+#if NUM_SPOT_LIGHTS > 0
+	struct SpotLight {
+		vec3 position;
+		vec3 direction;
+		vec3 color;
+		float distance;
+		float decay;
+		float coneCos;
+		float penumbraCos;
+	};
+	uniform SpotLight spotLights[ NUM_SPOT_LIGHTS ];
+	void getSpotLightInfo( const in SpotLight spotLight, const in vec3 geometryPosition, out IncidentLight light ) {
+		vec3 lVector = spotLight.position - geometryPosition;
+		light.direction = normalize( lVector );
+		float angleCos = dot( light.direction, spotLight.direction );
+		float spotAttenuation = getSpotAttenuation( spotLight.coneCos, spotLight.penumbraCos, angleCos );
+		if ( spotAttenuation > 0.0 ) {
+			float lightDistance = length( lVector );
+			light.color = spotLight.color * spotAttenuation;
+			light.color *= getDistanceAttenuation( lightDistance, spotLight.distance, spotLight.decay );
+			light.visible = ( light.color != vec3( 0.0 ) );
+		} else {
+			light.color = vec3( 0.0 );
+			light.visible = false;
+		}
+	}
+#endif
+#if NUM_RECT_AREA_LIGHTS > 0
+	struct RectAreaLight {
+		vec3 color;
+		vec3 position;
+		vec3 halfWidth;
+		vec3 halfHeight;
+	};
+	uniform sampler2D ltc_1;	uniform sampler2D ltc_2;
+	uniform RectAreaLight rectAreaLights[ NUM_RECT_AREA_LIGHTS ];
+#endif
+#if NUM_HEMI_LIGHTS > 0
+	struct HemisphereLight {
+		vec3 direction;
+		vec3 skyColor;
+		vec3 groundColor;
+	};
+	uniform HemisphereLight hemisphereLights[ NUM_HEMI_LIGHTS ];
+	vec3 getHemisphereLightIrradiance( const in HemisphereLight hemiLight, const in vec3 normal ) {
+		float dotNL = dot( normal, hemiLight.direction );
+		float hemiDiffuseWeight = 0.5 * dotNL + 0.5;
+		vec3 irradiance = mix( hemiLight.groundColor, hemiLight.skyColor, hemiDiffuseWeight );
+		return irradiance;
+	}
+#endif
+#include <lightprobes_pars_fragment>`,Dv=`#ifdef USE_ENVMAP
+	vec3 getIBLIrradiance( const in vec3 normal ) {
+		#ifdef ENVMAP_TYPE_PMREM
+			vec3 worldNormal = transformNormalByInverseViewMatrix( normal, viewMatrix );
+			vec4 envMapColor = textureLod( envMap, envMapRotation * worldNormal, ENVMAP_MAX_LOD );
+			return PI * envMapColor.rgb * envMapIntensity;
+		#else
+			return vec3( 0.0 );
+		#endif
+	}
+	vec3 getIBLRadiance( const in vec3 viewDir, const in vec3 normal, const in float roughness ) {
+		#ifdef ENVMAP_TYPE_PMREM
+			vec3 reflectVec = reflect( - viewDir, normal );
+			reflectVec = normalize( mix( reflectVec, normal, pow4( roughness ) ) );
+			reflectVec = transformDirectionByInverseViewMatrix( reflectVec, viewMatrix );
+			vec4 envMapColor = textureLod( envMap, envMapRotation * reflectVec, roughnessToMip( roughness ) );
+			return envMapColor.rgb * envMapIntensity;
+		#else
+			return vec3( 0.0 );
+		#endif
+	}
+	#ifdef USE_RETROREFLECTION
+		vec3 getIBLRetroRadiance( const in vec3 viewDir, const in vec3 normal, const in float roughness ) {
+			#ifdef ENVMAP_TYPE_PMREM
+				vec3 retroVec = normalize( mix( viewDir, normal, pow4( roughness ) ) );
+				retroVec = transformDirectionByInverseViewMatrix( retroVec, viewMatrix );
+				vec4 envMapColor = textureLod( envMap, envMapRotation * retroVec, roughnessToMip( roughness ) );
+				return envMapColor.rgb * envMapIntensity;
+			#else
+				return vec3( 0.0 );
+			#endif
+		}
+	#endif
+	#ifdef USE_ANISOTROPY
+		vec3 getIBLAnisotropyRadiance( const in vec3 viewDir, const in vec3 normal, const in float roughness, const in vec3 bitangent, const in float anisotropy ) {
+			#ifdef ENVMAP_TYPE_PMREM
+				vec3 bentNormal = cross( bitangent, viewDir );
+				bentNormal = normalize( cross( bentNormal, bitangent ) );
+				bentNormal = normalize( mix( bentNormal, normal, pow2( pow2( 1.0 - anisotropy * ( 1.0 - roughness ) ) ) ) );
+				return getIBLRadiance( viewDir, bentNormal, roughness );
+			#else
+				return vec3( 0.0 );
+			#endif
+		}
+		#ifdef USE_RETROREFLECTION
+			vec3 getIBLAnisotropyRetroRadiance( const in vec3 viewDir, const in vec3 normal, const in float roughness, const in vec3 bitangent, const in float anisotropy ) {
+				#ifdef ENVMAP_TYPE_PMREM
+					vec3 bentNormal = cross( bitangent, viewDir );
+					bentNormal = normalize( cross( bentNormal, bitangent ) );
+					bentNormal = normalize( mix( bentNormal, normal, pow2( pow2( 1.0 - anisotropy * ( 1.0 - roughness ) ) ) ) );
+					return getIBLRetroRadiance( viewDir, bentNormal, roughness );
+				#else
+					return vec3( 0.0 );
+				#endif
+			}
+		#endif
+	#endif
+#endif`,Nv=`ToonMaterial material;
+material.diffuseColor = diffuseColor.rgb;`,Uv=`varying vec3 vViewPosition;
+struct ToonMaterial {
+	vec3 diffuseColor;
+};
+void RE_Direct_Toon( const in IncidentLight directLight, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in ToonMaterial material, inout ReflectedLight reflectedLight ) {
+	vec3 irradiance = getGradientIrradiance( geometryNormal, directLight.direction ) * directLight.color;
+	reflectedLight.directDiffuse += irradiance * BRDF_Lambert( material.diffuseColor );
+}
+void RE_IndirectDiffuse_Toon( const in vec3 irradiance, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in ToonMaterial material, inout ReflectedLight reflectedLight ) {
+	reflectedLight.indirectDiffuse += irradiance * BRDF_Lambert( material.diffuseColor );
+}
+#define RE_Direct				RE_Direct_Toon
+#define RE_IndirectDiffuse		RE_IndirectDiffuse_Toon`,Ov=`BlinnPhongMaterial material;
+material.diffuseColor = diffuseColor.rgb;
+material.specularColor = specular;
+material.specularShininess = shininess;
+material.specularStrength = specularStrength;`,Fv=`varying vec3 vViewPosition;
+struct BlinnPhongMaterial {
+	vec3 diffuseColor;
+	vec3 specularColor;
+	float specularShininess;
+	float specularStrength;
+};
+void RE_Direct_BlinnPhong( const in IncidentLight directLight, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in BlinnPhongMaterial material, inout ReflectedLight reflectedLight ) {
+	float dotNL = saturate( dot( geometryNormal, directLight.direction ) );
+	vec3 irradiance = dotNL * directLight.color;
+	reflectedLight.directDiffuse += irradiance * BRDF_Lambert( material.diffuseColor );
+	reflectedLight.directSpecular += irradiance * BRDF_BlinnPhong( directLight.direction, geometryViewDir, geometryNormal, material.specularColor, material.specularShininess ) * material.specularStrength;
+}
+void RE_IndirectDiffuse_BlinnPhong( const in vec3 irradiance, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in BlinnPhongMaterial material, inout ReflectedLight reflectedLight ) {
+	reflectedLight.indirectDiffuse += irradiance * BRDF_Lambert( material.diffuseColor );
+}
+#define RE_Direct				RE_Direct_BlinnPhong
+#define RE_IndirectDiffuse		RE_IndirectDiffuse_BlinnPhong`,Bv=`PhysicalMaterial material;
+material.diffuseColor = diffuseColor.rgb;
+material.diffuseContribution = diffuseColor.rgb * ( 1.0 - metalnessFactor );
+material.metalness = metalnessFactor;
+vec3 dxy = max( abs( dFdx( nonPerturbedNormal ) ), abs( dFdy( nonPerturbedNormal ) ) );
+float geometryRoughness = max( max( dxy.x, dxy.y ), dxy.z );
+material.roughness = max( roughnessFactor, 0.045 );
+material.roughness += geometryRoughness;
+material.roughness = min( material.roughness, 1.0 );
+#ifdef USE_DIFFUSE_ROUGHNESS
+	float diffuseRoughnessFactor = diffuseRoughness;
+	#ifdef USE_DIFFUSE_ROUGHNESSMAP
+		diffuseRoughnessFactor *= texture2D( diffuseRoughnessMap, vDiffuseRoughnessMapUv ).r;
+	#endif
+	material.diffuseRoughness = saturate( diffuseRoughnessFactor );
+#endif
+#ifdef IOR
+	material.ior = ior;
+	#ifdef USE_SPECULAR
+		float specularIntensityFactor = specularIntensity;
+		vec3 specularColorFactor = specularColor;
+		#ifdef USE_SPECULAR_COLORMAP
+			specularColorFactor *= texture2D( specularColorMap, vSpecularColorMapUv ).rgb;
+		#endif
+		#ifdef USE_SPECULAR_INTENSITYMAP
+			specularIntensityFactor *= texture2D( specularIntensityMap, vSpecularIntensityMapUv ).a;
+		#endif
+		material.specularF90 = mix( specularIntensityFactor, 1.0, metalnessFactor );
+	#else
+		float specularIntensityFactor = 1.0;
+		vec3 specularColorFactor = vec3( 1.0 );
+		material.specularF90 = 1.0;
+	#endif
+	material.specularColor = min( pow2( ( material.ior - 1.0 ) / ( material.ior + 1.0 ) ) * specularColorFactor, vec3( 1.0 ) ) * specularIntensityFactor;
+	material.specularColorBlended = mix( material.specularColor, diffuseColor.rgb, metalnessFactor );
+#else
+	material.specularColor = vec3( 0.04 );
+	material.specularColorBlended = mix( material.specularColor, diffuseColor.rgb, metalnessFactor );
+	material.specularF90 = 1.0;
+#endif
+#ifdef USE_CLEARCOAT
+	material.clearcoat = clearcoat;
+	material.clearcoatRoughness = clearcoatRoughness;
+	material.clearcoatF0 = vec3( 0.04 );
+	material.clearcoatF90 = 1.0;
+	#ifdef USE_CLEARCOATMAP
+		material.clearcoat *= texture2D( clearcoatMap, vClearcoatMapUv ).x;
+	#endif
+	#ifdef USE_CLEARCOAT_ROUGHNESSMAP
+		material.clearcoatRoughness *= texture2D( clearcoatRoughnessMap, vClearcoatRoughnessMapUv ).y;
+	#endif
+	material.clearcoat = saturate( material.clearcoat );	material.clearcoatRoughness = max( material.clearcoatRoughness, 0.045 );
+	material.clearcoatRoughness += geometryRoughness;
+	material.clearcoatRoughness = min( material.clearcoatRoughness, 1.0 );
+#endif
+#ifdef USE_DISPERSION
+	material.dispersion = dispersion;
+#endif
+#ifdef USE_RETROREFLECTION
+	material.retroreflectivity = retroreflectivity;
+#endif
+#ifdef USE_IRIDESCENCE
+	material.iridescence = iridescence;
+	material.iridescenceIOR = iridescenceIOR;
+	#ifdef USE_IRIDESCENCEMAP
+		material.iridescence *= texture2D( iridescenceMap, vIridescenceMapUv ).r;
+	#endif
+	#ifdef USE_IRIDESCENCE_THICKNESSMAP
+		material.iridescenceThickness = (iridescenceThicknessMaximum - iridescenceThicknessMinimum) * texture2D( iridescenceThicknessMap, vIridescenceThicknessMapUv ).g + iridescenceThicknessMinimum;
+	#else
+		material.iridescenceThickness = iridescenceThicknessMaximum;
+	#endif
+#endif
+#ifdef USE_SHEEN
+	material.sheenColor = sheenColor;
+	#ifdef USE_SHEEN_COLORMAP
+		material.sheenColor *= texture2D( sheenColorMap, vSheenColorMapUv ).rgb;
+	#endif
+	material.sheenRoughness = clamp( sheenRoughness, 0.0001, 1.0 );
+	#ifdef USE_SHEEN_ROUGHNESSMAP
+		material.sheenRoughness *= texture2D( sheenRoughnessMap, vSheenRoughnessMapUv ).a;
+	#endif
+#endif
+#ifdef USE_ANISOTROPY
+	#ifdef USE_ANISOTROPYMAP
+		mat2 anisotropyMat = mat2( anisotropyVector.x, anisotropyVector.y, - anisotropyVector.y, anisotropyVector.x );
+		vec3 anisotropyPolar = texture2D( anisotropyMap, vAnisotropyMapUv ).rgb;
+		vec2 anisotropyV = anisotropyMat * normalize( 2.0 * anisotropyPolar.rg - vec2( 1.0 ) ) * anisotropyPolar.b;
+	#else
+		vec2 anisotropyV = anisotropyVector;
+	#endif
+	material.anisotropy = length( anisotropyV );
+	if( material.anisotropy == 0.0 ) {
+		anisotropyV = vec2( 1.0, 0.0 );
+	} else {
+		anisotropyV /= material.anisotropy;
+		material.anisotropy = saturate( material.anisotropy );
+	}
+	material.alphaT = mix( pow2( material.roughness ), 1.0, pow2( material.anisotropy ) );
+	material.anisotropyT = tbn[ 0 ] * anisotropyV.x + tbn[ 1 ] * anisotropyV.y;
+	material.anisotropyB = tbn[ 1 ] * anisotropyV.x - tbn[ 0 ] * anisotropyV.y;
+#endif`,kv=`uniform sampler2D dfgLUT;
+struct PhysicalMaterial {
+	vec3 diffuseColor;
+	vec3 diffuseContribution;
+	vec3 specularColor;
+	vec3 specularColorBlended;
+	float roughness;
+	float metalness;
+	float specularF90;
+	float dispersion;
+	vec2 dfg;
+	vec3 multiScatteringCompensation;
+	#ifdef USE_DIFFUSE_ROUGHNESS
+		float diffuseRoughness;
+	#endif
+	#ifdef USE_RETROREFLECTION
+		float retroreflectivity;
+	#endif
+	#ifdef USE_CLEARCOAT
+		float clearcoat;
+		float clearcoatRoughness;
+		vec3 clearcoatF0;
+		float clearcoatF90;
+	#endif
+	#ifdef USE_IRIDESCENCE
+		float iridescence;
+		float iridescenceIOR;
+		float iridescenceThickness;
+		vec3 iridescenceFresnel;
+		vec3 iridescenceF0Dielectric;
+		vec3 iridescenceF0Metallic;
+	#endif
+	#ifdef USE_SHEEN
+		vec3 sheenColor;
+		float sheenRoughness;
+	#endif
+	#ifdef IOR
+		float ior;
+	#endif
+	#ifdef USE_TRANSMISSION
+		float transmission;
+		float transmissionAlpha;
+		float thickness;
+		float attenuationDistance;
+		vec3 attenuationColor;
+	#endif
+	#ifdef USE_ANISOTROPY
+		float anisotropy;
+		float alphaT;
+		vec3 anisotropyT;
+		vec3 anisotropyB;
+	#endif
+};
+vec3 clearcoatSpecularDirect = vec3( 0.0 );
+vec3 clearcoatSpecularIndirect = vec3( 0.0 );
+vec3 sheenSpecularDirect = vec3( 0.0 );
+vec3 sheenSpecularIndirect = vec3(0.0 );
+vec3 Schlick_to_F0( const in vec3 f, const in float f90, const in float dotVH ) {
+    float x = clamp( 1.0 - dotVH, 0.0, 1.0 );
+    float x2 = x * x;
+    float x5 = clamp( x * x2 * x2, 0.0, 0.9999 );
+    return ( f - vec3( f90 ) * x5 ) / ( 1.0 - x5 );
+}
+#ifdef USE_DIFFUSE_ROUGHNESS
+	const float EON_EPSILON = 1e-7;
+	float FON_DirectionalAlbedo( const in float mu, const in float roughness, const in float A ) {
+		float muComp = 1.0 - mu;
+		float gOverPi = muComp * ( 0.0571085289 + muComp * ( 0.491881867 + muComp * ( - 0.332181442 + muComp * 0.0714429953 ) ) );
+		return A * ( 1.0 + roughness * gOverPi );
+	}
+	vec3 BRDF_EON( const in vec3 lightDir, const in vec3 viewDir, const in vec3 normal, const in vec3 diffuseColor, const in float roughness ) {
+		vec3 rho = saturate( diffuseColor );
+		if ( roughness <= EON_EPSILON ) return BRDF_Lambert( rho );
+		float dotNL = saturate( dot( normal, lightDir ) );
+		float dotNV = saturate( dot( normal, viewDir ) );
+		float s = dot( lightDir, viewDir ) - dotNL * dotNV;
+		float sOverT = ( s > 0.0 ) ? s / max( max( dotNL, dotNV ), EON_EPSILON ) : s;
+		float A = 1.0 / ( 1.0 + ( 0.5 - 2.0 / ( 3.0 * PI ) ) * roughness );
+		vec3 singleScatter = rho * RECIPROCAL_PI * A * ( 1.0 + roughness * sOverT );
+		float averageAlbedo = A * ( 1.0 + ( 2.0 / 3.0 - 28.0 / ( 15.0 * PI ) ) * roughness );
+		float albedoV = FON_DirectionalAlbedo( dotNV, roughness, A );
+		float albedoL = FON_DirectionalAlbedo( dotNL, roughness, A );
+		vec3 rhoMultiScatter = rho * rho * averageAlbedo / max( vec3( EON_EPSILON ), vec3( 1.0 ) - rho * ( 1.0 - averageAlbedo ) );
+		vec3 multiScatter = rhoMultiScatter * RECIPROCAL_PI
+			* max( EON_EPSILON, 1.0 - albedoV )
+			* max( EON_EPSILON, 1.0 - albedoL )
+			/ max( EON_EPSILON, 1.0 - averageAlbedo );
+		return singleScatter + multiScatter;
+	}
+	vec3 EON_DirectionalAlbedo( const in vec3 diffuseColor, const in float roughness, const in float dotNV ) {
+		vec3 rho = saturate( diffuseColor );
+		if ( roughness <= EON_EPSILON ) return rho;
+		float A = 1.0 / ( 1.0 + ( 0.5 - 2.0 / ( 3.0 * PI ) ) * roughness );
+		float directionalAlbedo = FON_DirectionalAlbedo( dotNV, roughness, A );
+		float averageAlbedo = A * ( 1.0 + ( 2.0 / 3.0 - 28.0 / ( 15.0 * PI ) ) * roughness );
+		vec3 rhoMultiScatter = rho * rho * averageAlbedo / max( vec3( EON_EPSILON ), vec3( 1.0 ) - rho * ( 1.0 - averageAlbedo ) );
+		return rho * directionalAlbedo + rhoMultiScatter * ( 1.0 - directionalAlbedo );
+	}
+#endif
+float V_GGX_SmithCorrelated( const in float alpha, const in float dotNL, const in float dotNV ) {
+	float a2 = pow2( alpha );
+	float gv = dotNL * sqrt( a2 + ( 1.0 - a2 ) * pow2( dotNV ) );
+	float gl = dotNV * sqrt( a2 + ( 1.0 - a2 ) * pow2( dotNL ) );
+	return 0.5 / max( gv + gl, EPSILON );
+}
+float D_GGX( const in float alpha, const in float dotNH ) {
+	float a2 = pow2( alpha );
+	float denom = pow2( dotNH ) * ( a2 - 1.0 ) + 1.0;
+	return RECIPROCAL_PI * a2 / pow2( denom );
+}
+#ifdef USE_ANISOTROPY
+	float V_GGX_SmithCorrelated_Anisotropic( const in float alphaT, const in float alphaB, const in float dotTV, const in float dotBV, const in float dotTL, const in float dotBL, const in float dotNV, const in float dotNL ) {
+		float gv = dotNL * length( vec3( alphaT * dotTV, alphaB * dotBV, dotNV ) );
+		float gl = dotNV * length( vec3( alphaT * dotTL, alphaB * dotBL, dotNL ) );
+		return 0.5 / max( gv + gl, EPSILON );
+	}
+	float D_GGX_Anisotropic( const in float alphaT, const in float alphaB, const in float dotNH, const in float dotTH, const in float dotBH ) {
+		float a2 = alphaT * alphaB;
+		highp vec3 v = vec3( alphaB * dotTH, alphaT * dotBH, a2 * dotNH );
+		highp float v2 = dot( v, v );
+		float w2 = a2 / v2;
+		return RECIPROCAL_PI * a2 * pow2 ( w2 );
+	}
+#endif
+#ifdef USE_CLEARCOAT
+	vec3 BRDF_GGX_Clearcoat( const in vec3 lightDir, const in vec3 viewDir, const in vec3 normal, const in PhysicalMaterial material) {
+		vec3 f0 = material.clearcoatF0;
+		float f90 = material.clearcoatF90;
+		float roughness = max( material.clearcoatRoughness, 0.045 );
+		float alpha = pow2( roughness );
+		vec3 halfDir = normalize( lightDir + viewDir );
+		float dotNL = saturate( dot( normal, lightDir ) );
+		float dotNV = saturate( dot( normal, viewDir ) );
+		float dotNH = saturate( dot( normal, halfDir ) );
+		float dotVH = saturate( dot( viewDir, halfDir ) );
+		vec3 F = F_Schlick( f0, f90, dotVH );
+		float V = V_GGX_SmithCorrelated( alpha, dotNL, dotNV );
+		float D = D_GGX( alpha, dotNH );
+		return F * ( V * D );
+	}
+#endif
+vec3 BRDF_GGX( const in vec3 lightDir, const in vec3 viewDir, const in vec3 normal, const in PhysicalMaterial material ) {
+	vec3 f0 = material.specularColorBlended;
+	float f90 = material.specularF90;
+	float roughness = max( material.roughness, 0.045 );
+	float alpha = pow2( roughness );
+	vec3 halfDir = normalize( lightDir + viewDir );
+	float dotNL = saturate( dot( normal, lightDir ) );
+	float dotNV = saturate( dot( normal, viewDir ) );
+	float dotNH = saturate( dot( normal, halfDir ) );
+	float dotVH = saturate( dot( viewDir, halfDir ) );
+	vec3 F = F_Schlick( f0, f90, dotVH );
+	#ifdef USE_IRIDESCENCE
+		F = mix( F, material.iridescenceFresnel, material.iridescence );
+	#endif
+	#ifdef USE_ANISOTROPY
+		float dotTL = dot( material.anisotropyT, lightDir );
+		float dotTV = dot( material.anisotropyT, viewDir );
+		float dotTH = dot( material.anisotropyT, halfDir );
+		float dotBL = dot( material.anisotropyB, lightDir );
+		float dotBV = dot( material.anisotropyB, viewDir );
+		float dotBH = dot( material.anisotropyB, halfDir );
+		float alphaT = max( material.alphaT, alpha );
+		float V = V_GGX_SmithCorrelated_Anisotropic( alphaT, alpha, dotTV, dotBV, dotTL, dotBL, dotNV, dotNL );
+		float D = D_GGX_Anisotropic( alphaT, alpha, dotNH, dotTH, dotBH );
+	#else
+		float V = V_GGX_SmithCorrelated( alpha, dotNL, dotNV );
+		float D = D_GGX( alpha, dotNH );
+	#endif
+	return F * ( V * D );
+}
+vec2 LTC_Uv( const in vec3 N, const in vec3 V, const in float roughness ) {
+	const float LUT_SIZE = 64.0;
+	const float LUT_SCALE = ( LUT_SIZE - 1.0 ) / LUT_SIZE;
+	const float LUT_BIAS = 0.5 / LUT_SIZE;
+	float dotNV = saturate( dot( N, V ) );
+	vec2 uv = vec2( roughness, sqrt( 1.0 - dotNV ) );
+	uv = uv * LUT_SCALE + LUT_BIAS;
+	return uv;
+}
+float LTC_ClippedSphereFormFactor( const in vec3 f ) {
+	float l = length( f );
+	return max( ( l * l + f.z ) / ( l + 1.0 ), 0.0 );
+}
+vec3 LTC_EdgeVectorFormFactor( const in vec3 v1, const in vec3 v2 ) {
+	float x = dot( v1, v2 );
+	float y = abs( x );
+	float a = 0.8543985 + ( 0.4965155 + 0.0145206 * y ) * y;
+	float b = 3.4175940 + ( 4.1616724 + y ) * y;
+	float v = a / b;
+	float theta_sintheta = ( x > 0.0 ) ? v : 0.5 * inversesqrt( max( 1.0 - x * x, 1e-7 ) ) - v;
+	return cross( v1, v2 ) * theta_sintheta;
+}
+vec3 LTC_Evaluate( const in vec3 N, const in vec3 V, const in vec3 P, const in mat3 mInv, const in vec3 rectCoords[ 4 ] ) {
+	vec3 v1 = rectCoords[ 1 ] - rectCoords[ 0 ];
+	vec3 v2 = rectCoords[ 3 ] - rectCoords[ 0 ];
+	vec3 lightNormal = cross( v1, v2 );
+	if( dot( lightNormal, P - rectCoords[ 0 ] ) < 0.0 ) return vec3( 0.0 );
+	vec3 T1, T2;
+	T1 = normalize( V - N * dot( V, N ) );
+	T2 = - cross( N, T1 );
+	mat3 mat = mInv * transpose( mat3( T1, T2, N ) );
+	vec3 coords[ 4 ];
+	coords[ 0 ] = mat * ( rectCoords[ 0 ] - P );
+	coords[ 1 ] = mat * ( rectCoords[ 1 ] - P );
+	coords[ 2 ] = mat * ( rectCoords[ 2 ] - P );
+	coords[ 3 ] = mat * ( rectCoords[ 3 ] - P );
+	coords[ 0 ] = normalize( coords[ 0 ] );
+	coords[ 1 ] = normalize( coords[ 1 ] );
+	coords[ 2 ] = normalize( coords[ 2 ] );
+	coords[ 3 ] = normalize( coords[ 3 ] );
+	vec3 vectorFormFactor = vec3( 0.0 );
+	vectorFormFactor += LTC_EdgeVectorFormFactor( coords[ 0 ], coords[ 1 ] );
+	vectorFormFactor += LTC_EdgeVectorFormFactor( coords[ 1 ], coords[ 2 ] );
+	vectorFormFactor += LTC_EdgeVectorFormFactor( coords[ 2 ], coords[ 3 ] );
+	vectorFormFactor += LTC_EdgeVectorFormFactor( coords[ 3 ], coords[ 0 ] );
+	float result = LTC_ClippedSphereFormFactor( vectorFormFactor );
+	return vec3( result );
+}
+#if defined( USE_SHEEN )
+float D_Charlie( float roughness, float dotNH ) {
+	float alpha = pow2( roughness );
+	float invAlpha = 1.0 / alpha;
+	float cos2h = dotNH * dotNH;
+	float sin2h = max( 1.0 - cos2h, 0.0078125 );
+	return ( 2.0 + invAlpha ) * pow( sin2h, invAlpha * 0.5 ) / ( 2.0 * PI );
+}
+float V_Neubelt( float dotNV, float dotNL ) {
+	return saturate( 1.0 / ( 4.0 * ( dotNL + dotNV - dotNL * dotNV ) ) );
+}
+vec3 BRDF_Sheen( const in vec3 lightDir, const in vec3 viewDir, const in vec3 normal, vec3 sheenColor, const in float sheenRoughness ) {
+	vec3 halfDir = normalize( lightDir + viewDir );
+	float dotNL = saturate( dot( normal, lightDir ) );
+	float dotNV = saturate( dot( normal, viewDir ) );
+	float dotNH = saturate( dot( normal, halfDir ) );
+	float D = D_Charlie( sheenRoughness, dotNH );
+	float V = V_Neubelt( dotNV, dotNL );
+	return sheenColor * ( D * V );
+}
+#endif
+float IBLSheenBRDF( const in vec3 normal, const in vec3 viewDir, const in float roughness ) {
+	float dotNV = saturate( dot( normal, viewDir ) );
+	float r2 = roughness * roughness;
+	float rInv = 1.0 / ( roughness + 0.1 );
+	float a = -1.9362 + 1.0678 * roughness + 0.4573 * r2 - 0.8469 * rInv;
+	float b = -0.6014 + 0.5538 * roughness - 0.4670 * r2 - 0.1255 * rInv;
+	float DG = exp( a * dotNV + b );
+	return saturate( DG );
+}
+vec3 EnvironmentBRDF( const in vec3 normal, const in vec3 viewDir, const in vec3 specularColor, const in float specularF90, const in float roughness ) {
+	float dotNV = saturate( dot( normal, viewDir ) );
+	vec2 fab = texture2D( dfgLUT, vec2( roughness, dotNV ) ).rg;
+	return specularColor * fab.x + specularF90 * fab.y;
+}
+#ifdef USE_IRIDESCENCE
+void computeMultiscatteringIridescence( const in vec2 fab, const in vec3 specularColor, const in float specularF90, const in float iridescence, const in vec3 iridescenceF0, inout vec3 singleScatter, inout vec3 multiScatter ) {
+#else
+void computeMultiscattering( const in vec2 fab, const in vec3 specularColor, const in float specularF90, inout vec3 singleScatter, inout vec3 multiScatter ) {
+#endif
+	#ifdef USE_IRIDESCENCE
+		vec3 Fr = mix( specularColor, iridescenceF0, iridescence );
+	#else
+		vec3 Fr = specularColor;
+	#endif
+	vec3 FssEss = Fr * fab.x + specularF90 * fab.y;
+	float Ess = fab.x + fab.y;
+	float Ems = 1.0 - Ess;
+	vec3 Favg = Fr + ( 1.0 - Fr ) * 0.047619;	vec3 Fms = FssEss * Favg / ( 1.0 - Ems * Favg );
+	singleScatter += FssEss;
+	multiScatter += Fms * Ems;
+}
+#if NUM_RECT_AREA_LIGHTS > 0
+	void RE_Direct_RectArea_Physical( const in RectAreaLight rectAreaLight, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in PhysicalMaterial material, inout ReflectedLight reflectedLight ) {
+		vec3 normal = geometryNormal;
+		vec3 viewDir = geometryViewDir;
+		vec3 position = geometryPosition;
+		vec3 lightPos = rectAreaLight.position;
+		vec3 halfWidth = rectAreaLight.halfWidth;
+		vec3 halfHeight = rectAreaLight.halfHeight;
+		vec3 lightColor = rectAreaLight.color;
+		float roughness = material.roughness;
+		vec3 rectCoords[ 4 ];
+		rectCoords[ 0 ] = lightPos + halfWidth - halfHeight;		rectCoords[ 1 ] = lightPos - halfWidth - halfHeight;
+		rectCoords[ 2 ] = lightPos - halfWidth + halfHeight;
+		rectCoords[ 3 ] = lightPos + halfWidth + halfHeight;
+		vec2 uv = LTC_Uv( normal, viewDir, roughness );
+		vec4 t1 = texture2D( ltc_1, uv );
+		vec4 t2 = texture2D( ltc_2, uv );
+		mat3 mInv = mat3(
+			vec3( t1.x, 0, t1.y ),
+			vec3(    0, 1,    0 ),
+			vec3( t1.z, 0, t1.w )
+		);
+		vec3 fresnel = ( material.specularColorBlended * t2.x + ( material.specularF90 - material.specularColorBlended ) * t2.y );
+		reflectedLight.directSpecular += lightColor * fresnel * LTC_Evaluate( normal, viewDir, position, mInv, rectCoords );
+		reflectedLight.directDiffuse += lightColor * material.diffuseContribution * LTC_Evaluate( normal, viewDir, position, mat3( 1.0 ), rectCoords );
+		#ifdef USE_CLEARCOAT
+			vec3 Ncc = geometryClearcoatNormal;
+			vec2 uvClearcoat = LTC_Uv( Ncc, viewDir, material.clearcoatRoughness );
+			vec4 t1Clearcoat = texture2D( ltc_1, uvClearcoat );
+			vec4 t2Clearcoat = texture2D( ltc_2, uvClearcoat );
+			mat3 mInvClearcoat = mat3(
+				vec3( t1Clearcoat.x, 0, t1Clearcoat.y ),
+				vec3(             0, 1,             0 ),
+				vec3( t1Clearcoat.z, 0, t1Clearcoat.w )
+			);
+			vec3 fresnelClearcoat = material.clearcoatF0 * t2Clearcoat.x + ( material.clearcoatF90 - material.clearcoatF0 ) * t2Clearcoat.y;
+			clearcoatSpecularDirect += lightColor * fresnelClearcoat * LTC_Evaluate( Ncc, viewDir, position, mInvClearcoat, rectCoords );
+		#endif
+	}
+#endif
+void RE_Direct_Physical( const in IncidentLight directLight, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in PhysicalMaterial material, inout ReflectedLight reflectedLight ) {
+	float dotNL = saturate( dot( geometryNormal, directLight.direction ) );
+	vec3 irradiance = dotNL * directLight.color;
+	#ifdef USE_CLEARCOAT
+		float dotNLcc = saturate( dot( geometryClearcoatNormal, directLight.direction ) );
+		vec3 ccIrradiance = dotNLcc * directLight.color;
+		clearcoatSpecularDirect += ccIrradiance * BRDF_GGX_Clearcoat( directLight.direction, geometryViewDir, geometryClearcoatNormal, material );
+	#endif
+	#ifdef USE_SHEEN
+ 
+ 		sheenSpecularDirect += irradiance * BRDF_Sheen( directLight.direction, geometryViewDir, geometryNormal, material.sheenColor, material.sheenRoughness );
+ 
+ 		float sheenAlbedoV = IBLSheenBRDF( geometryNormal, geometryViewDir, material.sheenRoughness );
+ 		float sheenAlbedoL = IBLSheenBRDF( geometryNormal, directLight.direction, material.sheenRoughness );
+ 
+ 		float sheenEnergyComp = 1.0 - max3( material.sheenColor ) * max( sheenAlbedoV, sheenAlbedoL );
+ 
+ 		irradiance *= sheenEnergyComp;
+ 
+ 	#endif
+	vec3 specularBRDF = BRDF_GGX( directLight.direction, geometryViewDir, geometryNormal, material );
+	#ifdef USE_RETROREFLECTION
+		vec3 retroViewDir = reflect( - geometryViewDir, geometryNormal );
+		vec3 retroSpecularBRDF = BRDF_GGX( directLight.direction, retroViewDir, geometryNormal, material );
+		specularBRDF = mix( specularBRDF, retroSpecularBRDF, saturate( material.retroreflectivity ) );
+	#endif
+	reflectedLight.directSpecular += irradiance * specularBRDF * material.multiScatteringCompensation;
+	vec3 halfDir = normalize( directLight.direction + geometryViewDir );
+	float dotVH = saturate( dot( geometryViewDir, halfDir ) );
+	vec3 F = F_Schlick( material.specularColor, material.specularF90, dotVH );
+	#ifdef USE_RETROREFLECTION
+		vec3 retroHalfDir = normalize( directLight.direction + retroViewDir );
+		float dotRetroVH = saturate( dot( retroViewDir, retroHalfDir ) );
+		vec3 retroF = F_Schlick( material.specularColor, material.specularF90, dotRetroVH );
+		F = mix( F, retroF, saturate( material.retroreflectivity ) );
+	#endif
+	#ifdef USE_DIFFUSE_ROUGHNESS
+		vec3 diffuseBRDF = BRDF_EON( directLight.direction, geometryViewDir, geometryNormal, material.diffuseColor, material.diffuseRoughness ) * ( 1.0 - material.metalness );
+	#else
+		vec3 diffuseBRDF = BRDF_Lambert( material.diffuseContribution );
+	#endif
+	reflectedLight.directDiffuse += irradiance * diffuseBRDF * ( 1.0 - F );
+}
+void RE_IndirectDiffuse_Physical( const in vec3 irradiance, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in PhysicalMaterial material, inout ReflectedLight reflectedLight ) {
+	vec3 singleScattering = vec3( 0.0 );
+	vec3 multiScattering = vec3( 0.0 );
+	#ifdef USE_IRIDESCENCE
+		computeMultiscatteringIridescence( material.dfg, material.specularColor, material.specularF90, material.iridescence, material.iridescenceF0Dielectric, singleScattering, multiScattering );
+	#else
+		computeMultiscattering( material.dfg, material.specularColor, material.specularF90, singleScattering, multiScattering );
+	#endif
+	#ifdef USE_DIFFUSE_ROUGHNESS
+		float dotNV = saturate( dot( geometryNormal, geometryViewDir ) );
+		vec3 diffuseAlbedo = EON_DirectionalAlbedo( material.diffuseColor, material.diffuseRoughness, dotNV ) * ( 1.0 - material.metalness );
+		vec3 diffuse = irradiance * RECIPROCAL_PI * diffuseAlbedo * ( 1.0 - singleScattering - multiScattering );
+	#else
+		vec3 diffuse = irradiance * BRDF_Lambert( material.diffuseContribution ) * ( 1.0 - singleScattering - multiScattering );
+	#endif
+	#ifdef USE_SHEEN
+		float sheenAlbedo = IBLSheenBRDF( geometryNormal, geometryViewDir, material.sheenRoughness );
+		sheenSpecularIndirect += irradiance * material.sheenColor * sheenAlbedo * RECIPROCAL_PI;
+		float sheenEnergyComp = 1.0 - max3( material.sheenColor ) * sheenAlbedo;
+		diffuse *= sheenEnergyComp;
+	#endif
+	reflectedLight.indirectDiffuse += diffuse;
+}
+void RE_IndirectSpecular_Physical( const in vec3 radiance, const in vec3 irradiance, const in vec3 clearcoatRadiance, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in PhysicalMaterial material, inout ReflectedLight reflectedLight) {
+	#ifdef USE_CLEARCOAT
+		clearcoatSpecularIndirect += clearcoatRadiance * EnvironmentBRDF( geometryClearcoatNormal, geometryViewDir, material.clearcoatF0, material.clearcoatF90, material.clearcoatRoughness );
+	#endif
+	#ifdef USE_SHEEN
+		sheenSpecularIndirect += irradiance * material.sheenColor * IBLSheenBRDF( geometryNormal, geometryViewDir, material.sheenRoughness ) * RECIPROCAL_PI;
+ 	#endif
+	vec3 singleScatteringDielectric = vec3( 0.0 );
+	vec3 multiScatteringDielectric = vec3( 0.0 );
+	vec3 singleScatteringMetallic = vec3( 0.0 );
+	vec3 multiScatteringMetallic = vec3( 0.0 );
+	#ifdef USE_IRIDESCENCE
+		computeMultiscatteringIridescence( material.dfg, material.specularColor, material.specularF90, material.iridescence, material.iridescenceF0Dielectric, singleScatteringDielectric, multiScatteringDielectric );
+		computeMultiscatteringIridescence( material.dfg, material.diffuseColor, material.specularF90, material.iridescence, material.iridescenceF0Metallic, singleScatteringMetallic, multiScatteringMetallic );
+	#else
+		computeMultiscattering( material.dfg, material.specularColor, material.specularF90, singleScatteringDielectric, multiScatteringDielectric );
+		computeMultiscattering( material.dfg, material.diffuseColor, material.specularF90, singleScatteringMetallic, multiScatteringMetallic );
+	#endif
+	vec3 singleScattering = mix( singleScatteringDielectric, singleScatteringMetallic, material.metalness );
+	vec3 multiScattering = mix( multiScatteringDielectric, multiScatteringMetallic, material.metalness );
+	vec3 totalScatteringDielectric = singleScatteringDielectric + multiScatteringDielectric;
+	#ifdef USE_DIFFUSE_ROUGHNESS
+		float dotNV = saturate( dot( geometryNormal, geometryViewDir ) );
+		vec3 diffuse = EON_DirectionalAlbedo( material.diffuseColor, material.diffuseRoughness, dotNV ) * ( 1.0 - material.metalness ) * ( 1.0 - totalScatteringDielectric );
+	#else
+		vec3 diffuse = material.diffuseContribution * ( 1.0 - totalScatteringDielectric );
+	#endif
+	vec3 cosineWeightedIrradiance = irradiance * RECIPROCAL_PI;
+	vec3 indirectSpecular = radiance * singleScattering;
+	indirectSpecular += multiScattering * cosineWeightedIrradiance;
+	vec3 indirectDiffuse = diffuse * cosineWeightedIrradiance;
+	#ifdef USE_SHEEN
+		float sheenAlbedo = IBLSheenBRDF( geometryNormal, geometryViewDir, material.sheenRoughness );
+		float sheenEnergyComp = 1.0 - max3( material.sheenColor ) * sheenAlbedo;
+		indirectSpecular *= sheenEnergyComp;
+		indirectDiffuse *= sheenEnergyComp;
+	#endif
+	reflectedLight.indirectSpecular += indirectSpecular;
+	reflectedLight.indirectDiffuse += indirectDiffuse;
+}
+#define RE_Direct				RE_Direct_Physical
+#define RE_Direct_RectArea		RE_Direct_RectArea_Physical
+#define RE_IndirectDiffuse		RE_IndirectDiffuse_Physical
+#define RE_IndirectSpecular		RE_IndirectSpecular_Physical
+float computeSpecularOcclusion( const in float dotNV, const in float ambientOcclusion, const in float roughness ) {
+	return saturate( pow( dotNV + ambientOcclusion, exp2( - 16.0 * roughness - 1.0 ) ) - 1.0 + ambientOcclusion );
+}`,zv=`
+vec3 geometryPosition = - vViewPosition;
+vec3 geometryNormal = normal;
+vec3 geometryViewDir = ( isOrthographic ) ? vec3( 0, 0, 1 ) : normalize( vViewPosition );
+vec3 geometryClearcoatNormal = vec3( 0.0 );
+#ifdef USE_CLEARCOAT
+	geometryClearcoatNormal = clearcoatNormal;
+#endif
+#ifdef USE_IRIDESCENCE
+	float dotNVi = saturate( dot( normal, geometryViewDir ) );
+	if ( material.iridescenceThickness == 0.0 ) {
+		material.iridescence = 0.0;
+	} else {
+		material.iridescence = saturate( material.iridescence );
+	}
+	if ( material.iridescence > 0.0 ) {
+		vec3 iridescenceFresnelDielectric = evalIridescence( 1.0, material.iridescenceIOR, dotNVi, material.iridescenceThickness, material.specularColor );
+		vec3 iridescenceFresnelMetallic = evalIridescence( 1.0, material.iridescenceIOR, dotNVi, material.iridescenceThickness, material.diffuseColor );
+		material.iridescenceFresnel = mix( iridescenceFresnelDielectric, iridescenceFresnelMetallic, material.metalness );
+		material.iridescenceF0Dielectric = Schlick_to_F0( iridescenceFresnelDielectric, 1.0, dotNVi );
+		material.iridescenceF0Metallic = Schlick_to_F0( iridescenceFresnelMetallic, 1.0, dotNVi );
+	}
+#endif
+#ifdef STANDARD
+	float dotNVms = saturate( dot( geometryNormal, geometryViewDir ) );
+	material.dfg = texture2D( dfgLUT, vec2( material.roughness, dotNVms ) ).rg;
+	#if ( NUM_SUN_LIGHTS > 0 || NUM_DIR_LIGHTS > 0 || NUM_POINT_LIGHTS > 0 || NUM_SPOT_LIGHTS > 0 )
+		float EssMs = material.dfg.x + material.dfg.y;
+		material.multiScatteringCompensation = 1.0 + material.specularColorBlended * ( 1.0 / EssMs - 1.0 );
+	#endif
+#endif
+IncidentLight directLight;
+#if ( NUM_POINT_LIGHTS > 0 ) && defined( RE_Direct )
+	PointLight pointLight;
+	#if defined( USE_SHADOWMAP ) && NUM_POINT_LIGHT_SHADOWS > 0
+	PointLightShadow pointLightShadow;
+	#endif
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_POINT_LIGHTS; i ++ ) {
+		pointLight = pointLights[ i ];
+		getPointLightInfo( pointLight, geometryPosition, directLight );
+		#if defined( USE_SHADOWMAP ) && ( UNROLLED_LOOP_INDEX < NUM_POINT_LIGHT_SHADOWS ) && ( defined( SHADOWMAP_TYPE_PCF ) || defined( SHADOWMAP_TYPE_BASIC ) )
+		pointLightShadow = pointLightShadows[ i ];
+		directLight.color *= ( directLight.visible && receiveShadow ) ? getPointShadow( pointShadowMap[ i ], pointLightShadow.shadowMapSize, pointLightShadow.shadowIntensity, pointLightShadow.shadowBias, pointLightShadow.shadowRadius, vPointShadowCoord[ i ], pointLightShadow.shadowCameraNear, pointLightShadow.shadowCameraFar ) : 1.0;
+		#endif
+		RE_Direct( directLight, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight );
+	}
+	#pragma unroll_loop_end
+#endif
+#if ( NUM_SPOT_LIGHTS > 0 ) && defined( RE_Direct )
+	SpotLight spotLight;
+	vec4 spotColor;
+	vec3 spotLightCoord;
+	bool inSpotLightMap;
+	#if defined( USE_SHADOWMAP ) && NUM_SPOT_LIGHT_SHADOWS > 0
+	SpotLightShadow spotLightShadow;
+	#endif
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_SPOT_LIGHTS; i ++ ) {
+		spotLight = spotLights[ i ];
+		getSpotLightInfo( spotLight, geometryPosition, directLight );
+		#if ( UNROLLED_LOOP_INDEX < NUM_SPOT_LIGHT_SHADOWS_WITH_MAPS )
+		#define SPOT_LIGHT_MAP_INDEX UNROLLED_LOOP_INDEX
+		#elif ( UNROLLED_LOOP_INDEX < NUM_SPOT_LIGHT_SHADOWS )
+		#define SPOT_LIGHT_MAP_INDEX NUM_SPOT_LIGHT_MAPS
+		#else
+		#define SPOT_LIGHT_MAP_INDEX ( UNROLLED_LOOP_INDEX - NUM_SPOT_LIGHT_SHADOWS + NUM_SPOT_LIGHT_SHADOWS_WITH_MAPS )
+		#endif
+		#if ( SPOT_LIGHT_MAP_INDEX < NUM_SPOT_LIGHT_MAPS )
+			spotLightCoord = vSpotLightCoord[ i ].xyz / vSpotLightCoord[ i ].w;
+			inSpotLightMap = all( lessThan( abs( spotLightCoord * 2. - 1. ), vec3( 1.0 ) ) );
+			spotColor = texture2D( spotLightMap[ SPOT_LIGHT_MAP_INDEX ], spotLightCoord.xy );
+			directLight.color = inSpotLightMap ? directLight.color * spotColor.rgb : directLight.color;
+		#endif
+		#undef SPOT_LIGHT_MAP_INDEX
+		#if defined( USE_SHADOWMAP ) && ( UNROLLED_LOOP_INDEX < NUM_SPOT_LIGHT_SHADOWS )
+		spotLightShadow = spotLightShadows[ i ];
+		directLight.color *= ( directLight.visible && receiveShadow ) ? getShadow( spotShadowMap[ i ], spotLightShadow.shadowMapSize, spotLightShadow.shadowIntensity, spotLightShadow.shadowBias, spotLightShadow.shadowRadius, vSpotLightCoord[ i ] ) : 1.0;
+		#endif
+		RE_Direct( directLight, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight );
+	}
+	#pragma unroll_loop_end
+#endif
+#if ( NUM_SUN_LIGHTS > 0 ) && defined( RE_Direct )
+	SunLight sunLight;
+	#if defined( USE_SHADOWMAP ) && NUM_SUN_LIGHT_SHADOWS > 0
+	SunLightShadow sunLightShadow;
+	#endif
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_SUN_LIGHTS; i ++ ) {
+		sunLight = sunLights[ i ];
+		getSunLightInfo( sunLight, directLight );
+		#if defined( USE_SHADOWMAP ) && ( UNROLLED_LOOP_INDEX < NUM_SUN_LIGHT_SHADOWS )
+		sunLightShadow = sunLightShadows[ i ];
+		directLight.color *= ( directLight.visible && receiveShadow ) ? getSunShadow( sunShadowMap[ i ], sunLightShadow, UNROLLED_LOOP_INDEX ) : 1.0;
+		#endif
+		RE_Direct( directLight, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight );
+	}
+	#pragma unroll_loop_end
+#endif
+#if ( NUM_DIR_LIGHTS > 0 ) && defined( RE_Direct )
+	DirectionalLight directionalLight;
+	#if defined( USE_SHADOWMAP ) && NUM_DIR_LIGHT_SHADOWS > 0
+	DirectionalLightShadow directionalLightShadow;
+	#endif
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_DIR_LIGHTS; i ++ ) {
+		directionalLight = directionalLights[ i ];
+		getDirectionalLightInfo( directionalLight, directLight );
+		#if defined( USE_SHADOWMAP ) && ( UNROLLED_LOOP_INDEX < NUM_DIR_LIGHT_SHADOWS )
+		directionalLightShadow = directionalLightShadows[ i ];
+		directLight.color *= ( directLight.visible && receiveShadow ) ? getShadow( directionalShadowMap[ i ], directionalLightShadow.shadowMapSize, directionalLightShadow.shadowIntensity, directionalLightShadow.shadowBias, directionalLightShadow.shadowRadius, vDirectionalShadowCoord[ i ] ) : 1.0;
+		#endif
+		RE_Direct( directLight, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight );
+	}
+	#pragma unroll_loop_end
+#endif
+#if ( NUM_RECT_AREA_LIGHTS > 0 ) && defined( RE_Direct_RectArea )
+	RectAreaLight rectAreaLight;
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_RECT_AREA_LIGHTS; i ++ ) {
+		rectAreaLight = rectAreaLights[ i ];
+		RE_Direct_RectArea( rectAreaLight, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight );
+	}
+	#pragma unroll_loop_end
+#endif
+#if defined( RE_IndirectDiffuse )
+	vec3 iblIrradiance = vec3( 0.0 );
+	vec3 irradiance = getAmbientLightIrradiance( ambientLightColor );
+	#if defined( USE_LIGHT_PROBES )
+		irradiance += getLightProbeIrradiance( lightProbe, geometryNormal );
+	#endif
+	#if ( NUM_HEMI_LIGHTS > 0 )
+		#pragma unroll_loop_start
+		for ( int i = 0; i < NUM_HEMI_LIGHTS; i ++ ) {
+			irradiance += getHemisphereLightIrradiance( hemisphereLights[ i ], geometryNormal );
+		}
+		#pragma unroll_loop_end
+	#endif
+	#if NUM_LIGHT_PROBE_GRIDS > 0
+		vec3 probeWorldPos = ( ( vec4( geometryPosition, 1.0 ) - viewMatrix[ 3 ] ) * viewMatrix ).xyz;
+		vec3 probeWorldNormal = transformNormalByInverseViewMatrix( geometryNormal, viewMatrix );
+		int probeGrid = - 1;
+		#pragma unroll_loop_start
+		for ( int i = 0; i < NUM_LIGHT_PROBE_GRIDS; i ++ ) {
+			if ( isInsideLightProbeGrid( probeWorldPos, probeWorldNormal, probesMin[ i ], probesMax[ i ], probesResolution[ i ] ) ) probeGrid = UNROLLED_LOOP_INDEX;
+		}
+		#pragma unroll_loop_end
+		#pragma unroll_loop_start
+		for ( int i = 0; i < NUM_LIGHT_PROBE_GRIDS; i ++ ) {
+			if ( probeGrid == UNROLLED_LOOP_INDEX ) irradiance += getLightProbeGridIrradiance( probesSH[ i ], probesMin[ i ], probesMax[ i ], probesResolution[ i ], probeWorldPos, probeWorldNormal );
+		}
+		#pragma unroll_loop_end
+	#endif
+#endif
+#if defined( RE_IndirectSpecular )
+	vec3 radiance = vec3( 0.0 );
+	vec3 clearcoatRadiance = vec3( 0.0 );
+#endif`,Vv=`#if defined( RE_IndirectDiffuse )
+	#ifdef USE_LIGHTMAP
+		vec4 lightMapTexel = texture2D( lightMap, vLightMapUv );
+		vec3 lightMapIrradiance = lightMapTexel.rgb * lightMapIntensity;
+		irradiance += lightMapIrradiance;
+	#endif
+	#if defined( USE_ENVMAP ) && defined( ENVMAP_TYPE_PMREM )
+		#if defined( STANDARD ) || defined( LAMBERT ) || defined( PHONG )
+			iblIrradiance += getIBLIrradiance( geometryNormal );
+		#endif
+	#endif
+#endif
+#if defined( USE_ENVMAP ) && defined( RE_IndirectSpecular )
+	#ifdef USE_ANISOTROPY
+		vec3 iblRadiance = getIBLAnisotropyRadiance( geometryViewDir, geometryNormal, material.roughness, material.anisotropyB, material.anisotropy );
+	#else
+		vec3 iblRadiance = getIBLRadiance( geometryViewDir, geometryNormal, material.roughness );
+	#endif
+	#ifdef USE_RETROREFLECTION
+		#ifdef USE_ANISOTROPY
+			vec3 retroIBLRadiance = getIBLAnisotropyRetroRadiance( geometryViewDir, geometryNormal, material.roughness, material.anisotropyB, material.anisotropy );
+		#else
+			vec3 retroIBLRadiance = getIBLRetroRadiance( geometryViewDir, geometryNormal, material.roughness );
+		#endif
+		iblRadiance = mix( iblRadiance, retroIBLRadiance, saturate( material.retroreflectivity ) );
+	#endif
+	radiance += iblRadiance;
+	#ifdef USE_CLEARCOAT
+		clearcoatRadiance += getIBLRadiance( geometryViewDir, geometryClearcoatNormal, material.clearcoatRoughness );
+	#endif
+#endif`,Gv=`#if defined( RE_IndirectDiffuse )
+	#if defined( LAMBERT ) || defined( PHONG )
+		irradiance += iblIrradiance;
+	#endif
+	RE_IndirectDiffuse( irradiance, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight );
+#endif
+#if defined( RE_IndirectSpecular )
+	RE_IndirectSpecular( radiance, iblIrradiance, clearcoatRadiance, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight );
+#endif`,Hv=`#if NUM_LIGHT_PROBE_GRIDS > 0
+uniform highp sampler3D probesSH[ NUM_LIGHT_PROBE_GRIDS ];
+uniform vec3 probesMin[ NUM_LIGHT_PROBE_GRIDS ];
+uniform vec3 probesMax[ NUM_LIGHT_PROBE_GRIDS ];
+uniform vec3 probesResolution[ NUM_LIGHT_PROBE_GRIDS ];
+bool isInsideLightProbeGrid( vec3 worldPos, vec3 worldNormal, vec3 probesMin, vec3 probesMax, vec3 probesResolution ) {
+	vec3 spacing = ( probesMax - probesMin ) / probesResolution;
+	vec3 samplePos = worldPos + worldNormal * spacing * 0.5;
+	vec3 margin = spacing * 0.01;
+	return all( greaterThanEqual( samplePos, probesMin - margin ) ) && all( lessThanEqual( samplePos, probesMax + margin ) );
+}
+vec3 getLightProbeGridIrradiance( highp sampler3D probesSH, vec3 probesMin, vec3 probesMax, vec3 probesResolution, vec3 worldPos, vec3 worldNormal ) {
+	vec3 res = probesResolution;
+	vec3 gridRange = probesMax - probesMin;
+	vec3 probeSpacing = gridRange / res;
+	vec3 samplePos = worldPos + worldNormal * probeSpacing * 0.5;
+	vec3 uvw = clamp( ( samplePos - probesMin ) / gridRange, 0.5 / res, 1.0 - 0.5 / res );
+	float nz          = res.z;
+	float paddedSlices = nz + 2.0;
+	float atlasDepth  = 7.0 * paddedSlices;
+	float uvZBase     = uvw.z * nz + 1.0;
+	vec4 s0 = texture( probesSH, vec3( uvw.xy, ( uvZBase                       ) / atlasDepth ) );
+	vec4 s1 = texture( probesSH, vec3( uvw.xy, ( uvZBase +       paddedSlices   ) / atlasDepth ) );
+	vec4 s2 = texture( probesSH, vec3( uvw.xy, ( uvZBase + 2.0 * paddedSlices   ) / atlasDepth ) );
+	vec4 s3 = texture( probesSH, vec3( uvw.xy, ( uvZBase + 3.0 * paddedSlices   ) / atlasDepth ) );
+	vec4 s4 = texture( probesSH, vec3( uvw.xy, ( uvZBase + 4.0 * paddedSlices   ) / atlasDepth ) );
+	vec4 s5 = texture( probesSH, vec3( uvw.xy, ( uvZBase + 5.0 * paddedSlices   ) / atlasDepth ) );
+	vec4 s6 = texture( probesSH, vec3( uvw.xy, ( uvZBase + 6.0 * paddedSlices   ) / atlasDepth ) );
+	vec3 c0 = s0.xyz;
+	vec3 c1 = vec3( s0.w, s1.xy );
+	vec3 c2 = vec3( s1.zw, s2.x );
+	vec3 c3 = s2.yzw;
+	vec3 c4 = s3.xyz;
+	vec3 c5 = vec3( s3.w, s4.xy );
+	vec3 c6 = vec3( s4.zw, s5.x );
+	vec3 c7 = s5.yzw;
+	vec3 c8 = s6.xyz;
+	float x = worldNormal.x, y = worldNormal.y, z = worldNormal.z;
+	vec3 result = c0 * 0.886227;
+	result += c1 * 2.0 * 0.511664 * y;
+	result += c2 * 2.0 * 0.511664 * z;
+	result += c3 * 2.0 * 0.511664 * x;
+	result += c4 * 2.0 * 0.429043 * x * y;
+	result += c5 * 2.0 * 0.429043 * y * z;
+	result += c6 * ( 0.743125 * z * z - 0.247708 );
+	result += c7 * 2.0 * 0.429043 * x * z;
+	result += c8 * 0.429043 * ( x * x - y * y );
+	return max( result, vec3( 0.0 ) );
+}
+#endif`,Wv=`#if defined( USE_LOGARITHMIC_DEPTH_BUFFER )
+	gl_FragDepth = vIsPerspective == 0.0 ? gl_FragCoord.z : log2( vFragDepth ) * logDepthBufFC * 0.5;
+#endif`,Xv=`#if defined( USE_LOGARITHMIC_DEPTH_BUFFER )
+	uniform float logDepthBufFC;
+	varying float vFragDepth;
+	varying float vIsPerspective;
+#endif`,Yv=`#ifdef USE_LOGARITHMIC_DEPTH_BUFFER
+	varying float vFragDepth;
+	varying float vIsPerspective;
+#endif`,qv=`#ifdef USE_LOGARITHMIC_DEPTH_BUFFER
+	vFragDepth = 1.0 + gl_Position.w;
+	vIsPerspective = float( isPerspectiveMatrix( projectionMatrix ) );
+#endif`,$v=`#ifdef USE_MAP
+	vec4 sampledDiffuseColor = texture2D( map, vMapUv );
+	#ifdef DECODE_VIDEO_TEXTURE
+		sampledDiffuseColor = sRGBTransferEOTF( sampledDiffuseColor );
+	#endif
+	diffuseColor *= sampledDiffuseColor;
+#endif`,Zv=`#ifdef USE_MAP
+	uniform sampler2D map;
+#endif`,Jv=`#if defined( USE_MAP ) || defined( USE_ALPHAMAP )
+	#if defined( USE_POINTS_UV )
+		vec2 uv = vUv;
+	#else
+		vec2 uv = ( uvTransform * vec3( gl_PointCoord.x, 1.0 - gl_PointCoord.y, 1 ) ).xy;
+	#endif
+#endif
+#ifdef USE_MAP
+	diffuseColor *= texture2D( map, uv );
+#endif
+#ifdef USE_ALPHAMAP
+	diffuseColor.a *= texture2D( alphaMap, uv ).g;
+#endif`,jv=`#if defined( USE_POINTS_UV )
+	varying vec2 vUv;
+#else
+	#if defined( USE_MAP ) || defined( USE_ALPHAMAP )
+		uniform mat3 uvTransform;
+	#endif
+#endif
+#ifdef USE_MAP
+	uniform sampler2D map;
+#endif
+#ifdef USE_ALPHAMAP
+	uniform sampler2D alphaMap;
+#endif`,Kv=`float metalnessFactor = metalness;
+#ifdef USE_METALNESSMAP
+	vec4 texelMetalness = texture2D( metalnessMap, vMetalnessMapUv );
+	metalnessFactor *= texelMetalness.b;
+#endif`,Qv=`#ifdef USE_METALNESSMAP
+	uniform sampler2D metalnessMap;
+#endif`,tS=`#ifdef USE_INSTANCING_MORPH
+	float morphTargetInfluences[ MORPHTARGETS_COUNT ];
+	float morphTargetBaseInfluence = texelFetch( morphTexture, ivec2( 0, gl_InstanceID ), 0 ).r;
+	for ( int i = 0; i < MORPHTARGETS_COUNT; i ++ ) {
+		morphTargetInfluences[i] =  texelFetch( morphTexture, ivec2( i + 1, gl_InstanceID ), 0 ).r;
+	}
+#endif`,eS=`#if defined( USE_MORPHCOLORS )
+	#if defined( USE_COLOR_ALPHA )
+		vColor *= morphTargetBaseInfluence;
+	#elif defined( USE_COLOR )
+		vColor.rgb *= morphTargetBaseInfluence;
+	#endif
+	for ( int i = 0; i < MORPHTARGETS_COUNT; i ++ ) {
+		#if defined( USE_COLOR_ALPHA )
+			if ( morphTargetInfluences[ i ] != 0.0 ) vColor += getMorph( gl_VertexID, i, 2 ) * morphTargetInfluences[ i ];
+		#elif defined( USE_COLOR )
+			if ( morphTargetInfluences[ i ] != 0.0 ) vColor.rgb += getMorph( gl_VertexID, i, 2 ).rgb * morphTargetInfluences[ i ];
+		#endif
+	}
+#endif`,nS=`#ifdef USE_MORPHNORMALS
+	objectNormal *= morphTargetBaseInfluence;
+	for ( int i = 0; i < MORPHTARGETS_COUNT; i ++ ) {
+		if ( morphTargetInfluences[ i ] != 0.0 ) objectNormal += getMorph( gl_VertexID, i, 1 ).xyz * morphTargetInfluences[ i ];
+	}
+#endif`,iS=`#ifdef USE_MORPHTARGETS
+	#ifndef USE_INSTANCING_MORPH
+		uniform float morphTargetBaseInfluence;
+		uniform float morphTargetInfluences[ MORPHTARGETS_COUNT ];
+	#endif
+	uniform sampler2DArray morphTargetsTexture;
+	uniform ivec2 morphTargetsTextureSize;
+	vec4 getMorph( const in int vertexIndex, const in int morphTargetIndex, const in int offset ) {
+		int texelIndex = vertexIndex * MORPHTARGETS_TEXTURE_STRIDE + offset;
+		int y = texelIndex / morphTargetsTextureSize.x;
+		int x = texelIndex - y * morphTargetsTextureSize.x;
+		ivec3 morphUV = ivec3( x, y, morphTargetIndex );
+		return texelFetch( morphTargetsTexture, morphUV, 0 );
+	}
+#endif`,sS=`#ifdef USE_MORPHTARGETS
+	transformed *= morphTargetBaseInfluence;
+	for ( int i = 0; i < MORPHTARGETS_COUNT; i ++ ) {
+		if ( morphTargetInfluences[ i ] != 0.0 ) transformed += getMorph( gl_VertexID, i, 0 ).xyz * morphTargetInfluences[ i ];
+	}
+#endif`,rS=`float faceDirection = gl_FrontFacing ? 1.0 : - 1.0;
+#ifdef FLAT_SHADED
+	vec3 fdx = dFdx( vViewPosition );
+	vec3 fdy = dFdy( vViewPosition );
+	vec3 normal = normalize( cross( fdx, fdy ) );
+#else
+	vec3 normal = normalize( vNormal );
+	#ifdef DOUBLE_SIDED
+		normal *= faceDirection;
+	#endif
+#endif
+#if defined( USE_NORMALMAP_TANGENTSPACE ) || defined( USE_CLEARCOAT_NORMALMAP ) || defined( USE_ANISOTROPY )
+	#ifdef USE_TANGENT
+		mat3 tbn = mat3( normalize( vTangent ), normalize( vBitangent ), normal );
+	#else
+		mat3 tbn = getTangentFrame( - vViewPosition, normal,
+		#if defined( USE_NORMALMAP )
+			vNormalMapUv
+		#elif defined( USE_CLEARCOAT_NORMALMAP )
+			vClearcoatNormalMapUv
+		#else
+			vUv
+		#endif
+		);
+	#endif
+	#ifdef DOUBLE_SIDED
+		tbn[0] *= faceDirection;
+		tbn[1] *= faceDirection;
+	#endif
+#endif
+#ifdef USE_CLEARCOAT_NORMALMAP
+	#ifdef USE_TANGENT
+		mat3 tbn2 = mat3( normalize( vTangent ), normalize( vBitangent ), normal );
+	#else
+		mat3 tbn2 = getTangentFrame( - vViewPosition, normal, vClearcoatNormalMapUv );
+	#endif
+	#ifdef DOUBLE_SIDED
+		tbn2[0] *= faceDirection;
+		tbn2[1] *= faceDirection;
+	#endif
+#endif
+vec3 nonPerturbedNormal = normal;`,oS=`#ifdef USE_NORMALMAP_OBJECTSPACE
+	normal = texture2D( normalMap, vNormalMapUv ).xyz * 2.0 - 1.0;
+	#ifdef FLIP_SIDED
+		normal = - normal;
+	#endif
+	#ifdef DOUBLE_SIDED
+		normal = normal * faceDirection;
+	#endif
+	normal = normalize( normalMatrix * normal );
+#elif defined( USE_NORMALMAP_TANGENTSPACE )
+	vec3 mapN = texture2D( normalMap, vNormalMapUv ).xyz * 2.0 - 1.0;
+	#if defined( USE_PACKED_NORMALMAP )
+		mapN = vec3( mapN.xy, sqrt( saturate( 1.0 - dot( mapN.xy, mapN.xy ) ) ) );
+	#endif
+	mapN.xy *= normalScale;
+	normal = normalize( tbn * mapN );
+#elif defined( USE_BUMPMAP )
+	normal = perturbNormalArb( - vViewPosition, normal, dHdxy_fwd(), faceDirection );
+#endif`,aS=`#ifndef FLAT_SHADED
+	varying vec3 vNormal;
+	#ifdef USE_TANGENT
+		varying vec3 vTangent;
+		varying vec3 vBitangent;
+	#endif
+#endif`,lS=`#ifndef FLAT_SHADED
+	varying vec3 vNormal;
+	#ifdef USE_TANGENT
+		varying vec3 vTangent;
+		varying vec3 vBitangent;
+	#endif
+#endif`,cS=`#ifndef FLAT_SHADED
+	vNormal = normalize( transformedNormal );
+	#ifdef USE_TANGENT
+		vTangent = normalize( transformedTangent );
+		vBitangent = normalize( cross( vNormal, vTangent ) * tangent.w );
+		#ifdef FLIP_SIDED
+			vBitangent = - vBitangent;
+		#endif
+	#endif
+#endif`,hS=`#ifdef USE_NORMALMAP
+	uniform sampler2D normalMap;
+	uniform vec2 normalScale;
+#endif
+#ifdef USE_NORMALMAP_OBJECTSPACE
+	uniform mat3 normalMatrix;
+#endif
+#if ! defined ( USE_TANGENT ) && ( defined ( USE_NORMALMAP_TANGENTSPACE ) || defined ( USE_CLEARCOAT_NORMALMAP ) || defined( USE_ANISOTROPY ) )
+	mat3 getTangentFrame( vec3 eye_pos, vec3 surf_norm, vec2 uv ) {
+		vec3 q0 = dFdx( eye_pos.xyz );
+		vec3 q1 = dFdy( eye_pos.xyz );
+		vec2 st0 = dFdx( uv.st );
+		vec2 st1 = dFdy( uv.st );
+		vec3 N = surf_norm;
+		vec3 q1perp = cross( q1, N );
+		vec3 q0perp = cross( N, q0 );
+		vec3 T = q1perp * st0.x + q0perp * st1.x;
+		vec3 B = q1perp * st0.y + q0perp * st1.y;
+		float det = max( dot( T, T ), dot( B, B ) );
+		float scale = ( det == 0.0 ) ? 0.0 : inversesqrt( det );
+		return mat3( T * scale, B * scale, N );
+	}
+#endif`,uS=`#ifdef USE_CLEARCOAT
+	vec3 clearcoatNormal = nonPerturbedNormal;
+#endif`,dS=`#ifdef USE_CLEARCOAT_NORMALMAP
+	vec3 clearcoatMapN = texture2D( clearcoatNormalMap, vClearcoatNormalMapUv ).xyz * 2.0 - 1.0;
+	clearcoatMapN.xy *= clearcoatNormalScale;
+	clearcoatNormal = normalize( tbn2 * clearcoatMapN );
+#endif`,fS=`#ifdef USE_CLEARCOATMAP
+	uniform sampler2D clearcoatMap;
+#endif
+#ifdef USE_CLEARCOAT_NORMALMAP
+	uniform sampler2D clearcoatNormalMap;
+	uniform vec2 clearcoatNormalScale;
+#endif
+#ifdef USE_CLEARCOAT_ROUGHNESSMAP
+	uniform sampler2D clearcoatRoughnessMap;
+#endif`,pS=`#ifdef USE_IRIDESCENCEMAP
+	uniform sampler2D iridescenceMap;
+#endif
+#ifdef USE_IRIDESCENCE_THICKNESSMAP
+	uniform sampler2D iridescenceThicknessMap;
+#endif`,mS=`#ifdef OPAQUE
+diffuseColor.a = 1.0;
+#endif
+#ifdef USE_TRANSMISSION
+diffuseColor.a *= material.transmissionAlpha;
+#endif
+gl_FragColor = vec4( outgoingLight, diffuseColor.a );`,gS=`vec3 packNormalToRGB( const in vec3 normal ) {
+	return normalize( normal ) * 0.5 + 0.5;
+}
+vec3 unpackRGBToNormal( const in vec3 rgb ) {
+	return 2.0 * rgb.xyz - 1.0;
+}
+const float PackUpscale = 256. / 255.;const float UnpackDownscale = 255. / 256.;const float ShiftRight8 = 1. / 256.;
+const float Inv255 = 1. / 255.;
+const vec4 PackFactors = vec4( 1.0, 256.0, 256.0 * 256.0, 256.0 * 256.0 * 256.0 );
+const vec2 UnpackFactors2 = vec2( UnpackDownscale, 1.0 / PackFactors.g );
+const vec3 UnpackFactors3 = vec3( UnpackDownscale / PackFactors.rg, 1.0 / PackFactors.b );
+const vec4 UnpackFactors4 = vec4( UnpackDownscale / PackFactors.rgb, 1.0 / PackFactors.a );
+vec4 packDepthToRGBA( const in float v ) {
+	if( v <= 0.0 )
+		return vec4( 0., 0., 0., 0. );
+	if( v >= 1.0 )
+		return vec4( 1., 1., 1., 1. );
+	float vuf;
+	float af = modf( v * PackFactors.a, vuf );
+	float bf = modf( vuf * ShiftRight8, vuf );
+	float gf = modf( vuf * ShiftRight8, vuf );
+	return vec4( vuf * Inv255, gf * PackUpscale, bf * PackUpscale, af );
+}
+vec3 packDepthToRGB( const in float v ) {
+	if( v <= 0.0 )
+		return vec3( 0., 0., 0. );
+	if( v >= 1.0 )
+		return vec3( 1., 1., 1. );
+	float vuf;
+	float bf = modf( v * PackFactors.b, vuf );
+	float gf = modf( vuf * ShiftRight8, vuf );
+	return vec3( vuf * Inv255, gf * PackUpscale, bf );
+}
+vec2 packDepthToRG( const in float v ) {
+	if( v <= 0.0 )
+		return vec2( 0., 0. );
+	if( v >= 1.0 )
+		return vec2( 1., 1. );
+	float vuf;
+	float gf = modf( v * 256., vuf );
+	return vec2( vuf * Inv255, gf );
+}
+float unpackRGBAToDepth( const in vec4 v ) {
+	return dot( v, UnpackFactors4 );
+}
+float unpackRGBToDepth( const in vec3 v ) {
+	return dot( v, UnpackFactors3 );
+}
+float unpackRGToDepth( const in vec2 v ) {
+	return v.r * UnpackFactors2.r + v.g * UnpackFactors2.g;
+}
+vec4 pack2HalfToRGBA( const in vec2 v ) {
+	vec4 r = vec4( v.x, fract( v.x * 255.0 ), v.y, fract( v.y * 255.0 ) );
+	return vec4( r.x - r.y / 255.0, r.y, r.z - r.w / 255.0, r.w );
+}
+vec2 unpackRGBATo2Half( const in vec4 v ) {
+	return vec2( v.x + ( v.y / 255.0 ), v.z + ( v.w / 255.0 ) );
+}
+float viewZToOrthographicDepth( const in float viewZ, const in float near, const in float far ) {
+	return ( viewZ + near ) / ( near - far );
+}
+float orthographicDepthToViewZ( const in float depth, const in float near, const in float far ) {
+	#ifdef USE_REVERSED_DEPTH_BUFFER
+	
+		return depth * ( far - near ) - far;
+	#else
+		return depth * ( near - far ) - near;
+	#endif
+}
+float viewZToPerspectiveDepth( const in float viewZ, const in float near, const in float far ) {
+	return ( ( near + viewZ ) * far ) / ( ( far - near ) * viewZ );
+}
+float perspectiveDepthToViewZ( const in float depth, const in float near, const in float far ) {
+	
+	#ifdef USE_REVERSED_DEPTH_BUFFER
+		return ( near * far ) / ( ( near - far ) * depth - near );
+	#else
+		return ( near * far ) / ( ( far - near ) * depth - far );
+	#endif
+}`,_S=`#ifdef PREMULTIPLIED_ALPHA
+	gl_FragColor.rgb *= gl_FragColor.a;
+#endif`,xS=`vec4 mvPosition = vec4( transformed, 1.0 );
+#ifdef USE_BATCHING
+	mvPosition = batchingMatrix * mvPosition;
+#endif
+#ifdef USE_INSTANCING
+	mvPosition = instanceMatrix * mvPosition;
+#endif
+mvPosition = modelViewMatrix * mvPosition;
+gl_Position = projectionMatrix * mvPosition;`,yS=`#ifdef DITHERING
+	gl_FragColor.rgb = dithering( gl_FragColor.rgb );
+#endif`,vS=`#ifdef DITHERING
+	vec3 dithering( vec3 color ) {
+		float grid_position = rand( gl_FragCoord.xy );
+		vec3 dither_shift_RGB = vec3( 0.25 / 255.0, -0.25 / 255.0, 0.25 / 255.0 );
+		dither_shift_RGB = mix( 2.0 * dither_shift_RGB, -2.0 * dither_shift_RGB, grid_position );
+		return color + dither_shift_RGB;
+	}
+#endif`,SS=`float roughnessFactor = roughness;
+#ifdef USE_ROUGHNESSMAP
+	vec4 texelRoughness = texture2D( roughnessMap, vRoughnessMapUv );
+	roughnessFactor *= texelRoughness.g;
+#endif`,MS=`#ifdef USE_ROUGHNESSMAP
+	uniform sampler2D roughnessMap;
+#endif`,bS=`#if NUM_SPOT_LIGHT_COORDS > 0
+	varying vec4 vSpotLightCoord[ NUM_SPOT_LIGHT_COORDS ];
+#endif
+#if NUM_SPOT_LIGHT_MAPS > 0
+	uniform sampler2D spotLightMap[ NUM_SPOT_LIGHT_MAPS ];
+#endif
+#ifdef USE_SHADOWMAP
+	#if NUM_SUN_LIGHT_SHADOWS > 0
+		#define SUN_LIGHT_CASCADES 2
+		#if defined( SHADOWMAP_TYPE_PCF )
+			uniform sampler2DShadow sunShadowMap[ NUM_SUN_LIGHT_SHADOWS ];
+		#else
+			uniform sampler2D sunShadowMap[ NUM_SUN_LIGHT_SHADOWS ];
+		#endif
+		uniform mat4 sunShadowMatrix[ NUM_SUN_LIGHT_SHADOWS * SUN_LIGHT_CASCADES ];
+		uniform vec4 sunShadowCascade[ NUM_SUN_LIGHT_SHADOWS * SUN_LIGHT_CASCADES ];
+		varying vec4 vSunShadowWorldPosition;
+		varying vec3 vSunShadowWorldNormal;
+		struct SunLightShadow {
+			float shadowIntensity;
+			float shadowBias;
+			float shadowNormalBias;
+			float shadowRadius;
+			vec2 shadowMapSize;
+		};
+		uniform SunLightShadow sunLightShadows[ NUM_SUN_LIGHT_SHADOWS ];
+	#endif
+	#if NUM_DIR_LIGHT_SHADOWS > 0
+		#if defined( SHADOWMAP_TYPE_PCF )
+			uniform sampler2DShadow directionalShadowMap[ NUM_DIR_LIGHT_SHADOWS ];
+		#else
+			uniform sampler2D directionalShadowMap[ NUM_DIR_LIGHT_SHADOWS ];
+		#endif
+		varying vec4 vDirectionalShadowCoord[ NUM_DIR_LIGHT_SHADOWS ];
+		struct DirectionalLightShadow {
+			float shadowIntensity;
+			float shadowBias;
+			float shadowNormalBias;
+			float shadowRadius;
+			vec2 shadowMapSize;
+		};
+		uniform DirectionalLightShadow directionalLightShadows[ NUM_DIR_LIGHT_SHADOWS ];
+	#endif
+	#if NUM_SPOT_LIGHT_SHADOWS > 0
+		#if defined( SHADOWMAP_TYPE_PCF )
+			uniform sampler2DShadow spotShadowMap[ NUM_SPOT_LIGHT_SHADOWS ];
+		#else
+			uniform sampler2D spotShadowMap[ NUM_SPOT_LIGHT_SHADOWS ];
+		#endif
+		struct SpotLightShadow {
+			float shadowIntensity;
+			float shadowBias;
+			float shadowNormalBias;
+			float shadowRadius;
+			vec2 shadowMapSize;
+		};
+		uniform SpotLightShadow spotLightShadows[ NUM_SPOT_LIGHT_SHADOWS ];
+	#endif
+	#if NUM_POINT_LIGHT_SHADOWS > 0
+		#if defined( SHADOWMAP_TYPE_PCF )
+			uniform samplerCubeShadow pointShadowMap[ NUM_POINT_LIGHT_SHADOWS ];
+		#elif defined( SHADOWMAP_TYPE_BASIC )
+			uniform samplerCube pointShadowMap[ NUM_POINT_LIGHT_SHADOWS ];
+		#endif
+		varying vec4 vPointShadowCoord[ NUM_POINT_LIGHT_SHADOWS ];
+		struct PointLightShadow {
+			float shadowIntensity;
+			float shadowBias;
+			float shadowNormalBias;
+			float shadowRadius;
+			vec2 shadowMapSize;
+			float shadowCameraNear;
+			float shadowCameraFar;
+		};
+		uniform PointLightShadow pointLightShadows[ NUM_POINT_LIGHT_SHADOWS ];
+	#endif
+	#if defined( SHADOWMAP_TYPE_PCF )
+		float interleavedGradientNoise( vec2 position ) {
+			return fract( 52.9829189 * fract( dot( position, vec2( 0.06711056, 0.00583715 ) ) ) );
+		}
+		vec2 vogelDiskSample( int sampleIndex, int samplesCount, float phi ) {
+			const float goldenAngle = 2.399963229728653;
+			float r = sqrt( ( float( sampleIndex ) + 0.5 ) / float( samplesCount ) );
+			float theta = float( sampleIndex ) * goldenAngle + phi;
+			return vec2( cos( theta ), sin( theta ) ) * r;
+		}
+	#endif
+	#if defined( SHADOWMAP_TYPE_PCF )
+		float getShadow( sampler2DShadow shadowMap, vec2 shadowMapSize, float shadowIntensity, float shadowBias, float shadowRadius, vec4 shadowCoord ) {
+			float shadow = 1.0;
+			shadowCoord.xyz /= shadowCoord.w;
+			#ifdef USE_REVERSED_DEPTH_BUFFER
+				shadowCoord.z -= shadowBias;
+			#else
+				shadowCoord.z += shadowBias;
+			#endif
+			bool inFrustum = shadowCoord.x >= 0.0 && shadowCoord.x <= 1.0 && shadowCoord.y >= 0.0 && shadowCoord.y <= 1.0;
+			bool frustumTest = inFrustum && shadowCoord.z <= 1.0;
+			if ( frustumTest ) {
+				vec2 texelSize = vec2( 1.0 ) / shadowMapSize;
+				vec2 radius = shadowRadius * texelSize;
+				float phi = interleavedGradientNoise( gl_FragCoord.xy ) * PI2;
+				shadow = (
+					texture( shadowMap, vec3( shadowCoord.xy + vogelDiskSample( 0, 5, phi ) * radius, shadowCoord.z ) ) +
+					texture( shadowMap, vec3( shadowCoord.xy + vogelDiskSample( 1, 5, phi ) * radius, shadowCoord.z ) ) +
+					texture( shadowMap, vec3( shadowCoord.xy + vogelDiskSample( 2, 5, phi ) * radius, shadowCoord.z ) ) +
+					texture( shadowMap, vec3( shadowCoord.xy + vogelDiskSample( 3, 5, phi ) * radius, shadowCoord.z ) ) +
+					texture( shadowMap, vec3( shadowCoord.xy + vogelDiskSample( 4, 5, phi ) * radius, shadowCoord.z ) )
+				) * 0.2;
+			}
+			return mix( 1.0, shadow, shadowIntensity );
+		}
+	#elif defined( SHADOWMAP_TYPE_VSM )
+		float getShadow( sampler2D shadowMap, vec2 shadowMapSize, float shadowIntensity, float shadowBias, float shadowRadius, vec4 shadowCoord ) {
+			float shadow = 1.0;
+			shadowCoord.xyz /= shadowCoord.w;
+			#ifdef USE_REVERSED_DEPTH_BUFFER
+				shadowCoord.z -= shadowBias;
+			#else
+				shadowCoord.z += shadowBias;
+			#endif
+			bool inFrustum = shadowCoord.x >= 0.0 && shadowCoord.x <= 1.0 && shadowCoord.y >= 0.0 && shadowCoord.y <= 1.0;
+			bool frustumTest = inFrustum && shadowCoord.z <= 1.0;
+			if ( frustumTest ) {
+				vec2 distribution = texture2D( shadowMap, shadowCoord.xy ).rg;
+				float mean = distribution.x;
+				float variance = distribution.y * distribution.y;
+				#ifdef USE_REVERSED_DEPTH_BUFFER
+					float hard_shadow = step( mean, shadowCoord.z );
+				#else
+					float hard_shadow = step( shadowCoord.z, mean );
+				#endif
+				
+				if ( hard_shadow == 1.0 ) {
+					shadow = 1.0;
+				} else {
+					variance = max( variance, 0.0000001 );
+					float d = shadowCoord.z - mean;
+					float p_max = variance / ( variance + d * d );
+					p_max = clamp( ( p_max - 0.3 ) / 0.65, 0.0, 1.0 );
+					shadow = max( hard_shadow, p_max );
+				}
+			}
+			return mix( 1.0, shadow, shadowIntensity );
+		}
+	#else
+		float getShadow( sampler2D shadowMap, vec2 shadowMapSize, float shadowIntensity, float shadowBias, float shadowRadius, vec4 shadowCoord ) {
+			float shadow = 1.0;
+			shadowCoord.xyz /= shadowCoord.w;
+			#ifdef USE_REVERSED_DEPTH_BUFFER
+				shadowCoord.z -= shadowBias;
+			#else
+				shadowCoord.z += shadowBias;
+			#endif
+			bool inFrustum = shadowCoord.x >= 0.0 && shadowCoord.x <= 1.0 && shadowCoord.y >= 0.0 && shadowCoord.y <= 1.0;
+			bool frustumTest = inFrustum && shadowCoord.z <= 1.0;
+			if ( frustumTest ) {
+				float depth = texture2D( shadowMap, shadowCoord.xy ).r;
+				#ifdef USE_REVERSED_DEPTH_BUFFER
+					shadow = step( depth, shadowCoord.z );
+				#else
+					shadow = step( shadowCoord.z, depth );
+				#endif
+			}
+			return mix( 1.0, shadow, shadowIntensity );
+		}
+	#endif
+	#if NUM_SUN_LIGHT_SHADOWS > 0
+		float getSunShadow(
+			#if defined( SHADOWMAP_TYPE_PCF )
+				sampler2DShadow shadowMap,
+			#else
+				sampler2D shadowMap,
+			#endif
+			SunLightShadow sunLightShadow,
+			int shadowIndex
+		) {
+			vec4 shadowWorldPosition = vec4( vSunShadowWorldPosition.xyz + vSunShadowWorldNormal * sunLightShadow.shadowNormalBias, 1.0 );
+			float viewDepth = vSunShadowWorldPosition.w;
+			int cascadeOffset = shadowIndex * SUN_LIGHT_CASCADES;
+			float shadow = 1.0;
+			for ( int i = SUN_LIGHT_CASCADES - 1; i >= 0; i -- ) {
+				vec4 cascade = sunShadowCascade[ cascadeOffset + i ];
+				if ( viewDepth >= cascade.x && viewDepth < cascade.y ) {
+					float cascadeShadow = getShadow(
+						shadowMap,
+						sunLightShadow.shadowMapSize,
+						sunLightShadow.shadowIntensity,
+						sunLightShadow.shadowBias,
+						sunLightShadow.shadowRadius,
+						sunShadowMatrix[ cascadeOffset + i ] * shadowWorldPosition
+					);
+					shadow = mix( cascadeShadow, shadow, smoothstep( cascade.z, cascade.y, viewDepth ) );
+				}
+			}
+			return shadow;
+		}
+	#endif
+	#if NUM_POINT_LIGHT_SHADOWS > 0
+	#if defined( SHADOWMAP_TYPE_PCF )
+	float getPointShadow( samplerCubeShadow shadowMap, vec2 shadowMapSize, float shadowIntensity, float shadowBias, float shadowRadius, vec4 shadowCoord, float shadowCameraNear, float shadowCameraFar ) {
+		float shadow = 1.0;
+		vec3 lightToPosition = shadowCoord.xyz;
+		vec3 bd3D = normalize( lightToPosition );
+		vec3 absVec = abs( lightToPosition );
+		float viewSpaceZ = max( max( absVec.x, absVec.y ), absVec.z );
+		if ( viewSpaceZ - shadowCameraFar <= 0.0 && viewSpaceZ - shadowCameraNear >= 0.0 ) {
+			float lightDistance = length( lightToPosition );
+			float depthRange = shadowCameraFar - shadowCameraNear;
+			#ifdef USE_REVERSED_DEPTH_BUFFER
+				float depthA = - shadowCameraNear / depthRange - shadowBias;
+				float depthB = shadowCameraNear * shadowCameraFar / ( depthRange * lightDistance );
+			#else
+				float depthA = shadowCameraFar / depthRange + shadowBias;
+				float depthB = - shadowCameraNear * shadowCameraFar / ( depthRange * lightDistance );
+			#endif
+			float texelSize = shadowRadius / shadowMapSize.x;
+			vec3 absDir = abs( bd3D );
+			vec3 tangent = absDir.x > absDir.z ? vec3( 0.0, 1.0, 0.0 ) : vec3( 1.0, 0.0, 0.0 );
+			tangent = normalize( cross( bd3D, tangent ) );
+			vec3 bitangent = cross( bd3D, tangent );
+			float phi = interleavedGradientNoise( gl_FragCoord.xy ) * PI2;
+			shadow = 0.0;
+			for ( int i = 0; i < 5; i ++ ) {
+				vec2 offset = vogelDiskSample( i, 5, phi );
+				vec3 direction = bd3D + ( tangent * offset.x + bitangent * offset.y ) * texelSize;
+				vec3 absDirection = abs( direction );
+				float dp = depthA + depthB / max( max( absDirection.x, absDirection.y ), absDirection.z );
+				shadow += texture( shadowMap, vec4( direction, dp ) );
+			}
+			shadow *= 0.2;
+		}
+		return mix( 1.0, shadow, shadowIntensity );
+	}
+	#elif defined( SHADOWMAP_TYPE_BASIC )
+	float getPointShadow( samplerCube shadowMap, vec2 shadowMapSize, float shadowIntensity, float shadowBias, float shadowRadius, vec4 shadowCoord, float shadowCameraNear, float shadowCameraFar ) {
+		float shadow = 1.0;
+		vec3 lightToPosition = shadowCoord.xyz;
+		vec3 absVec = abs( lightToPosition );
+		float viewSpaceZ = max( max( absVec.x, absVec.y ), absVec.z );
+		if ( viewSpaceZ - shadowCameraFar <= 0.0 && viewSpaceZ - shadowCameraNear >= 0.0 ) {
+			float dp = ( shadowCameraFar * ( viewSpaceZ - shadowCameraNear ) ) / ( viewSpaceZ * ( shadowCameraFar - shadowCameraNear ) );
+			dp += shadowBias;
+			vec3 bd3D = normalize( lightToPosition );
+			float depth = textureCube( shadowMap, bd3D ).r;
+			#ifdef USE_REVERSED_DEPTH_BUFFER
+				depth = 1.0 - depth;
+			#endif
+			shadow = step( dp, depth );
+		}
+		return mix( 1.0, shadow, shadowIntensity );
+	}
+	#endif
+	#endif
+#endif`,wS=`#if NUM_SPOT_LIGHT_COORDS > 0
+	uniform mat4 spotLightMatrix[ NUM_SPOT_LIGHT_COORDS ];
+	varying vec4 vSpotLightCoord[ NUM_SPOT_LIGHT_COORDS ];
+#endif
+#ifdef USE_SHADOWMAP
+	#if NUM_SUN_LIGHT_SHADOWS > 0
+		varying vec4 vSunShadowWorldPosition;
+		varying vec3 vSunShadowWorldNormal;
+	#endif
+	#if NUM_DIR_LIGHT_SHADOWS > 0
+		uniform mat4 directionalShadowMatrix[ NUM_DIR_LIGHT_SHADOWS ];
+		varying vec4 vDirectionalShadowCoord[ NUM_DIR_LIGHT_SHADOWS ];
+		struct DirectionalLightShadow {
+			float shadowIntensity;
+			float shadowBias;
+			float shadowNormalBias;
+			float shadowRadius;
+			vec2 shadowMapSize;
+		};
+		uniform DirectionalLightShadow directionalLightShadows[ NUM_DIR_LIGHT_SHADOWS ];
+	#endif
+	#if NUM_SPOT_LIGHT_SHADOWS > 0
+		struct SpotLightShadow {
+			float shadowIntensity;
+			float shadowBias;
+			float shadowNormalBias;
+			float shadowRadius;
+			vec2 shadowMapSize;
+		};
+		uniform SpotLightShadow spotLightShadows[ NUM_SPOT_LIGHT_SHADOWS ];
+	#endif
+	#if NUM_POINT_LIGHT_SHADOWS > 0
+		uniform mat4 pointShadowMatrix[ NUM_POINT_LIGHT_SHADOWS ];
+		varying vec4 vPointShadowCoord[ NUM_POINT_LIGHT_SHADOWS ];
+		struct PointLightShadow {
+			float shadowIntensity;
+			float shadowBias;
+			float shadowNormalBias;
+			float shadowRadius;
+			vec2 shadowMapSize;
+			float shadowCameraNear;
+			float shadowCameraFar;
+		};
+		uniform PointLightShadow pointLightShadows[ NUM_POINT_LIGHT_SHADOWS ];
+	#endif
+#endif`,TS=`#if ( defined( USE_SHADOWMAP ) && ( NUM_DIR_LIGHT_SHADOWS > 0 || NUM_SUN_LIGHT_SHADOWS > 0 || NUM_POINT_LIGHT_SHADOWS > 0 ) ) || ( NUM_SPOT_LIGHT_COORDS > 0 )
+	#ifdef HAS_NORMAL
+		vec3 shadowWorldNormal = transformNormalByInverseViewMatrix( transformedNormal, viewMatrix );
+	#else
+		vec3 shadowWorldNormal = vec3( 0.0 );
+	#endif
+	vec4 shadowWorldPosition;
+#endif
+#if defined( USE_SHADOWMAP )
+	#if NUM_SUN_LIGHT_SHADOWS > 0
+		vSunShadowWorldPosition = vec4( worldPosition.xyz, - mvPosition.z );
+		vSunShadowWorldNormal = shadowWorldNormal;
+	#endif
+	#if NUM_DIR_LIGHT_SHADOWS > 0
+		#pragma unroll_loop_start
+		for ( int i = 0; i < NUM_DIR_LIGHT_SHADOWS; i ++ ) {
+			shadowWorldPosition = worldPosition + vec4( shadowWorldNormal * directionalLightShadows[ i ].shadowNormalBias, 0 );
+			vDirectionalShadowCoord[ i ] = directionalShadowMatrix[ i ] * shadowWorldPosition;
+		}
+		#pragma unroll_loop_end
+	#endif
+	#if NUM_POINT_LIGHT_SHADOWS > 0
+		#pragma unroll_loop_start
+		for ( int i = 0; i < NUM_POINT_LIGHT_SHADOWS; i ++ ) {
+			shadowWorldPosition = worldPosition + vec4( shadowWorldNormal * pointLightShadows[ i ].shadowNormalBias, 0 );
+			vPointShadowCoord[ i ] = pointShadowMatrix[ i ] * shadowWorldPosition;
+		}
+		#pragma unroll_loop_end
+	#endif
+#endif
+#if NUM_SPOT_LIGHT_COORDS > 0
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_SPOT_LIGHT_COORDS; i ++ ) {
+		shadowWorldPosition = worldPosition;
+		#if ( defined( USE_SHADOWMAP ) && UNROLLED_LOOP_INDEX < NUM_SPOT_LIGHT_SHADOWS )
+			shadowWorldPosition.xyz += shadowWorldNormal * spotLightShadows[ i ].shadowNormalBias;
+		#endif
+		vSpotLightCoord[ i ] = spotLightMatrix[ i ] * shadowWorldPosition;
+	}
+	#pragma unroll_loop_end
+#endif`,ES=`float getShadowMask() {
+	float shadow = 1.0;
+	#ifdef USE_SHADOWMAP
+	#if NUM_SUN_LIGHT_SHADOWS > 0
+	SunLightShadow sunLight;
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_SUN_LIGHT_SHADOWS; i ++ ) {
+		sunLight = sunLightShadows[ i ];
+		shadow *= receiveShadow ? getSunShadow( sunShadowMap[ i ], sunLight, UNROLLED_LOOP_INDEX ) : 1.0;
+	}
+	#pragma unroll_loop_end
+	#endif
+	#if NUM_DIR_LIGHT_SHADOWS > 0
+	DirectionalLightShadow directionalLight;
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_DIR_LIGHT_SHADOWS; i ++ ) {
+		directionalLight = directionalLightShadows[ i ];
+		shadow *= receiveShadow ? getShadow( directionalShadowMap[ i ], directionalLight.shadowMapSize, directionalLight.shadowIntensity, directionalLight.shadowBias, directionalLight.shadowRadius, vDirectionalShadowCoord[ i ] ) : 1.0;
+	}
+	#pragma unroll_loop_end
+	#endif
+	#if NUM_SPOT_LIGHT_SHADOWS > 0
+	SpotLightShadow spotLight;
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_SPOT_LIGHT_SHADOWS; i ++ ) {
+		spotLight = spotLightShadows[ i ];
+		shadow *= receiveShadow ? getShadow( spotShadowMap[ i ], spotLight.shadowMapSize, spotLight.shadowIntensity, spotLight.shadowBias, spotLight.shadowRadius, vSpotLightCoord[ i ] ) : 1.0;
+	}
+	#pragma unroll_loop_end
+	#endif
+	#if NUM_POINT_LIGHT_SHADOWS > 0 && ( defined( SHADOWMAP_TYPE_PCF ) || defined( SHADOWMAP_TYPE_BASIC ) )
+	PointLightShadow pointLight;
+	#pragma unroll_loop_start
+	for ( int i = 0; i < NUM_POINT_LIGHT_SHADOWS; i ++ ) {
+		pointLight = pointLightShadows[ i ];
+		shadow *= receiveShadow ? getPointShadow( pointShadowMap[ i ], pointLight.shadowMapSize, pointLight.shadowIntensity, pointLight.shadowBias, pointLight.shadowRadius, vPointShadowCoord[ i ], pointLight.shadowCameraNear, pointLight.shadowCameraFar ) : 1.0;
+	}
+	#pragma unroll_loop_end
+	#endif
+	#endif
+	return shadow;
+}`,AS=`#ifdef USE_SKINNING
+	mat4 boneMatX = getBoneMatrix( skinIndex.x );
+	mat4 boneMatY = getBoneMatrix( skinIndex.y );
+	mat4 boneMatZ = getBoneMatrix( skinIndex.z );
+	mat4 boneMatW = getBoneMatrix( skinIndex.w );
+#endif`,CS=`#ifdef USE_SKINNING
+	uniform mat4 bindMatrix;
+	uniform mat4 bindMatrixInverse;
+	uniform highp sampler2D boneTexture;
+	mat4 getBoneMatrix( const in float i ) {
+		int size = textureSize( boneTexture, 0 ).x;
+		int j = int( i ) * 4;
+		int x = j % size;
+		int y = j / size;
+		vec4 v1 = texelFetch( boneTexture, ivec2( x, y ), 0 );
+		vec4 v2 = texelFetch( boneTexture, ivec2( x + 1, y ), 0 );
+		vec4 v3 = texelFetch( boneTexture, ivec2( x + 2, y ), 0 );
+		vec4 v4 = texelFetch( boneTexture, ivec2( x + 3, y ), 0 );
+		return mat4( v1, v2, v3, v4 );
+	}
+#endif`,RS=`#ifdef USE_SKINNING
+	vec4 skinVertex = bindMatrix * vec4( transformed, 1.0 );
+	vec4 skinned = vec4( 0.0 );
+	skinned += boneMatX * skinVertex * skinWeight.x;
+	skinned += boneMatY * skinVertex * skinWeight.y;
+	skinned += boneMatZ * skinVertex * skinWeight.z;
+	skinned += boneMatW * skinVertex * skinWeight.w;
+	transformed = ( bindMatrixInverse * skinned ).xyz;
+#endif`,PS=`#ifdef USE_SKINNING
+	mat4 skinMatrix = mat4( 0.0 );
+	skinMatrix += skinWeight.x * boneMatX;
+	skinMatrix += skinWeight.y * boneMatY;
+	skinMatrix += skinWeight.z * boneMatZ;
+	skinMatrix += skinWeight.w * boneMatW;
+	skinMatrix = bindMatrixInverse * skinMatrix * bindMatrix;
+	objectNormal = vec4( skinMatrix * vec4( objectNormal, 0.0 ) ).xyz;
+	#ifdef USE_TANGENT
+		objectTangent = vec4( skinMatrix * vec4( objectTangent, 0.0 ) ).xyz;
+	#endif
+#endif`,IS=`float specularStrength;
+#ifdef USE_SPECULARMAP
+	vec4 texelSpecular = texture2D( specularMap, vSpecularMapUv );
+	specularStrength = texelSpecular.r;
+#else
+	specularStrength = 1.0;
+#endif`,LS=`#ifdef USE_SPECULARMAP
+	uniform sampler2D specularMap;
+#endif`,DS=`#if defined( TONE_MAPPING )
+	gl_FragColor.rgb = toneMapping( gl_FragColor.rgb );
+#endif`,NS=`#ifndef saturate
+#define saturate( a ) clamp( a, 0.0, 1.0 )
+#endif
+uniform float toneMappingExposure;
+vec3 LinearToneMapping( vec3 color ) {
+	return saturate( toneMappingExposure * color );
+}
+vec3 ReinhardToneMapping( vec3 color ) {
+	color *= toneMappingExposure;
+	return saturate( color / ( vec3( 1.0 ) + color ) );
+}
+vec3 CineonToneMapping( vec3 color ) {
+	color *= toneMappingExposure;
+	color = max( vec3( 0.0 ), color - 0.004 );
+	return pow( ( color * ( 6.2 * color + 0.5 ) ) / ( color * ( 6.2 * color + 1.7 ) + 0.06 ), vec3( 2.2 ) );
+}
+vec3 RRTAndODTFit( vec3 v ) {
+	vec3 a = v * ( v + 0.0245786 ) - 0.000090537;
+	vec3 b = v * ( 0.983729 * v + 0.4329510 ) + 0.238081;
+	return a / b;
+}
+vec3 ACESFilmicToneMapping( vec3 color ) {
+	const mat3 ACESInputMat = mat3(
+		vec3( 0.59719, 0.07600, 0.02840 ),		vec3( 0.35458, 0.90834, 0.13383 ),
+		vec3( 0.04823, 0.01566, 0.83777 )
+	);
+	const mat3 ACESOutputMat = mat3(
+		vec3(  1.60475, -0.10208, -0.00327 ),		vec3( -0.53108,  1.10813, -0.07276 ),
+		vec3( -0.07367, -0.00605,  1.07602 )
+	);
+	color *= toneMappingExposure / 0.6;
+	color = ACESInputMat * color;
+	color = RRTAndODTFit( color );
+	color = ACESOutputMat * color;
+	return saturate( color );
+}
+const mat3 LINEAR_REC2020_TO_LINEAR_SRGB = mat3(
+	vec3( 1.6605, - 0.1246, - 0.0182 ),
+	vec3( - 0.5876, 1.1329, - 0.1006 ),
+	vec3( - 0.0728, - 0.0083, 1.1187 )
+);
+const mat3 LINEAR_SRGB_TO_LINEAR_REC2020 = mat3(
+	vec3( 0.6274, 0.0691, 0.0164 ),
+	vec3( 0.3293, 0.9195, 0.0880 ),
+	vec3( 0.0433, 0.0113, 0.8956 )
+);
+vec3 agxDefaultContrastApprox( vec3 x ) {
+	vec3 x2 = x * x;
+	vec3 x4 = x2 * x2;
+	return + 15.5 * x4 * x2
+		- 40.14 * x4 * x
+		+ 31.96 * x4
+		- 6.868 * x2 * x
+		+ 0.4298 * x2
+		+ 0.1191 * x
+		- 0.00232;
+}
+vec3 AgXToneMapping( vec3 color ) {
+	const mat3 AgXInsetMatrix = mat3(
+		vec3( 0.856627153315983, 0.137318972929847, 0.11189821299995 ),
+		vec3( 0.0951212405381588, 0.761241990602591, 0.0767994186031903 ),
+		vec3( 0.0482516061458583, 0.101439036467562, 0.811302368396859 )
+	);
+	const mat3 AgXOutsetMatrix = mat3(
+		vec3( 1.1271005818144368, - 0.1413297634984383, - 0.14132976349843826 ),
+		vec3( - 0.11060664309660323, 1.157823702216272, - 0.11060664309660294 ),
+		vec3( - 0.016493938717834573, - 0.016493938717834257, 1.2519364065950405 )
+	);
+	const float AgxMinEv = - 12.47393;	const float AgxMaxEv = 4.026069;
+	color *= toneMappingExposure;
+	color = LINEAR_SRGB_TO_LINEAR_REC2020 * color;
+	color = AgXInsetMatrix * color;
+	color = max( color, 1e-10 );	color = log2( color );
+	color = ( color - AgxMinEv ) / ( AgxMaxEv - AgxMinEv );
+	color = clamp( color, 0.0, 1.0 );
+	color = agxDefaultContrastApprox( color );
+	color = AgXOutsetMatrix * color;
+	color = pow( max( vec3( 0.0 ), color ), vec3( 2.2 ) );
+	color = LINEAR_REC2020_TO_LINEAR_SRGB * color;
+	color = clamp( color, 0.0, 1.0 );
+	return color;
+}
+vec3 NeutralToneMapping( vec3 color ) {
+	const float StartCompression = 0.8 - 0.04;
+	const float Desaturation = 0.15;
+	color *= toneMappingExposure;
+	float x = min( color.r, min( color.g, color.b ) );
+	float offset = x < 0.08 ? x - 6.25 * x * x : 0.04;
+	color -= offset;
+	float peak = max( color.r, max( color.g, color.b ) );
+	if ( peak < StartCompression ) return color;
+	float d = 1. - StartCompression;
+	float newPeak = 1. - d * d / ( peak + d - StartCompression );
+	color *= newPeak / peak;
+	float g = 1. - 1. / ( Desaturation * ( peak - newPeak ) + 1. );
+	return mix( color, vec3( newPeak ), g );
+}
+vec3 CustomToneMapping( vec3 color ) { return color; }`,US=`#ifdef USE_TRANSMISSION
+	material.transmission = transmission;
+	material.transmissionAlpha = 1.0;
+	material.thickness = thickness;
+	material.attenuationDistance = attenuationDistance;
+	material.attenuationColor = attenuationColor;
+	#ifdef USE_TRANSMISSIONMAP
+		material.transmission *= texture2D( transmissionMap, vTransmissionMapUv ).r;
+	#endif
+	#ifdef USE_THICKNESSMAP
+		material.thickness *= texture2D( thicknessMap, vThicknessMapUv ).g;
+	#endif
+	vec3 pos = vWorldPosition;
+	vec3 v = normalize( cameraPosition - pos );
+	vec3 n = transformNormalByInverseViewMatrix( normal, viewMatrix );
+	vec4 transmitted = getIBLVolumeRefraction(
+		n, v, material.roughness, material.diffuseContribution, material.specularColorBlended, material.specularF90,
+		pos, modelMatrix, viewMatrix, projectionMatrix, material.dispersion, material.ior, material.thickness,
+		material.attenuationColor, material.attenuationDistance );
+	material.transmissionAlpha = mix( material.transmissionAlpha, transmitted.a, material.transmission );
+	totalDiffuse = mix( totalDiffuse, transmitted.rgb, material.transmission );
+#endif`,OS=`#ifdef USE_TRANSMISSION
+	uniform float transmission;
+	uniform float thickness;
+	uniform float attenuationDistance;
+	uniform vec3 attenuationColor;
+	#ifdef USE_TRANSMISSIONMAP
+		uniform sampler2D transmissionMap;
+	#endif
+	#ifdef USE_THICKNESSMAP
+		uniform sampler2D thicknessMap;
+	#endif
+	uniform vec2 transmissionSamplerSize;
+	uniform sampler2D transmissionSamplerMap;
+	uniform mat4 modelMatrix;
+	uniform mat4 projectionMatrix;
+	varying vec3 vWorldPosition;
+	float w0( float a ) {
+		return ( 1.0 / 6.0 ) * ( a * ( a * ( - a + 3.0 ) - 3.0 ) + 1.0 );
+	}
+	float w1( float a ) {
+		return ( 1.0 / 6.0 ) * ( a *  a * ( 3.0 * a - 6.0 ) + 4.0 );
+	}
+	float w2( float a ){
+		return ( 1.0 / 6.0 ) * ( a * ( a * ( - 3.0 * a + 3.0 ) + 3.0 ) + 1.0 );
+	}
+	float w3( float a ) {
+		return ( 1.0 / 6.0 ) * ( a * a * a );
+	}
+	float g0( float a ) {
+		return w0( a ) + w1( a );
+	}
+	float g1( float a ) {
+		return w2( a ) + w3( a );
+	}
+	float h0( float a ) {
+		return - 1.0 + w1( a ) / ( w0( a ) + w1( a ) );
+	}
+	float h1( float a ) {
+		return 1.0 + w3( a ) / ( w2( a ) + w3( a ) );
+	}
+	vec4 bicubic( sampler2D tex, vec2 uv, vec4 texelSize, float lod ) {
+		uv = uv * texelSize.zw + 0.5;
+		vec2 iuv = floor( uv );
+		vec2 fuv = fract( uv );
+		float g0x = g0( fuv.x );
+		float g1x = g1( fuv.x );
+		float h0x = h0( fuv.x );
+		float h1x = h1( fuv.x );
+		float h0y = h0( fuv.y );
+		float h1y = h1( fuv.y );
+		vec2 p0 = ( vec2( iuv.x + h0x, iuv.y + h0y ) - 0.5 ) * texelSize.xy;
+		vec2 p1 = ( vec2( iuv.x + h1x, iuv.y + h0y ) - 0.5 ) * texelSize.xy;
+		vec2 p2 = ( vec2( iuv.x + h0x, iuv.y + h1y ) - 0.5 ) * texelSize.xy;
+		vec2 p3 = ( vec2( iuv.x + h1x, iuv.y + h1y ) - 0.5 ) * texelSize.xy;
+		return g0( fuv.y ) * ( g0x * textureLod( tex, p0, lod ) + g1x * textureLod( tex, p1, lod ) ) +
+			g1( fuv.y ) * ( g0x * textureLod( tex, p2, lod ) + g1x * textureLod( tex, p3, lod ) );
+	}
+	vec4 textureBicubic( sampler2D sampler, vec2 uv, float lod ) {
+		vec2 fLodSize = vec2( textureSize( sampler, int( lod ) ) );
+		vec2 cLodSize = vec2( textureSize( sampler, int( lod + 1.0 ) ) );
+		vec2 fLodSizeInv = 1.0 / fLodSize;
+		vec2 cLodSizeInv = 1.0 / cLodSize;
+		vec4 fSample = bicubic( sampler, uv, vec4( fLodSizeInv, fLodSize ), floor( lod ) );
+		vec4 cSample = bicubic( sampler, uv, vec4( cLodSizeInv, cLodSize ), ceil( lod ) );
+		return mix( fSample, cSample, fract( lod ) );
+	}
+	vec3 getVolumeTransmissionRay( const in vec3 n, const in vec3 v, const in float thickness, const in float ior, const in mat4 modelMatrix ) {
+		vec3 refractionVector = refract( - v, normalize( n ), 1.0 / ior );
+		vec3 modelScale;
+		modelScale.x = length( vec3( modelMatrix[ 0 ].xyz ) );
+		modelScale.y = length( vec3( modelMatrix[ 1 ].xyz ) );
+		modelScale.z = length( vec3( modelMatrix[ 2 ].xyz ) );
+		return normalize( refractionVector ) * thickness * modelScale;
+	}
+	float applyIorToRoughness( const in float roughness, const in float ior ) {
+		return roughness * clamp( ior * 2.0 - 2.0, 0.0, 1.0 );
+	}
+	vec4 getTransmissionSample( const in vec2 fragCoord, const in float roughness, const in float ior ) {
+		float lod = log2( transmissionSamplerSize.x ) * applyIorToRoughness( roughness, ior );
+		return textureBicubic( transmissionSamplerMap, fragCoord.xy, lod );
+	}
+	vec3 volumeAttenuation( const in float transmissionDistance, const in vec3 attenuationColor, const in float attenuationDistance ) {
+		if ( isinf( attenuationDistance ) ) {
+			return vec3( 1.0 );
+		} else {
+			vec3 attenuationCoefficient = -log( attenuationColor ) / attenuationDistance;
+			vec3 transmittance = exp( - attenuationCoefficient * transmissionDistance );			return transmittance;
+		}
+	}
+	vec4 getIBLVolumeRefraction( const in vec3 n, const in vec3 v, const in float roughness, const in vec3 diffuseColor,
+		const in vec3 specularColor, const in float specularF90, const in vec3 position, const in mat4 modelMatrix,
+		const in mat4 viewMatrix, const in mat4 projMatrix, const in float dispersion, const in float ior, const in float thickness,
+		const in vec3 attenuationColor, const in float attenuationDistance ) {
+		vec4 transmittedLight;
+		vec3 transmittance;
+		#ifdef USE_DISPERSION
+			float halfSpread = ( ior - 1.0 ) * 0.025 * dispersion;
+			vec3 iors = vec3( ior - halfSpread, ior, ior + halfSpread );
+			for ( int i = 0; i < 3; i ++ ) {
+				vec3 transmissionRay = getVolumeTransmissionRay( n, v, thickness, iors[ i ], modelMatrix );
+				vec3 refractedRayExit = position + transmissionRay;
+				vec4 ndcPos = projMatrix * viewMatrix * vec4( refractedRayExit, 1.0 );
+				vec2 refractionCoords = ndcPos.xy / ndcPos.w;
+				refractionCoords += 1.0;
+				refractionCoords /= 2.0;
+				vec4 transmissionSample = getTransmissionSample( refractionCoords, roughness, iors[ i ] );
+				transmittedLight[ i ] = transmissionSample[ i ];
+				transmittedLight.a += transmissionSample.a;
+				transmittance[ i ] = diffuseColor[ i ] * volumeAttenuation( length( transmissionRay ), attenuationColor, attenuationDistance )[ i ];
+			}
+			transmittedLight.a /= 3.0;
+		#else
+			vec3 transmissionRay = getVolumeTransmissionRay( n, v, thickness, ior, modelMatrix );
+			vec3 refractedRayExit = position + transmissionRay;
+			vec4 ndcPos = projMatrix * viewMatrix * vec4( refractedRayExit, 1.0 );
+			vec2 refractionCoords = ndcPos.xy / ndcPos.w;
+			refractionCoords += 1.0;
+			refractionCoords /= 2.0;
+			transmittedLight = getTransmissionSample( refractionCoords, roughness, ior );
+			transmittance = diffuseColor * volumeAttenuation( length( transmissionRay ), attenuationColor, attenuationDistance );
+		#endif
+		vec3 attenuatedColor = transmittance * transmittedLight.rgb;
+		vec3 F = EnvironmentBRDF( n, v, specularColor, specularF90, roughness );
+		float transmittanceFactor = ( transmittance.r + transmittance.g + transmittance.b ) / 3.0;
+		return vec4( ( 1.0 - F ) * attenuatedColor, 1.0 - ( 1.0 - transmittedLight.a ) * transmittanceFactor );
+	}
+#endif`,FS=`#if defined( USE_UV ) || defined( USE_ANISOTROPY )
+	varying vec2 vUv;
+#endif
+#ifdef USE_MAP
+	varying vec2 vMapUv;
+#endif
+#ifdef USE_ALPHAMAP
+	varying vec2 vAlphaMapUv;
+#endif
+#ifdef USE_LIGHTMAP
+	varying vec2 vLightMapUv;
+#endif
+#ifdef USE_AOMAP
+	varying vec2 vAoMapUv;
+#endif
+#ifdef USE_BUMPMAP
+	varying vec2 vBumpMapUv;
+#endif
+#ifdef USE_NORMALMAP
+	varying vec2 vNormalMapUv;
+#endif
+#ifdef USE_EMISSIVEMAP
+	varying vec2 vEmissiveMapUv;
+#endif
+#ifdef USE_METALNESSMAP
+	varying vec2 vMetalnessMapUv;
+#endif
+#ifdef USE_ROUGHNESSMAP
+	varying vec2 vRoughnessMapUv;
+#endif
+#ifdef USE_DIFFUSE_ROUGHNESSMAP
+	varying vec2 vDiffuseRoughnessMapUv;
+#endif
+#ifdef USE_ANISOTROPYMAP
+	varying vec2 vAnisotropyMapUv;
+#endif
+#ifdef USE_CLEARCOATMAP
+	varying vec2 vClearcoatMapUv;
+#endif
+#ifdef USE_CLEARCOAT_NORMALMAP
+	varying vec2 vClearcoatNormalMapUv;
+#endif
+#ifdef USE_CLEARCOAT_ROUGHNESSMAP
+	varying vec2 vClearcoatRoughnessMapUv;
+#endif
+#ifdef USE_IRIDESCENCEMAP
+	varying vec2 vIridescenceMapUv;
+#endif
+#ifdef USE_IRIDESCENCE_THICKNESSMAP
+	varying vec2 vIridescenceThicknessMapUv;
+#endif
+#ifdef USE_SHEEN_COLORMAP
+	varying vec2 vSheenColorMapUv;
+#endif
+#ifdef USE_SHEEN_ROUGHNESSMAP
+	varying vec2 vSheenRoughnessMapUv;
+#endif
+#ifdef USE_SPECULARMAP
+	varying vec2 vSpecularMapUv;
+#endif
+#ifdef USE_SPECULAR_COLORMAP
+	varying vec2 vSpecularColorMapUv;
+#endif
+#ifdef USE_SPECULAR_INTENSITYMAP
+	varying vec2 vSpecularIntensityMapUv;
+#endif
+#ifdef USE_TRANSMISSIONMAP
+	uniform mat3 transmissionMapTransform;
+	varying vec2 vTransmissionMapUv;
+#endif
+#ifdef USE_THICKNESSMAP
+	uniform mat3 thicknessMapTransform;
+	varying vec2 vThicknessMapUv;
+#endif`,BS=`#if defined( USE_UV ) || defined( USE_ANISOTROPY )
+	varying vec2 vUv;
+#endif
+#ifdef USE_MAP
+	uniform mat3 mapTransform;
+	varying vec2 vMapUv;
+#endif
+#ifdef USE_ALPHAMAP
+	uniform mat3 alphaMapTransform;
+	varying vec2 vAlphaMapUv;
+#endif
+#ifdef USE_LIGHTMAP
+	uniform mat3 lightMapTransform;
+	varying vec2 vLightMapUv;
+#endif
+#ifdef USE_AOMAP
+	uniform mat3 aoMapTransform;
+	varying vec2 vAoMapUv;
+#endif
+#ifdef USE_BUMPMAP
+	uniform mat3 bumpMapTransform;
+	varying vec2 vBumpMapUv;
+#endif
+#ifdef USE_NORMALMAP
+	uniform mat3 normalMapTransform;
+	varying vec2 vNormalMapUv;
+#endif
+#ifdef USE_DISPLACEMENTMAP
+	uniform mat3 displacementMapTransform;
+	varying vec2 vDisplacementMapUv;
+#endif
+#ifdef USE_EMISSIVEMAP
+	uniform mat3 emissiveMapTransform;
+	varying vec2 vEmissiveMapUv;
+#endif
+#ifdef USE_METALNESSMAP
+	uniform mat3 metalnessMapTransform;
+	varying vec2 vMetalnessMapUv;
+#endif
+#ifdef USE_ROUGHNESSMAP
+	uniform mat3 roughnessMapTransform;
+	varying vec2 vRoughnessMapUv;
+#endif
+#ifdef USE_DIFFUSE_ROUGHNESSMAP
+	uniform mat3 diffuseRoughnessMapTransform;
+	varying vec2 vDiffuseRoughnessMapUv;
+#endif
+#ifdef USE_ANISOTROPYMAP
+	uniform mat3 anisotropyMapTransform;
+	varying vec2 vAnisotropyMapUv;
+#endif
+#ifdef USE_CLEARCOATMAP
+	uniform mat3 clearcoatMapTransform;
+	varying vec2 vClearcoatMapUv;
+#endif
+#ifdef USE_CLEARCOAT_NORMALMAP
+	uniform mat3 clearcoatNormalMapTransform;
+	varying vec2 vClearcoatNormalMapUv;
+#endif
+#ifdef USE_CLEARCOAT_ROUGHNESSMAP
+	uniform mat3 clearcoatRoughnessMapTransform;
+	varying vec2 vClearcoatRoughnessMapUv;
+#endif
+#ifdef USE_SHEEN_COLORMAP
+	uniform mat3 sheenColorMapTransform;
+	varying vec2 vSheenColorMapUv;
+#endif
+#ifdef USE_SHEEN_ROUGHNESSMAP
+	uniform mat3 sheenRoughnessMapTransform;
+	varying vec2 vSheenRoughnessMapUv;
+#endif
+#ifdef USE_IRIDESCENCEMAP
+	uniform mat3 iridescenceMapTransform;
+	varying vec2 vIridescenceMapUv;
+#endif
+#ifdef USE_IRIDESCENCE_THICKNESSMAP
+	uniform mat3 iridescenceThicknessMapTransform;
+	varying vec2 vIridescenceThicknessMapUv;
+#endif
+#ifdef USE_SPECULARMAP
+	uniform mat3 specularMapTransform;
+	varying vec2 vSpecularMapUv;
+#endif
+#ifdef USE_SPECULAR_COLORMAP
+	uniform mat3 specularColorMapTransform;
+	varying vec2 vSpecularColorMapUv;
+#endif
+#ifdef USE_SPECULAR_INTENSITYMAP
+	uniform mat3 specularIntensityMapTransform;
+	varying vec2 vSpecularIntensityMapUv;
+#endif
+#ifdef USE_TRANSMISSIONMAP
+	uniform mat3 transmissionMapTransform;
+	varying vec2 vTransmissionMapUv;
+#endif
+#ifdef USE_THICKNESSMAP
+	uniform mat3 thicknessMapTransform;
+	varying vec2 vThicknessMapUv;
+#endif`,kS=`#if defined( USE_UV ) || defined( USE_ANISOTROPY )
+	vUv = vec3( uv, 1 ).xy;
+#endif
+#ifdef USE_MAP
+	vMapUv = ( mapTransform * vec3( MAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_ALPHAMAP
+	vAlphaMapUv = ( alphaMapTransform * vec3( ALPHAMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_LIGHTMAP
+	vLightMapUv = ( lightMapTransform * vec3( LIGHTMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_AOMAP
+	vAoMapUv = ( aoMapTransform * vec3( AOMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_BUMPMAP
+	vBumpMapUv = ( bumpMapTransform * vec3( BUMPMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_NORMALMAP
+	vNormalMapUv = ( normalMapTransform * vec3( NORMALMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_DISPLACEMENTMAP
+	vDisplacementMapUv = ( displacementMapTransform * vec3( DISPLACEMENTMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_EMISSIVEMAP
+	vEmissiveMapUv = ( emissiveMapTransform * vec3( EMISSIVEMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_METALNESSMAP
+	vMetalnessMapUv = ( metalnessMapTransform * vec3( METALNESSMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_ROUGHNESSMAP
+	vRoughnessMapUv = ( roughnessMapTransform * vec3( ROUGHNESSMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_DIFFUSE_ROUGHNESSMAP
+	vDiffuseRoughnessMapUv = ( diffuseRoughnessMapTransform * vec3( DIFFUSE_ROUGHNESSMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_ANISOTROPYMAP
+	vAnisotropyMapUv = ( anisotropyMapTransform * vec3( ANISOTROPYMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_CLEARCOATMAP
+	vClearcoatMapUv = ( clearcoatMapTransform * vec3( CLEARCOATMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_CLEARCOAT_NORMALMAP
+	vClearcoatNormalMapUv = ( clearcoatNormalMapTransform * vec3( CLEARCOAT_NORMALMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_CLEARCOAT_ROUGHNESSMAP
+	vClearcoatRoughnessMapUv = ( clearcoatRoughnessMapTransform * vec3( CLEARCOAT_ROUGHNESSMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_IRIDESCENCEMAP
+	vIridescenceMapUv = ( iridescenceMapTransform * vec3( IRIDESCENCEMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_IRIDESCENCE_THICKNESSMAP
+	vIridescenceThicknessMapUv = ( iridescenceThicknessMapTransform * vec3( IRIDESCENCE_THICKNESSMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_SHEEN_COLORMAP
+	vSheenColorMapUv = ( sheenColorMapTransform * vec3( SHEEN_COLORMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_SHEEN_ROUGHNESSMAP
+	vSheenRoughnessMapUv = ( sheenRoughnessMapTransform * vec3( SHEEN_ROUGHNESSMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_SPECULARMAP
+	vSpecularMapUv = ( specularMapTransform * vec3( SPECULARMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_SPECULAR_COLORMAP
+	vSpecularColorMapUv = ( specularColorMapTransform * vec3( SPECULAR_COLORMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_SPECULAR_INTENSITYMAP
+	vSpecularIntensityMapUv = ( specularIntensityMapTransform * vec3( SPECULAR_INTENSITYMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_TRANSMISSIONMAP
+	vTransmissionMapUv = ( transmissionMapTransform * vec3( TRANSMISSIONMAP_UV, 1 ) ).xy;
+#endif
+#ifdef USE_THICKNESSMAP
+	vThicknessMapUv = ( thicknessMapTransform * vec3( THICKNESSMAP_UV, 1 ) ).xy;
+#endif`,zS=`#if defined( USE_ENVMAP ) || defined( DISTANCE ) || defined ( USE_SHADOWMAP ) || defined ( USE_TRANSMISSION ) || NUM_SPOT_LIGHT_COORDS > 0
+	vec4 worldPosition = vec4( transformed, 1.0 );
+	#ifdef USE_BATCHING
+		worldPosition = batchingMatrix * worldPosition;
+	#endif
+	#ifdef USE_INSTANCING
+		worldPosition = instanceMatrix * worldPosition;
+	#endif
+	worldPosition = modelMatrix * worldPosition;
+#endif`,VS=`varying vec2 vUv;
+uniform mat3 uvTransform;
+void main() {
+	vUv = ( uvTransform * vec3( uv, 1 ) ).xy;
+	gl_Position = vec4( position.xy, 1.0, 1.0 );
+}`,GS=`uniform sampler2D t2D;
+uniform float backgroundIntensity;
+varying vec2 vUv;
+void main() {
+	vec4 texColor = texture2D( t2D, vUv );
+	#ifdef DECODE_VIDEO_TEXTURE
+		texColor = vec4( mix( pow( texColor.rgb * 0.9478672986 + vec3( 0.0521327014 ), vec3( 2.4 ) ), texColor.rgb * 0.0773993808, vec3( lessThanEqual( texColor.rgb, vec3( 0.04045 ) ) ) ), texColor.w );
+	#endif
+	texColor.rgb *= backgroundIntensity;
+	gl_FragColor = texColor;
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+}`,HS=`varying vec3 vWorldDirection;
+#include <common>
+void main() {
+	vWorldDirection = transformDirection( position, modelMatrix );
+	#include <begin_vertex>
+	#include <project_vertex>
+	gl_Position.z = gl_Position.w;
+}`,WS=`uniform float backgroundBlurriness;
+uniform float backgroundIntensity;
+uniform mat3 backgroundRotation;
+varying vec3 vWorldDirection;
+#include <envmap_common_pars_fragment>
+void main() {
+	#ifdef ENVMAP_TYPE_PMREM
+		vec4 texColor = textureLod( envMap, backgroundRotation * vWorldDirection, roughnessToMip( backgroundBlurriness ) );
+	#else
+		vec4 texColor = textureCube( envMap, backgroundRotation * vWorldDirection );
+	#endif
+	texColor.rgb *= backgroundIntensity;
+	gl_FragColor = texColor;
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+}`,XS=`varying vec3 vWorldDirection;
+#include <common>
+void main() {
+	vWorldDirection = transformDirection( position, modelMatrix );
+	#include <begin_vertex>
+	#include <project_vertex>
+	gl_Position.z = gl_Position.w;
+}`,YS=`uniform samplerCube tCube;
+uniform float tFlip;
+uniform float opacity;
+varying vec3 vWorldDirection;
+void main() {
+	vec4 texColor = textureCube( tCube, vec3( tFlip * vWorldDirection.x, vWorldDirection.yz ) );
+	gl_FragColor = texColor;
+	gl_FragColor.a *= opacity;
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+}`,qS=`#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <displacementmap_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+varying vec2 vHighPrecisionZW;
+void main() {
+	#include <uv_vertex>
+	#include <batching_vertex>
+	#include <skinbase_vertex>
+	#include <morphinstance_vertex>
+	#ifdef USE_DISPLACEMENTMAP
+		#include <beginnormal_vertex>
+		#include <morphnormal_vertex>
+		#include <skinnormal_vertex>
+	#endif
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <displacementmap_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	vHighPrecisionZW = gl_Position.zw;
+}`,$S=`#if DEPTH_PACKING == 3200
+	uniform float opacity;
+#endif
+#include <common>
+#include <packing>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+varying vec2 vHighPrecisionZW;
+void main() {
+	vec4 diffuseColor = vec4( 1.0 );
+	#include <clipping_planes_fragment>
+	#if DEPTH_PACKING == 3200
+		diffuseColor.a = opacity;
+	#endif
+	#include <map_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	#include <logdepthbuf_fragment>
+	#ifdef USE_REVERSED_DEPTH_BUFFER
+		float fragCoordZ = vHighPrecisionZW[ 0 ] / vHighPrecisionZW[ 1 ];
+	#else
+		float fragCoordZ = 0.5 * vHighPrecisionZW[ 0 ] / vHighPrecisionZW[ 1 ] + 0.5;
+	#endif
+	#if DEPTH_PACKING == 3200
+		gl_FragColor = vec4( vec3( 1.0 - fragCoordZ ), opacity );
+	#elif DEPTH_PACKING == 3201
+		gl_FragColor = packDepthToRGBA( fragCoordZ );
+	#elif DEPTH_PACKING == 3202
+		gl_FragColor = vec4( packDepthToRGB( fragCoordZ ), 1.0 );
+	#elif DEPTH_PACKING == 3203
+		gl_FragColor = vec4( packDepthToRG( fragCoordZ ), 0.0, 1.0 );
+	#endif
+}`,ZS=`#define DISTANCE
+varying vec3 vWorldPosition;
+#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <displacementmap_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	#include <batching_vertex>
+	#include <skinbase_vertex>
+	#include <morphinstance_vertex>
+	#ifdef USE_DISPLACEMENTMAP
+		#include <beginnormal_vertex>
+		#include <morphnormal_vertex>
+		#include <skinnormal_vertex>
+	#endif
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <displacementmap_vertex>
+	#include <project_vertex>
+	#include <worldpos_vertex>
+	#include <clipping_planes_vertex>
+	vWorldPosition = worldPosition.xyz;
+}`,JS=`#define DISTANCE
+uniform vec3 referencePosition;
+uniform float nearDistance;
+uniform float farDistance;
+varying vec3 vWorldPosition;
+#include <common>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( 1.0 );
+	#include <clipping_planes_fragment>
+	#include <map_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	float dist = length( vWorldPosition - referencePosition );
+	dist = ( dist - nearDistance ) / ( farDistance - nearDistance );
+	dist = saturate( dist );
+	gl_FragColor = vec4( dist, 0.0, 0.0, 1.0 );
+}`,jS=`varying vec3 vWorldDirection;
+#include <common>
+void main() {
+	vWorldDirection = transformDirection( position, modelMatrix );
+	#include <begin_vertex>
+	#include <project_vertex>
+}`,KS=`uniform sampler2D tEquirect;
+varying vec3 vWorldDirection;
+#include <common>
+void main() {
+	vec3 direction = normalize( vWorldDirection );
+	vec2 sampleUV = equirectUv( direction );
+	gl_FragColor = texture2D( tEquirect, sampleUV );
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+}`,QS=`uniform float scale;
+attribute float lineDistance;
+varying float vLineDistance;
+#include <common>
+#include <uv_pars_vertex>
+#include <color_pars_vertex>
+#include <fog_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	vLineDistance = scale * lineDistance;
+	#include <uv_vertex>
+	#include <color_vertex>
+	#include <morphinstance_vertex>
+	#include <morphcolor_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	#include <fog_vertex>
+}`,tM=`uniform vec3 diffuse;
+uniform float opacity;
+uniform float dashSize;
+uniform float totalSize;
+varying float vLineDistance;
+#include <common>
+#include <color_pars_fragment>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <fog_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	if ( mod( vLineDistance, totalSize ) > dashSize ) {
+		discard;
+	}
+	vec3 outgoingLight = vec3( 0.0 );
+	#include <logdepthbuf_fragment>
+	#include <map_fragment>
+	#include <color_fragment>
+	outgoingLight = diffuseColor.rgb;
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+}`,eM=`#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <envmap_pars_vertex>
+#include <color_pars_vertex>
+#include <fog_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	#include <color_vertex>
+	#include <morphinstance_vertex>
+	#include <morphcolor_vertex>
+	#include <batching_vertex>
+	#if defined ( USE_ENVMAP ) || defined ( USE_SKINNING )
+		#include <beginnormal_vertex>
+		#include <morphnormal_vertex>
+		#include <skinbase_vertex>
+		#include <skinnormal_vertex>
+		#include <defaultnormal_vertex>
+	#endif
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	#include <worldpos_vertex>
+	#include <envmap_vertex>
+	#include <fog_vertex>
+}`,nM=`uniform vec3 diffuse;
+uniform float opacity;
+#ifndef FLAT_SHADED
+	varying vec3 vNormal;
+#endif
+#include <common>
+#include <dithering_pars_fragment>
+#include <color_pars_fragment>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <aomap_pars_fragment>
+#include <lightmap_pars_fragment>
+#include <envmap_common_pars_fragment>
+#include <envmap_pars_fragment>
+#include <fog_pars_fragment>
+#include <specularmap_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	#include <logdepthbuf_fragment>
+	#include <map_fragment>
+	#include <color_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	#include <specularmap_fragment>
+	ReflectedLight reflectedLight = ReflectedLight( vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ) );
+	#ifdef USE_LIGHTMAP
+		vec4 lightMapTexel = texture2D( lightMap, vLightMapUv );
+		reflectedLight.indirectDiffuse += lightMapTexel.rgb * lightMapIntensity * RECIPROCAL_PI;
+	#else
+		reflectedLight.indirectDiffuse += vec3( 1.0 );
+	#endif
+	#include <aomap_fragment>
+	reflectedLight.indirectDiffuse *= diffuseColor.rgb;
+	vec3 outgoingLight = reflectedLight.indirectDiffuse;
+	#include <envmap_fragment>
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+	#include <dithering_fragment>
+}`,iM=`#define LAMBERT
+varying vec3 vViewPosition;
+#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <displacementmap_pars_vertex>
+#include <envmap_pars_vertex>
+#include <color_pars_vertex>
+#include <fog_pars_vertex>
+#include <normal_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <shadowmap_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	#include <color_vertex>
+	#include <morphinstance_vertex>
+	#include <morphcolor_vertex>
+	#include <batching_vertex>
+	#include <beginnormal_vertex>
+	#include <morphnormal_vertex>
+	#include <skinbase_vertex>
+	#include <skinnormal_vertex>
+	#include <defaultnormal_vertex>
+	#include <normal_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <displacementmap_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	vViewPosition = - mvPosition.xyz;
+	#include <worldpos_vertex>
+	#include <envmap_vertex>
+	#include <shadowmap_vertex>
+	#include <fog_vertex>
+}`,sM=`#define LAMBERT
+uniform vec3 diffuse;
+uniform vec3 emissive;
+uniform float opacity;
+#include <common>
+#include <dithering_pars_fragment>
+#include <color_pars_fragment>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <aomap_pars_fragment>
+#include <lightmap_pars_fragment>
+#include <emissivemap_pars_fragment>
+#include <envmap_common_pars_fragment>
+#include <envmap_pars_fragment>
+#include <envmap_physical_pars_fragment>
+#include <fog_pars_fragment>
+#include <bsdfs>
+#include <lights_pars_begin>
+#include <normal_pars_fragment>
+#include <lights_lambert_pars_fragment>
+#include <shadowmap_pars_fragment>
+#include <bumpmap_pars_fragment>
+#include <normalmap_pars_fragment>
+#include <specularmap_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	ReflectedLight reflectedLight = ReflectedLight( vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ) );
+	vec3 totalEmissiveRadiance = emissive;
+	#include <logdepthbuf_fragment>
+	#include <map_fragment>
+	#include <color_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	#include <specularmap_fragment>
+	#include <normal_fragment_begin>
+	#include <normal_fragment_maps>
+	#include <emissivemap_fragment>
+	#include <lights_lambert_fragment>
+	#include <lights_fragment_begin>
+	#include <lights_fragment_maps>
+	#include <lights_fragment_end>
+	#include <aomap_fragment>
+	vec3 outgoingLight = reflectedLight.directDiffuse + reflectedLight.indirectDiffuse + totalEmissiveRadiance;
+	#include <envmap_fragment>
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+	#include <dithering_fragment>
+}`,rM=`#define MATCAP
+varying vec3 vViewPosition;
+#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <color_pars_vertex>
+#include <displacementmap_pars_vertex>
+#include <fog_pars_vertex>
+#include <normal_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	#include <color_vertex>
+	#include <morphinstance_vertex>
+	#include <morphcolor_vertex>
+	#include <batching_vertex>
+	#include <beginnormal_vertex>
+	#include <morphnormal_vertex>
+	#include <skinbase_vertex>
+	#include <skinnormal_vertex>
+	#include <defaultnormal_vertex>
+	#include <normal_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <displacementmap_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	#include <fog_vertex>
+	vViewPosition = - mvPosition.xyz;
+}`,oM=`#define MATCAP
+uniform vec3 diffuse;
+uniform float opacity;
+uniform sampler2D matcap;
+varying vec3 vViewPosition;
+#include <common>
+#include <dithering_pars_fragment>
+#include <color_pars_fragment>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <fog_pars_fragment>
+#include <normal_pars_fragment>
+#include <bumpmap_pars_fragment>
+#include <normalmap_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	#include <logdepthbuf_fragment>
+	#include <map_fragment>
+	#include <color_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	#include <normal_fragment_begin>
+	#include <normal_fragment_maps>
+	vec3 viewDir = normalize( vViewPosition );
+	vec3 x = normalize( vec3( viewDir.z, 0.0, - viewDir.x ) );
+	vec3 y = cross( viewDir, x );
+	vec2 uv = vec2( dot( x, normal ), dot( y, normal ) ) * 0.495 + 0.5;
+	#ifdef USE_MATCAP
+		vec4 matcapColor = texture2D( matcap, uv );
+	#else
+		vec4 matcapColor = vec4( vec3( mix( 0.2, 0.8, uv.y ) ), 1.0 );
+	#endif
+	vec3 outgoingLight = diffuseColor.rgb * matcapColor.rgb;
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+	#include <dithering_fragment>
+}`,aM=`#define NORMAL
+#if defined( FLAT_SHADED ) || defined( USE_BUMPMAP ) || defined( USE_NORMALMAP_TANGENTSPACE )
+	varying vec3 vViewPosition;
+#endif
+#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <displacementmap_pars_vertex>
+#include <normal_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	#include <batching_vertex>
+	#include <beginnormal_vertex>
+	#include <morphinstance_vertex>
+	#include <morphnormal_vertex>
+	#include <skinbase_vertex>
+	#include <skinnormal_vertex>
+	#include <defaultnormal_vertex>
+	#include <normal_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <displacementmap_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+#if defined( FLAT_SHADED ) || defined( USE_BUMPMAP ) || defined( USE_NORMALMAP_TANGENTSPACE )
+	vViewPosition = - mvPosition.xyz;
+#endif
+}`,lM=`#define NORMAL
+uniform float opacity;
+#if defined( FLAT_SHADED ) || defined( USE_BUMPMAP ) || defined( USE_NORMALMAP_TANGENTSPACE )
+	varying vec3 vViewPosition;
+#endif
+#include <uv_pars_fragment>
+#include <normal_pars_fragment>
+#include <bumpmap_pars_fragment>
+#include <normalmap_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( 0.0, 0.0, 0.0, opacity );
+	#include <clipping_planes_fragment>
+	#include <logdepthbuf_fragment>
+	#include <normal_fragment_begin>
+	#include <normal_fragment_maps>
+	gl_FragColor = vec4( normalize( normal ) * 0.5 + 0.5, diffuseColor.a );
+	#ifdef OPAQUE
+		gl_FragColor.a = 1.0;
+	#endif
+}`,cM=`#define PHONG
+varying vec3 vViewPosition;
+#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <displacementmap_pars_vertex>
+#include <envmap_pars_vertex>
+#include <color_pars_vertex>
+#include <fog_pars_vertex>
+#include <normal_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <shadowmap_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	#include <color_vertex>
+	#include <morphcolor_vertex>
+	#include <batching_vertex>
+	#include <beginnormal_vertex>
+	#include <morphinstance_vertex>
+	#include <morphnormal_vertex>
+	#include <skinbase_vertex>
+	#include <skinnormal_vertex>
+	#include <defaultnormal_vertex>
+	#include <normal_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <displacementmap_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	vViewPosition = - mvPosition.xyz;
+	#include <worldpos_vertex>
+	#include <envmap_vertex>
+	#include <shadowmap_vertex>
+	#include <fog_vertex>
+}`,hM=`#define PHONG
+uniform vec3 diffuse;
+uniform vec3 emissive;
+uniform vec3 specular;
+uniform float shininess;
+uniform float opacity;
+#include <common>
+#include <dithering_pars_fragment>
+#include <color_pars_fragment>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <aomap_pars_fragment>
+#include <lightmap_pars_fragment>
+#include <emissivemap_pars_fragment>
+#include <envmap_common_pars_fragment>
+#include <envmap_pars_fragment>
+#include <envmap_physical_pars_fragment>
+#include <fog_pars_fragment>
+#include <bsdfs>
+#include <lights_pars_begin>
+#include <normal_pars_fragment>
+#include <lights_phong_pars_fragment>
+#include <shadowmap_pars_fragment>
+#include <bumpmap_pars_fragment>
+#include <normalmap_pars_fragment>
+#include <specularmap_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	ReflectedLight reflectedLight = ReflectedLight( vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ) );
+	vec3 totalEmissiveRadiance = emissive;
+	#include <logdepthbuf_fragment>
+	#include <map_fragment>
+	#include <color_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	#include <specularmap_fragment>
+	#include <normal_fragment_begin>
+	#include <normal_fragment_maps>
+	#include <emissivemap_fragment>
+	#include <lights_phong_fragment>
+	#include <lights_fragment_begin>
+	#include <lights_fragment_maps>
+	#include <lights_fragment_end>
+	#include <aomap_fragment>
+	vec3 outgoingLight = reflectedLight.directDiffuse + reflectedLight.indirectDiffuse + reflectedLight.directSpecular + reflectedLight.indirectSpecular + totalEmissiveRadiance;
+	#include <envmap_fragment>
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+	#include <dithering_fragment>
+}`,uM=`#define STANDARD
+varying vec3 vViewPosition;
+#ifdef USE_TRANSMISSION
+	varying vec3 vWorldPosition;
+#endif
+#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <displacementmap_pars_vertex>
+#include <color_pars_vertex>
+#include <fog_pars_vertex>
+#include <normal_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <shadowmap_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	#include <color_vertex>
+	#include <morphinstance_vertex>
+	#include <morphcolor_vertex>
+	#include <batching_vertex>
+	#include <beginnormal_vertex>
+	#include <morphnormal_vertex>
+	#include <skinbase_vertex>
+	#include <skinnormal_vertex>
+	#include <defaultnormal_vertex>
+	#include <normal_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <displacementmap_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	vViewPosition = - mvPosition.xyz;
+	#include <worldpos_vertex>
+	#include <shadowmap_vertex>
+	#include <fog_vertex>
+#ifdef USE_TRANSMISSION
+	vWorldPosition = worldPosition.xyz;
+#endif
+}`,dM=`#define STANDARD
+#ifdef PHYSICAL
+	#define IOR
+	#define USE_SPECULAR
+#endif
+uniform vec3 diffuse;
+uniform vec3 emissive;
+uniform float roughness;
+uniform float metalness;
+uniform float opacity;
+#ifdef IOR
+	uniform float ior;
+#endif
+#ifdef USE_SPECULAR
+	uniform float specularIntensity;
+	uniform vec3 specularColor;
+	#ifdef USE_SPECULAR_COLORMAP
+		uniform sampler2D specularColorMap;
+	#endif
+	#ifdef USE_SPECULAR_INTENSITYMAP
+		uniform sampler2D specularIntensityMap;
+	#endif
+#endif
+#ifdef USE_CLEARCOAT
+	uniform float clearcoat;
+	uniform float clearcoatRoughness;
+#endif
+#ifdef USE_DIFFUSE_ROUGHNESS
+	uniform float diffuseRoughness;
+	#ifdef USE_DIFFUSE_ROUGHNESSMAP
+		uniform sampler2D diffuseRoughnessMap;
+	#endif
+#endif
+#ifdef USE_DISPERSION
+	uniform float dispersion;
+#endif
+#ifdef USE_RETROREFLECTION
+	uniform float retroreflectivity;
+#endif
+#ifdef USE_IRIDESCENCE
+	uniform float iridescence;
+	uniform float iridescenceIOR;
+	uniform float iridescenceThicknessMinimum;
+	uniform float iridescenceThicknessMaximum;
+#endif
+#ifdef USE_SHEEN
+	uniform vec3 sheenColor;
+	uniform float sheenRoughness;
+	#ifdef USE_SHEEN_COLORMAP
+		uniform sampler2D sheenColorMap;
+	#endif
+	#ifdef USE_SHEEN_ROUGHNESSMAP
+		uniform sampler2D sheenRoughnessMap;
+	#endif
+#endif
+#ifdef USE_ANISOTROPY
+	uniform vec2 anisotropyVector;
+	#ifdef USE_ANISOTROPYMAP
+		uniform sampler2D anisotropyMap;
+	#endif
+#endif
+varying vec3 vViewPosition;
+#include <common>
+#include <dithering_pars_fragment>
+#include <color_pars_fragment>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <aomap_pars_fragment>
+#include <lightmap_pars_fragment>
+#include <emissivemap_pars_fragment>
+#include <iridescence_fragment>
+#include <envmap_common_pars_fragment>
+#include <envmap_physical_pars_fragment>
+#include <fog_pars_fragment>
+#include <lights_pars_begin>
+#include <normal_pars_fragment>
+#include <lights_physical_pars_fragment>
+#include <transmission_pars_fragment>
+#include <shadowmap_pars_fragment>
+#include <bumpmap_pars_fragment>
+#include <normalmap_pars_fragment>
+#include <clearcoat_pars_fragment>
+#include <iridescence_pars_fragment>
+#include <roughnessmap_pars_fragment>
+#include <metalnessmap_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	ReflectedLight reflectedLight = ReflectedLight( vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ) );
+	vec3 totalEmissiveRadiance = emissive;
+	#include <logdepthbuf_fragment>
+	#include <map_fragment>
+	#include <color_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	#include <roughnessmap_fragment>
+	#include <metalnessmap_fragment>
+	#include <normal_fragment_begin>
+	#include <normal_fragment_maps>
+	#include <clearcoat_normal_fragment_begin>
+	#include <clearcoat_normal_fragment_maps>
+	#include <emissivemap_fragment>
+	#include <lights_physical_fragment>
+	#include <lights_fragment_begin>
+	#include <lights_fragment_maps>
+	#include <lights_fragment_end>
+	#include <aomap_fragment>
+	vec3 totalDiffuse = reflectedLight.directDiffuse + reflectedLight.indirectDiffuse;
+	vec3 totalSpecular = reflectedLight.directSpecular + reflectedLight.indirectSpecular;
+	#include <transmission_fragment>
+	vec3 outgoingLight = totalDiffuse + totalSpecular + totalEmissiveRadiance;
+	#ifdef USE_SHEEN
+ 
+		outgoingLight = outgoingLight + sheenSpecularDirect + sheenSpecularIndirect;
+ 
+ 	#endif
+	#ifdef USE_CLEARCOAT
+		float dotNVcc = saturate( dot( geometryClearcoatNormal, geometryViewDir ) );
+		vec3 Fcc = F_Schlick( material.clearcoatF0, material.clearcoatF90, dotNVcc );
+		outgoingLight = outgoingLight * ( 1.0 - material.clearcoat * Fcc ) + ( clearcoatSpecularDirect + clearcoatSpecularIndirect ) * material.clearcoat;
+	#endif
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+	#include <dithering_fragment>
+}`,fM=`#define TOON
+varying vec3 vViewPosition;
+#include <common>
+#include <batching_pars_vertex>
+#include <uv_pars_vertex>
+#include <displacementmap_pars_vertex>
+#include <color_pars_vertex>
+#include <fog_pars_vertex>
+#include <normal_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <shadowmap_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	#include <color_vertex>
+	#include <morphinstance_vertex>
+	#include <morphcolor_vertex>
+	#include <batching_vertex>
+	#include <beginnormal_vertex>
+	#include <morphnormal_vertex>
+	#include <skinbase_vertex>
+	#include <skinnormal_vertex>
+	#include <defaultnormal_vertex>
+	#include <normal_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <displacementmap_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	vViewPosition = - mvPosition.xyz;
+	#include <worldpos_vertex>
+	#include <shadowmap_vertex>
+	#include <fog_vertex>
+}`,pM=`#define TOON
+uniform vec3 diffuse;
+uniform vec3 emissive;
+uniform float opacity;
+#include <common>
+#include <dithering_pars_fragment>
+#include <color_pars_fragment>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <aomap_pars_fragment>
+#include <lightmap_pars_fragment>
+#include <emissivemap_pars_fragment>
+#include <gradientmap_pars_fragment>
+#include <fog_pars_fragment>
+#include <bsdfs>
+#include <lights_pars_begin>
+#include <normal_pars_fragment>
+#include <lights_toon_pars_fragment>
+#include <shadowmap_pars_fragment>
+#include <bumpmap_pars_fragment>
+#include <normalmap_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	ReflectedLight reflectedLight = ReflectedLight( vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ), vec3( 0.0 ) );
+	vec3 totalEmissiveRadiance = emissive;
+	#include <logdepthbuf_fragment>
+	#include <map_fragment>
+	#include <color_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	#include <normal_fragment_begin>
+	#include <normal_fragment_maps>
+	#include <emissivemap_fragment>
+	#include <lights_toon_fragment>
+	#include <lights_fragment_begin>
+	#include <lights_fragment_maps>
+	#include <lights_fragment_end>
+	#include <aomap_fragment>
+	vec3 outgoingLight = reflectedLight.directDiffuse + reflectedLight.indirectDiffuse + totalEmissiveRadiance;
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+	#include <dithering_fragment>
+}`,mM=`uniform float size;
+uniform float scale;
+#include <common>
+#include <color_pars_vertex>
+#include <fog_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+#ifdef USE_POINTS_UV
+	varying vec2 vUv;
+	uniform mat3 uvTransform;
+#endif
+void main() {
+	#ifdef USE_POINTS_UV
+		vUv = ( uvTransform * vec3( uv, 1 ) ).xy;
+	#endif
+	#include <color_vertex>
+	#include <morphinstance_vertex>
+	#include <morphcolor_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <project_vertex>
+	gl_PointSize = size;
+	#ifdef USE_SIZEATTENUATION
+		bool isPerspective = isPerspectiveMatrix( projectionMatrix );
+		if ( isPerspective ) gl_PointSize *= ( scale / - mvPosition.z );
+	#endif
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	#include <worldpos_vertex>
+	#include <fog_vertex>
+}`,gM=`uniform vec3 diffuse;
+uniform float opacity;
+#include <common>
+#include <color_pars_fragment>
+#include <map_particle_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <fog_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	vec3 outgoingLight = vec3( 0.0 );
+	#include <logdepthbuf_fragment>
+	#include <map_particle_fragment>
+	#include <color_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	outgoingLight = diffuseColor.rgb;
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+}`,_M=`#include <common>
+#include <batching_pars_vertex>
+#include <fog_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <shadowmap_pars_vertex>
+void main() {
+	#include <batching_vertex>
+	#include <beginnormal_vertex>
+	#include <morphinstance_vertex>
+	#include <morphnormal_vertex>
+	#include <skinbase_vertex>
+	#include <skinnormal_vertex>
+	#include <defaultnormal_vertex>
+	#include <begin_vertex>
+	#include <morphtarget_vertex>
+	#include <skinning_vertex>
+	#include <project_vertex>
+	#include <logdepthbuf_vertex>
+	#include <worldpos_vertex>
+	#include <shadowmap_vertex>
+	#include <fog_vertex>
+}`,xM=`uniform vec3 color;
+uniform float opacity;
+#include <common>
+#include <fog_pars_fragment>
+#include <bsdfs>
+#include <lights_pars_begin>
+#include <logdepthbuf_pars_fragment>
+#include <shadowmap_pars_fragment>
+#include <shadowmask_pars_fragment>
+void main() {
+	#include <logdepthbuf_fragment>
+	gl_FragColor = vec4( color, opacity * ( 1.0 - getShadowMask() ) );
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+	#include <premultiplied_alpha_fragment>
+}`,yM=`uniform float rotation;
+uniform vec2 center;
+#include <common>
+#include <uv_pars_vertex>
+#include <fog_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+#include <clipping_planes_pars_vertex>
+void main() {
+	#include <uv_vertex>
+	vec4 mvPosition = modelViewMatrix[ 3 ];
+	vec2 scale = vec2( length( modelMatrix[ 0 ].xyz ), length( modelMatrix[ 1 ].xyz ) );
+	#ifndef USE_SIZEATTENUATION
+		bool isPerspective = isPerspectiveMatrix( projectionMatrix );
+		if ( isPerspective ) scale *= - mvPosition.z;
+	#endif
+	vec2 alignedPosition = ( position.xy - ( center - vec2( 0.5 ) ) ) * scale;
+	vec2 rotatedPosition;
+	rotatedPosition.x = cos( rotation ) * alignedPosition.x - sin( rotation ) * alignedPosition.y;
+	rotatedPosition.y = sin( rotation ) * alignedPosition.x + cos( rotation ) * alignedPosition.y;
+	mvPosition.xy += rotatedPosition;
+	gl_Position = projectionMatrix * mvPosition;
+	#include <logdepthbuf_vertex>
+	#include <clipping_planes_vertex>
+	#include <fog_vertex>
+}`,vM=`uniform vec3 diffuse;
+uniform float opacity;
+#include <common>
+#include <uv_pars_fragment>
+#include <map_pars_fragment>
+#include <alphamap_pars_fragment>
+#include <alphatest_pars_fragment>
+#include <alphahash_pars_fragment>
+#include <fog_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+#include <clipping_planes_pars_fragment>
+void main() {
+	vec4 diffuseColor = vec4( diffuse, opacity );
+	#include <clipping_planes_fragment>
+	vec3 outgoingLight = vec3( 0.0 );
+	#include <logdepthbuf_fragment>
+	#include <map_fragment>
+	#include <alphamap_fragment>
+	#include <alphatest_fragment>
+	#include <alphahash_fragment>
+	outgoingLight = diffuseColor.rgb;
+	#include <opaque_fragment>
+	#include <tonemapping_fragment>
+	#include <colorspace_fragment>
+	#include <fog_fragment>
+}`,me={alphahash_fragment:Gy,alphahash_pars_fragment:Hy,alphamap_fragment:Wy,alphamap_pars_fragment:Xy,alphatest_fragment:Yy,alphatest_pars_fragment:qy,aomap_fragment:$y,aomap_pars_fragment:Zy,batching_pars_vertex:Jy,batching_vertex:jy,begin_vertex:Ky,beginnormal_vertex:Qy,bsdfs:tv,iridescence_fragment:ev,bumpmap_pars_fragment:nv,clipping_planes_fragment:iv,clipping_planes_pars_fragment:sv,clipping_planes_pars_vertex:rv,clipping_planes_vertex:ov,color_fragment:av,color_pars_fragment:lv,color_pars_vertex:cv,color_vertex:hv,common:uv,defaultnormal_vertex:dv,displacementmap_pars_vertex:fv,displacementmap_vertex:pv,emissivemap_fragment:mv,emissivemap_pars_fragment:gv,colorspace_fragment:_v,colorspace_pars_fragment:xv,envmap_fragment:yv,envmap_common_pars_fragment:vv,envmap_pars_fragment:Sv,envmap_pars_vertex:Mv,envmap_physical_pars_fragment:Dv,envmap_vertex:bv,fog_vertex:wv,fog_pars_vertex:Tv,fog_fragment:Ev,fog_pars_fragment:Av,gradientmap_pars_fragment:Cv,lightmap_pars_fragment:Rv,lights_lambert_fragment:Pv,lights_lambert_pars_fragment:Iv,lights_pars_begin:Lv,lights_toon_fragment:Nv,lights_toon_pars_fragment:Uv,lights_phong_fragment:Ov,lights_phong_pars_fragment:Fv,lights_physical_fragment:Bv,lights_physical_pars_fragment:kv,lights_fragment_begin:zv,lights_fragment_maps:Vv,lights_fragment_end:Gv,lightprobes_pars_fragment:Hv,logdepthbuf_fragment:Wv,logdepthbuf_pars_fragment:Xv,logdepthbuf_pars_vertex:Yv,logdepthbuf_vertex:qv,map_fragment:$v,map_pars_fragment:Zv,map_particle_fragment:Jv,map_particle_pars_fragment:jv,metalnessmap_fragment:Kv,metalnessmap_pars_fragment:Qv,morphinstance_vertex:tS,morphcolor_vertex:eS,morphnormal_vertex:nS,morphtarget_pars_vertex:iS,morphtarget_vertex:sS,normal_fragment_begin:rS,normal_fragment_maps:oS,normal_pars_fragment:aS,normal_pars_vertex:lS,normal_vertex:cS,normalmap_pars_fragment:hS,clearcoat_normal_fragment_begin:uS,clearcoat_normal_fragment_maps:dS,clearcoat_pars_fragment:fS,iridescence_pars_fragment:pS,opaque_fragment:mS,packing:gS,premultiplied_alpha_fragment:_S,project_vertex:xS,dithering_fragment:yS,dithering_pars_fragment:vS,roughnessmap_fragment:SS,roughnessmap_pars_fragment:MS,shadowmap_pars_fragment:bS,shadowmap_pars_vertex:wS,shadowmap_vertex:TS,shadowmask_pars_fragment:ES,skinbase_vertex:AS,skinning_pars_vertex:CS,skinning_vertex:RS,skinnormal_vertex:PS,specularmap_fragment:IS,specularmap_pars_fragment:LS,tonemapping_fragment:DS,tonemapping_pars_fragment:NS,transmission_fragment:US,transmission_pars_fragment:OS,uv_pars_fragment:FS,uv_pars_vertex:BS,uv_vertex:kS,worldpos_vertex:zS,background_vert:VS,background_frag:GS,backgroundCube_vert:HS,backgroundCube_frag:WS,cube_vert:XS,cube_frag:YS,depth_vert:qS,depth_frag:$S,distance_vert:ZS,distance_frag:JS,equirect_vert:jS,equirect_frag:KS,linedashed_vert:QS,linedashed_frag:tM,meshbasic_vert:eM,meshbasic_frag:nM,meshlambert_vert:iM,meshlambert_frag:sM,meshmatcap_vert:rM,meshmatcap_frag:oM,meshnormal_vert:aM,meshnormal_frag:lM,meshphong_vert:cM,meshphong_frag:hM,meshphysical_vert:uM,meshphysical_frag:dM,meshtoon_vert:fM,meshtoon_frag:pM,points_vert:mM,points_frag:gM,shadow_vert:_M,shadow_frag:xM,sprite_vert:yM,sprite_frag:vM},Lt={common:{diffuse:{value:new Ht(16777215)},opacity:{value:1},map:{value:null},mapTransform:{value:new re},alphaMap:{value:null},alphaMapTransform:{value:new re},alphaTest:{value:0}},specularmap:{specularMap:{value:null},specularMapTransform:{value:new re}},envmap:{envMap:{value:null},envMapRotation:{value:new re},reflectivity:{value:1},ior:{value:1.5},refractionRatio:{value:.98},dfgLUT:{value:null}},aomap:{aoMap:{value:null},aoMapIntensity:{value:1},aoMapTransform:{value:new re}},lightmap:{lightMap:{value:null},lightMapIntensity:{value:1},lightMapTransform:{value:new re}},bumpmap:{bumpMap:{value:null},bumpMapTransform:{value:new re},bumpScale:{value:1}},normalmap:{normalMap:{value:null},normalMapTransform:{value:new re},normalScale:{value:new kt(1,1)}},displacementmap:{displacementMap:{value:null},displacementMapTransform:{value:new re},displacementScale:{value:1},displacementBias:{value:0}},emissivemap:{emissiveMap:{value:null},emissiveMapTransform:{value:new re}},metalnessmap:{metalnessMap:{value:null},metalnessMapTransform:{value:new re}},roughnessmap:{roughnessMap:{value:null},roughnessMapTransform:{value:new re}},gradientmap:{gradientMap:{value:null}},fog:{fogDensity:{value:25e-5},fogNear:{value:1},fogFar:{value:2e3},fogColor:{value:new Ht(16777215)}},lights:{ambientLightColor:{value:[]},lightProbe:{value:[]},sunLights:{value:[],properties:{direction:{},color:{}}},sunLightShadows:{value:[],properties:{shadowIntensity:1,shadowBias:{},shadowNormalBias:{},shadowRadius:{},shadowMapSize:{}}},sunShadowMatrix:{value:[]},sunShadowCascade:{value:[]},directionalLights:{value:[],properties:{direction:{},color:{}}},directionalLightShadows:{value:[],properties:{shadowIntensity:1,shadowBias:{},shadowNormalBias:{},shadowRadius:{},shadowMapSize:{}}},directionalShadowMatrix:{value:[]},spotLights:{value:[],properties:{color:{},position:{},direction:{},distance:{},coneCos:{},penumbraCos:{},decay:{}}},spotLightShadows:{value:[],properties:{shadowIntensity:1,shadowBias:{},shadowNormalBias:{},shadowRadius:{},shadowMapSize:{}}},spotLightMap:{value:[]},spotLightMatrix:{value:[]},pointLights:{value:[],properties:{color:{},position:{},decay:{},distance:{}}},pointLightShadows:{value:[],properties:{shadowIntensity:1,shadowBias:{},shadowNormalBias:{},shadowRadius:{},shadowMapSize:{},shadowCameraNear:{},shadowCameraFar:{}}},pointShadowMatrix:{value:[]},hemisphereLights:{value:[],properties:{direction:{},skyColor:{},groundColor:{}}},rectAreaLights:{value:[],properties:{color:{},position:{},width:{},height:{}}},ltc_1:{value:null},ltc_2:{value:null},probesSH:{value:[]},probesMin:{value:[]},probesMax:{value:[]},probesResolution:{value:[]}},points:{diffuse:{value:new Ht(16777215)},opacity:{value:1},size:{value:1},scale:{value:1},map:{value:null},alphaMap:{value:null},alphaMapTransform:{value:new re},alphaTest:{value:0},uvTransform:{value:new re}},sprite:{diffuse:{value:new Ht(16777215)},opacity:{value:1},center:{value:new kt(.5,.5)},rotation:{value:0},map:{value:null},mapTransform:{value:new re},alphaMap:{value:null},alphaMapTransform:{value:new re},alphaTest:{value:0}}},ui={basic:{uniforms:ti([Lt.common,Lt.specularmap,Lt.envmap,Lt.aomap,Lt.lightmap,Lt.fog]),vertexShader:me.meshbasic_vert,fragmentShader:me.meshbasic_frag},lambert:{uniforms:ti([Lt.common,Lt.specularmap,Lt.envmap,Lt.aomap,Lt.lightmap,Lt.emissivemap,Lt.bumpmap,Lt.normalmap,Lt.displacementmap,Lt.fog,Lt.lights,{emissive:{value:new Ht(0)},envMapIntensity:{value:1}}]),vertexShader:me.meshlambert_vert,fragmentShader:me.meshlambert_frag},phong:{uniforms:ti([Lt.common,Lt.specularmap,Lt.envmap,Lt.aomap,Lt.lightmap,Lt.emissivemap,Lt.bumpmap,Lt.normalmap,Lt.displacementmap,Lt.fog,Lt.lights,{emissive:{value:new Ht(0)},specular:{value:new Ht(1118481)},shininess:{value:30},envMapIntensity:{value:1}}]),vertexShader:me.meshphong_vert,fragmentShader:me.meshphong_frag},standard:{uniforms:ti([Lt.common,Lt.envmap,Lt.aomap,Lt.lightmap,Lt.emissivemap,Lt.bumpmap,Lt.normalmap,Lt.displacementmap,Lt.roughnessmap,Lt.metalnessmap,Lt.fog,Lt.lights,{emissive:{value:new Ht(0)},roughness:{value:1},metalness:{value:0},envMapIntensity:{value:1}}]),vertexShader:me.meshphysical_vert,fragmentShader:me.meshphysical_frag},toon:{uniforms:ti([Lt.common,Lt.aomap,Lt.lightmap,Lt.emissivemap,Lt.bumpmap,Lt.normalmap,Lt.displacementmap,Lt.gradientmap,Lt.fog,Lt.lights,{emissive:{value:new Ht(0)}}]),vertexShader:me.meshtoon_vert,fragmentShader:me.meshtoon_frag},matcap:{uniforms:ti([Lt.common,Lt.bumpmap,Lt.normalmap,Lt.displacementmap,Lt.fog,{matcap:{value:null}}]),vertexShader:me.meshmatcap_vert,fragmentShader:me.meshmatcap_frag},points:{uniforms:ti([Lt.points,Lt.fog]),vertexShader:me.points_vert,fragmentShader:me.points_frag},dashed:{uniforms:ti([Lt.common,Lt.fog,{scale:{value:1},dashSize:{value:1},totalSize:{value:2}}]),vertexShader:me.linedashed_vert,fragmentShader:me.linedashed_frag},depth:{uniforms:ti([Lt.common,Lt.displacementmap]),vertexShader:me.depth_vert,fragmentShader:me.depth_frag},normal:{uniforms:ti([Lt.common,Lt.bumpmap,Lt.normalmap,Lt.displacementmap,{opacity:{value:1}}]),vertexShader:me.meshnormal_vert,fragmentShader:me.meshnormal_frag},sprite:{uniforms:ti([Lt.sprite,Lt.fog]),vertexShader:me.sprite_vert,fragmentShader:me.sprite_frag},background:{uniforms:{uvTransform:{value:new re},t2D:{value:null},backgroundIntensity:{value:1}},vertexShader:me.background_vert,fragmentShader:me.background_frag},backgroundCube:{uniforms:{envMap:{value:null},backgroundBlurriness:{value:0},backgroundIntensity:{value:1},backgroundRotation:{value:new re}},vertexShader:me.backgroundCube_vert,fragmentShader:me.backgroundCube_frag},cube:{uniforms:{tCube:{value:null},tFlip:{value:-1},opacity:{value:1}},vertexShader:me.cube_vert,fragmentShader:me.cube_frag},equirect:{uniforms:{tEquirect:{value:null}},vertexShader:me.equirect_vert,fragmentShader:me.equirect_frag},distance:{uniforms:ti([Lt.common,Lt.displacementmap,{referencePosition:{value:new R},nearDistance:{value:1},farDistance:{value:1e3}}]),vertexShader:me.distance_vert,fragmentShader:me.distance_frag},shadow:{uniforms:ti([Lt.lights,Lt.fog,{color:{value:new Ht(0)},opacity:{value:1}}]),vertexShader:me.shadow_vert,fragmentShader:me.shadow_frag}};ui.physical={uniforms:ti([ui.standard.uniforms,{clearcoat:{value:0},clearcoatMap:{value:null},clearcoatMapTransform:{value:new re},clearcoatNormalMap:{value:null},clearcoatNormalMapTransform:{value:new re},clearcoatNormalScale:{value:new kt(1,1)},clearcoatRoughness:{value:0},clearcoatRoughnessMap:{value:null},clearcoatRoughnessMapTransform:{value:new re},diffuseRoughness:{value:0},diffuseRoughnessMap:{value:null},diffuseRoughnessMapTransform:{value:new re},dispersion:{value:0},retroreflectivity:{value:0},iridescence:{value:0},iridescenceMap:{value:null},iridescenceMapTransform:{value:new re},iridescenceIOR:{value:1.3},iridescenceThicknessMinimum:{value:100},iridescenceThicknessMaximum:{value:400},iridescenceThicknessMap:{value:null},iridescenceThicknessMapTransform:{value:new re},sheen:{value:0},sheenColor:{value:new Ht(0)},sheenColorMap:{value:null},sheenColorMapTransform:{value:new re},sheenRoughness:{value:1},sheenRoughnessMap:{value:null},sheenRoughnessMapTransform:{value:new re},transmission:{value:0},transmissionMap:{value:null},transmissionMapTransform:{value:new re},transmissionSamplerSize:{value:new kt},transmissionSamplerMap:{value:null},thickness:{value:0},thicknessMap:{value:null},thicknessMapTransform:{value:new re},attenuationDistance:{value:0},attenuationColor:{value:new Ht(0)},specularColor:{value:new Ht(1,1,1)},specularColorMap:{value:null},specularColorMapTransform:{value:new re},specularIntensity:{value:1},specularIntensityMap:{value:null},specularIntensityMapTransform:{value:new re},anisotropyVector:{value:new kt},anisotropyMap:{value:null},anisotropyMapTransform:{value:new re}}]),vertexShader:me.meshphysical_vert,fragmentShader:me.meshphysical_frag};var Ih={r:0,b:0,g:0},SM=new qt,Eg=new re;Eg.set(-1,0,0,0,1,0,0,0,1);function MM(i,t,e,n,s,r){let o=new Ht(0),a=s===!0?0:1,c,l,u=null,h=0,d=null;function f(x){let E=x.isScene===!0?x.background:null;if(E&&E.isTexture){let S=x.backgroundBlurriness>0;E=t.get(E,S)}return E}function p(x){let E=!1,S=f(x);S===null?m(o,a):S&&S.isColor&&(m(S,1),E=!0);let M=i.xr.getEnvironmentBlendMode();M==="additive"?e.buffers.color.setClear(0,0,0,1,r):M==="alpha-blend"&&e.buffers.color.setClear(0,0,0,0,r),(i.autoClear||E)&&(e.buffers.depth.setTest(!0),e.buffers.depth.setMask(!0),e.buffers.color.setMask(!0),i.clear(i.autoClearColor,i.autoClearDepth,i.autoClearStencil))}function _(x,E){let S=f(E);S&&S.isCubeTexture?(l===void 0&&(l=new Mt(new Ye(1,1,1),new mi({name:"BackgroundCubeMaterial",uniforms:Ur(ui.backgroundCube.uniforms),vertexShader:ui.backgroundCube.vertexShader,fragmentShader:ui.backgroundCube.fragmentShader,side:Xn,depthTest:!1,depthWrite:!1,fog:!1,allowOverride:!1})),l.geometry.deleteAttribute("normal"),l.geometry.deleteAttribute("uv"),l.onBeforeRender=function(M,T,y){this.matrixWorld.copyPosition(y.matrixWorld)},Object.defineProperty(l.material,"envMap",{get:function(){return this.uniforms.envMap.value}}),n.update(l)),l.material.uniforms.envMap.value=S,l.material.uniforms.backgroundBlurriness.value=E.backgroundBlurriness,l.material.uniforms.backgroundIntensity.value=E.backgroundIntensity,l.material.uniforms.backgroundRotation.value.setFromMatrix4(SM.makeRotationFromEuler(E.backgroundRotation)).transpose(),S.isRenderTargetTexture===!1&&l.material.uniforms.backgroundRotation.value.premultiply(Eg),l.material.toneMapped=Se.getTransfer(S.colorSpace)!==Pe,(u!==S||h!==S.version||d!==i.toneMapping)&&(l.material.needsUpdate=!0,u=S,h=S.version,d=i.toneMapping),l.layers.enableAll(),x.unshift(l,l.geometry,l.material,0,0,null)):S&&S.isTexture&&(c===void 0&&(c=new Mt(new Ui(2,2),new mi({name:"BackgroundMaterial",uniforms:Ur(ui.background.uniforms),vertexShader:ui.background.vertexShader,fragmentShader:ui.background.fragmentShader,side:ur,depthTest:!1,depthWrite:!1,fog:!1,allowOverride:!1})),c.geometry.deleteAttribute("normal"),Object.defineProperty(c.material,"map",{get:function(){return this.uniforms.t2D.value}}),n.update(c)),c.material.uniforms.t2D.value=S,c.material.uniforms.backgroundIntensity.value=E.backgroundIntensity,c.material.toneMapped=Se.getTransfer(S.colorSpace)!==Pe,S.matrixAutoUpdate===!0&&S.updateMatrix(),c.material.uniforms.uvTransform.value.copy(S.matrix),(u!==S||h!==S.version||d!==i.toneMapping)&&(c.material.needsUpdate=!0,u=S,h=S.version,d=i.toneMapping),c.layers.enableAll(),x.unshift(c,c.geometry,c.material,0,0,null))}function m(x,E){x.getRGB(Ih,$d(i)),e.buffers.color.setClear(Ih.r,Ih.g,Ih.b,E,r)}function g(){l!==void 0&&(l.geometry.dispose(),l.material.dispose(),l=void 0),c!==void 0&&(c.geometry.dispose(),c.material.dispose(),c=void 0)}return{getClearColor:function(){return o},setClearColor:function(x,E=1){o.set(x),a=E,m(o,a)},getClearAlpha:function(){return a},setClearAlpha:function(x){a=x,m(o,a)},render:p,addToRenderList:_,dispose:g}}function bM(i,t){let e=i.getParameter(i.MAX_VERTEX_ATTRIBS),n={},s=d(null),r=s,o=!1;function a(L,B,W,P,k){let Y=!1,G=h(L,P,W,B);r!==G&&(r=G,l(r.object)),Y=f(L,P,W,k),Y&&p(L,P,W,k),k!==null&&t.update(k,i.ELEMENT_ARRAY_BUFFER),(Y||o)&&(o=!1,S(L,B,W,P),k!==null&&i.bindBuffer(i.ELEMENT_ARRAY_BUFFER,t.get(k).buffer))}function c(){return i.createVertexArray()}function l(L){return i.bindVertexArray(L)}function u(L){return i.deleteVertexArray(L)}function h(L,B,W,P){let k=P.wireframe===!0,Y=n[B.id];Y===void 0&&(Y={},n[B.id]=Y);let G=L.isInstancedMesh===!0?L.id:0,at=Y[G];at===void 0&&(at={},Y[G]=at);let $=at[W.id];$===void 0&&($={},at[W.id]=$);let Q=$[k];return Q===void 0&&(Q=d(c()),$[k]=Q),Q}function d(L){let B=[],W=[],P=[];for(let k=0;k<e;k++)B[k]=0,W[k]=0,P[k]=0;return{geometry:null,program:null,wireframe:!1,newAttributes:B,enabledAttributes:W,attributeDivisors:P,object:L,attributes:{},index:null}}function f(L,B,W,P){let k=r.attributes,Y=B.attributes,G=0,at=W.getAttributes();for(let $ in at)if(at[$].location>=0){let it=k[$],ut=Y[$];if(ut===void 0&&($==="instanceMatrix"&&L.instanceMatrix&&(ut=L.instanceMatrix),$==="instanceColor"&&L.instanceColor&&(ut=L.instanceColor)),it===void 0||it.attribute!==ut||ut&&it.data!==ut.data)return!0;G++}return r.attributesNum!==G||r.index!==P}function p(L,B,W,P){let k={},Y=B.attributes,G=0,at=W.getAttributes();for(let $ in at)if(at[$].location>=0){let it=Y[$];it===void 0&&($==="instanceMatrix"&&L.instanceMatrix&&(it=L.instanceMatrix),$==="instanceColor"&&L.instanceColor&&(it=L.instanceColor));let ut={};ut.attribute=it,it&&it.data&&(ut.data=it.data),k[$]=ut,G++}r.attributes=k,r.attributesNum=G,r.index=P}function _(){let L=r.newAttributes;for(let B=0,W=L.length;B<W;B++)L[B]=0}function m(L){g(L,0)}function g(L,B){let W=r.newAttributes,P=r.enabledAttributes,k=r.attributeDivisors;W[L]=1,P[L]===0&&(i.enableVertexAttribArray(L),P[L]=1),k[L]!==B&&(i.vertexAttribDivisor(L,B),k[L]=B)}function x(){let L=r.newAttributes,B=r.enabledAttributes;for(let W=0,P=B.length;W<P;W++)B[W]!==L[W]&&(i.disableVertexAttribArray(W),B[W]=0)}function E(L,B,W,P,k,Y,G){G===!0?i.vertexAttribIPointer(L,B,W,k,Y):i.vertexAttribPointer(L,B,W,P,k,Y)}function S(L,B,W,P){_();let k=P.attributes,Y=W.getAttributes(),G=B.defaultAttributeValues;for(let at in Y){let $=Y[at];if($.location>=0){let Q=k[at];if(Q===void 0&&(at==="instanceMatrix"&&L.instanceMatrix&&(Q=L.instanceMatrix),at==="instanceColor"&&L.instanceColor&&(Q=L.instanceColor)),Q!==void 0){let it=Q.normalized,ut=Q.itemSize,dt=t.get(Q);if(dt===void 0)continue;let tt=dt.buffer,mt=dt.type,xt=dt.bytesPerElement,Rt=mt===i.INT||mt===i.UNSIGNED_INT||Q.gpuType===qc;if(Q.isInterleavedBufferAttribute){let bt=Q.data,$t=bt.isInterleavedBuffer===!0?bt.stride:bt.itemSize,le=Q.offset;if(bt.isInstancedInterleavedBuffer||bt.isInstancedBufferAttribute){for(let Xt=0;Xt<$.locationSize;Xt++)g($.location+Xt,bt.meshPerAttribute);L.isInstancedMesh!==!0&&P._maxInstanceCount===void 0&&(P._maxInstanceCount=bt.meshPerAttribute*bt.count)}else for(let Xt=0;Xt<$.locationSize;Xt++)m($.location+Xt);i.bindBuffer(i.ARRAY_BUFFER,tt);for(let Xt=0;Xt<$.locationSize;Xt++)E($.location+Xt,ut/$.locationSize,mt,it,$t*xt,(le+ut/$.locationSize*Xt)*xt,Rt)}else{if(Q.isInstancedBufferAttribute){for(let bt=0;bt<$.locationSize;bt++)g($.location+bt,Q.meshPerAttribute);L.isInstancedMesh!==!0&&P._maxInstanceCount===void 0&&(P._maxInstanceCount=Q.meshPerAttribute*Q.count)}else for(let bt=0;bt<$.locationSize;bt++)m($.location+bt);i.bindBuffer(i.ARRAY_BUFFER,tt);for(let bt=0;bt<$.locationSize;bt++)E($.location+bt,ut/$.locationSize,mt,it,ut*xt,ut/$.locationSize*bt*xt,Rt)}}else if(G!==void 0){let it=G[at];if(it!==void 0)switch(it.length){case 2:i.vertexAttrib2fv($.location,it);break;case 3:i.vertexAttrib3fv($.location,it);break;case 4:i.vertexAttrib4fv($.location,it);break;default:i.vertexAttrib1fv($.location,it)}}}}x()}function M(){U();for(let L in n){let B=n[L];for(let W in B){let P=B[W];for(let k in P){let Y=P[k];for(let G in Y)u(Y[G].object),delete Y[G];delete P[k]}}delete n[L]}}function T(L){if(n[L.id]===void 0)return;let B=n[L.id];for(let W in B){let P=B[W];for(let k in P){let Y=P[k];for(let G in Y)u(Y[G].object),delete Y[G];delete P[k]}}delete n[L.id]}function y(L){for(let B in n){let W=n[B];for(let P in W){let k=W[P];if(k[L.id]===void 0)continue;let Y=k[L.id];for(let G in Y)u(Y[G].object),delete Y[G];delete k[L.id]}}}function b(L){for(let B in n){let W=n[B],P=L.isInstancedMesh===!0?L.id:0,k=W[P];if(k!==void 0){for(let Y in k){let G=k[Y];for(let at in G)u(G[at].object),delete G[at];delete k[Y]}delete W[P],Object.keys(W).length===0&&delete n[B]}}}function U(){I(),o=!0,r!==s&&(r=s,l(r.object))}function I(){s.geometry=null,s.program=null,s.wireframe=!1}return{setup:a,reset:U,resetDefaultState:I,dispose:M,releaseStatesOfGeometry:T,releaseStatesOfObject:b,releaseStatesOfProgram:y,initAttributes:_,enableAttribute:m,disableUnusedAttributes:x}}function wM(i,t,e){let n;function s(c){n=c}function r(c,l){i.drawArrays(n,c,l),e.update(l,n,1)}function o(c,l,u){u!==0&&(i.drawArraysInstanced(n,c,l,u),e.update(l,n,u))}function a(c,l,u){if(u===0)return;t.get("WEBGL_multi_draw").multiDrawArraysWEBGL(n,c,0,l,0,u);let d=0;for(let f=0;f<u;f++)d+=l[f];e.update(d,n,1)}this.setMode=s,this.render=r,this.renderInstances=o,this.renderMultiDraw=a}function TM(i,t,e,n){let s;function r(){if(s!==void 0)return s;if(t.has("EXT_texture_filter_anisotropic")===!0){let y=t.get("EXT_texture_filter_anisotropic");s=i.getParameter(y.MAX_TEXTURE_MAX_ANISOTROPY_EXT)}else s=0;return s}function o(y){return!(y!==Ji&&n.convert(y)!==i.getParameter(i.IMPLEMENTATION_COLOR_READ_FORMAT))}function a(y){let b=y===Zi&&(t.has("EXT_color_buffer_half_float")||t.has("EXT_color_buffer_float"));return!(y!==gi&&y!==Fi&&!b&&n.convert(y)!==i.getParameter(i.IMPLEMENTATION_COLOR_READ_TYPE))}function c(y){if(y==="highp"){if(i.getShaderPrecisionFormat(i.VERTEX_SHADER,i.HIGH_FLOAT).precision>0&&i.getShaderPrecisionFormat(i.FRAGMENT_SHADER,i.HIGH_FLOAT).precision>0)return"highp";y="mediump"}return y==="mediump"&&i.getShaderPrecisionFormat(i.VERTEX_SHADER,i.MEDIUM_FLOAT).precision>0&&i.getShaderPrecisionFormat(i.FRAGMENT_SHADER,i.MEDIUM_FLOAT).precision>0?"mediump":"lowp"}let l=e.precision!==void 0?e.precision:"highp",u=c(l);u!==l&&(jt("WebGLRenderer:",l,"not supported, using",u,"instead."),l=u);let h=e.reversedDepthBuffer===!0&&t.has("EXT_clip_control"),d=e.logarithmicDepthBuffer===!0&&h===!1;e.reversedDepthBuffer===!0&&h===!1&&jt("WebGLRenderer: Unable to use reversed depth buffer due to missing EXT_clip_control extension. Fallback to default depth buffer."),e.logarithmicDepthBuffer===!0&&h===!0&&jt("WebGLRenderer: Logarithmic depth buffer is ignored when reversed depth buffer is enabled.");let f=i.getParameter(i.MAX_TEXTURE_IMAGE_UNITS),p=i.getParameter(i.MAX_VERTEX_TEXTURE_IMAGE_UNITS),_=i.getParameter(i.MAX_TEXTURE_SIZE),m=i.getParameter(i.MAX_CUBE_MAP_TEXTURE_SIZE),g=i.getParameter(i.MAX_VERTEX_ATTRIBS),x=i.getParameter(i.MAX_VERTEX_UNIFORM_VECTORS),E=i.getParameter(i.MAX_VARYING_VECTORS),S=i.getParameter(i.MAX_FRAGMENT_UNIFORM_VECTORS),M=i.getParameter(i.MAX_SAMPLES),T=i.getParameter(i.SAMPLES);return{isWebGL2:!0,getMaxAnisotropy:r,getMaxPrecision:c,textureFormatReadable:o,textureTypeReadable:a,precision:l,logarithmicDepthBuffer:d,reversedDepthBuffer:h,maxTextures:f,maxVertexTextures:p,maxTextureSize:_,maxCubemapSize:m,maxAttributes:g,maxVertexUniforms:x,maxVaryings:E,maxFragmentUniforms:S,maxSamples:M,samples:T}}function EM(i){let t=this,e=null,n=0,s=!1,r=!1,o=new En,a=new re,c={value:null,needsUpdate:!1};this.uniform=c,this.numPlanes=0,this.numIntersection=0,this.init=function(h,d){let f=h.length!==0||d||n!==0||s;return s=d,n=h.length,f},this.beginShadows=function(){r=!0,u(null)},this.endShadows=function(){r=!1},this.setGlobalState=function(h,d){e=u(h,d,0)},this.setState=function(h,d,f){let p=h.clippingPlanes,_=h.clipIntersection,m=h.clipShadows,g=i.get(h);if(!s||p===null||p.length===0||r&&!m)r?u(null):l();else{let x=r?0:n,E=x*4,S=g.clippingState||null;c.value=S,S=u(p,d,E,f);for(let M=0;M!==E;++M)S[M]=e[M];g.clippingState=S,this.numIntersection=_?this.numPlanes:0,this.numPlanes+=x}};function l(){c.value!==e&&(c.value=e,c.needsUpdate=n>0),t.numPlanes=n,t.numIntersection=0}function u(h,d,f,p){let _=h!==null?h.length:0,m=null;if(_!==0){if(m=c.value,p!==!0||m===null){let g=f+_*4,x=d.matrixWorldInverse;a.getNormalMatrix(x),(m===null||m.length<g)&&(m=new Float32Array(g));for(let E=0,S=f;E!==_;++E,S+=4)o.copy(h[E]).applyMatrix4(x,a),o.normal.toArray(m,S),m[S+3]=o.constant}c.value=m,c.needsUpdate=!0}return t.numPlanes=_,t.numIntersection=0,m}}var ml=class extends ci{constructor(t=1,e={}){super(t,t,e),this.isWebGLCubeRenderTarget=!0;let n={width:t,height:t,depth:1},s=[n,n,n,n,n,n];this.texture=new ka(s),this._setTextureOptions(e),this.texture.isRenderTargetTexture=!0}fromEquirectangularTexture(t,e){this.texture.type=e.type,this.texture.colorSpace=e.colorSpace,this.texture.generateMipmaps=e.generateMipmaps,this.texture.minFilter=e.minFilter,this.texture.magFilter=e.magFilter;let n={uniforms:{tEquirect:{value:null}},vertexShader:`
+
+				varying vec3 vWorldDirection;
+
+				vec3 transformDirection( in vec3 dir, in mat4 matrix ) {
+
+					return normalize( ( matrix * vec4( dir, 0.0 ) ).xyz );
+
+				}
+
+				void main() {
+
+					vWorldDirection = transformDirection( position, modelMatrix );
+
+					#include <begin_vertex>
+					#include <project_vertex>
+
+				}
+			`,fragmentShader:`
+
+				uniform sampler2D tEquirect;
+
+				varying vec3 vWorldDirection;
+
+				#include <common>
+
+				void main() {
+
+					vec3 direction = normalize( vWorldDirection );
+
+					vec2 sampleUV = equirectUv( direction );
+
+					gl_FragColor = texture2D( tEquirect, sampleUV );
+
+				}
+			`},s=new Ye(5,5,5),r=new mi({name:"CubemapFromEquirect",uniforms:Ur(n.uniforms),vertexShader:n.vertexShader,fragmentShader:n.fragmentShader,side:Xn,blending:Ir});r.uniforms.tEquirect.value=e;let o=new Mt(s,r),a=e.minFilter;return e.minFilter===Fs&&(e.minFilter=li),new Oo(1,10,this).update(t,o),e.minFilter=a,o.geometry.dispose(),o.material.dispose(),this}clear(t,e=!0,n=!0,s=!0){let r=t.getRenderTarget();for(let o=0;o<6;o++)t.setRenderTarget(this,o),t.clear(e,n,s);t.setRenderTarget(r)}},sg=256,AM=3,CM=20,Ag=256,Cg=16,RM=3,PM=new R,IM=new Ht,Dh=class i{constructor(t){this._renderer=t,this._cubeSize=0,this._sourceTarget=null,this._cubeCamera=new Oo(1,10,null),this._boxMesh=new Mt(new Ye(5,5,5),null),this._cubemapMaterial=null,this._equirectMaterial=null,this._blurMaterial=null,this._ggxMaterial=null,this._integrationMaterial=null}fromScene(t,e=0,n=.1,s=100,r={}){let{size:o=256,position:a=PM}=r,c=this._renderer;this._setSize(o);let l=this._allocateTarget(),u=this._getSourceTarget(!0);e>0&&(u.texture.mipmapsAutoUpdate=!1);let h=c.autoClear,d=c.autoClearColor,f=c.autoClearDepth,p=c.autoClearStencil,_=t.background;c.autoClear=!0,c.autoClearColor=!0,c.autoClearDepth=!0,c.autoClearStencil=!0,_===null&&(t.background=c.getClearColor(IM));let m=new Oo(n,s,u);return m.position.copy(a),m.update(c,t),c.autoClear=h,c.autoClearColor=d,c.autoClearDepth=f,c.autoClearStencil=p,t.background=_,e>0&&(u.texture.mipmapsAutoUpdate=!0,this._blur(l,e)),this._applyPMREM(l),l}fromEquirectangular(t,e=null){return this._fromTexture(t,e)}fromCubemap(t,e=null){return this._fromTexture(t,e)}compileCubemapShader(){this._cubemapMaterial===null&&(this._cubemapMaterial=ag(),this._compileMaterial(this._cubemapMaterial))}compileEquirectangularShader(){this._equirectMaterial===null&&(this._equirectMaterial=og(),this._compileMaterial(this._equirectMaterial))}dispose(){this._sourceTarget!==null&&this._sourceTarget.dispose(),this._cubemapMaterial!==null&&this._cubemapMaterial.dispose(),this._equirectMaterial!==null&&this._equirectMaterial.dispose(),this._blurMaterial!==null&&this._blurMaterial.dispose(),this._ggxMaterial!==null&&this._ggxMaterial.dispose(),this._integrationMaterial!==null&&this._integrationMaterial.dispose(),this._boxMesh.geometry.dispose()}static lodToRoughness(t,e){return e>0?1-Math.sqrt(1-t/e):0}_setSize(t){this._cubeSize=Math.max(sg,Xd(t))}_fromTexture(t,e){t.mapping===Dr||t.mapping===zo?this._setSize(t.image.length===0?sg:t.image[0].width||t.image[0].image.width):this._setSize(t.image.width/4);let n=e||this._allocateTarget();return this._textureToCubemap(t),this._applyPMREM(n),n}_allocateTarget(){let t=this._cubeSize,e=rg(t,!1,!1),n=Math.log2(t)-AM;for(let s=0;s<=n;s++)e.texture.mipmaps.push({width:t>>s,height:t>>s});return e.texture.name="PMREM",e.texture.isPMREMTexture=!0,e}_getSourceTarget(t=!1){let e=this._cubeSize,n=this._sourceTarget;return(n===null||n.width!==e||t&&n.depthBuffer===!1)&&(n!==null&&n.dispose(),this._sourceTarget=rg(e,!0,t)),this._sourceTarget}_compileMaterial(t){this._boxMesh.material=t,this._renderer.compile(this._boxMesh,this._cubeCamera.children[0])}_renderCube(t,e,n){let s=this._boxMesh,r=this._cubeCamera;s.material=n,r.renderTarget=t,r.activeMipmapLevel=e;let o=t.width>>e;t.viewport.set(0,0,o,o),r.update(this._renderer,s),t.viewport.set(0,0,t.width,t.height)}_textureToCubemap(t){let e;t.mapping===Dr||t.mapping===zo?(this._cubemapMaterial===null&&(this._cubemapMaterial=ag()),e=this._cubemapMaterial,e.uniforms.flipEnvMap.value=t.isRenderTargetTexture===!1?-1:1):(this._equirectMaterial===null&&(this._equirectMaterial=og()),e=this._equirectMaterial),e.uniforms.envMap.value=t,this._renderCube(this._getSourceTarget(),0,e)}_applyPMREM(t){this._ggxMaterial===null&&(this._ggxMaterial=LM(),this._integrationMaterial=DM());let e=this._cubeSize,n=t.texture.mipmaps.length-1,s=this._ggxMaterial.uniforms;s.envMap.value=this._sourceTarget.texture;let r=this._integrationMaterial.uniforms;r.envMap.value=this._sourceTarget.texture,r.sourceLod.value=Math.log2(e/Cg);for(let o=0;o<=n;o++){let a=i.lodToRoughness(o,n);if(o>n-RM)r.roughness.value=a,this._renderCube(t,o,this._integrationMaterial);else{let c=a>0?Math.log2(e)+.5*Math.log2(6/(Ag*Math.pow(a,4)))+.5:0;s.roughness.value=a,s.lodBias.value=c,this._renderCube(t,o,this._ggxMaterial)}}}_blur(t,e){this._blurMaterial===null&&(this._blurMaterial=NM());let n=this._blurMaterial,s=n.uniforms,r=this._sourceTarget;s.sigma.value=Math.min(e,Math.PI)/Math.SQRT2,s.envMap.value=r.texture,this._renderCube(t,0,n),s.envMap.value=t.texture,this._renderCube(r,0,n)}};function rg(i,t,e){return new ml(i,{minFilter:Fs,generateMipmaps:t,type:Zi,colorSpace:Ca,depthBuffer:e})}function gl(i,t,e){return new mi({name:i,uniforms:t,vertexShader:me.cube_vert,fragmentShader:e,side:Xn,blending:Ir,depthTest:!1,depthWrite:!1})}function LM(){return gl("PMREMGGXConvolution",{envMap:{value:null},roughness:{value:0},lodBias:{value:0}},`
+
+		#define GGX_SAMPLES ${Ag}u
+
+		varying vec3 vWorldDirection;
+
+		uniform samplerCube envMap;
+		uniform float roughness;
+		uniform float lodBias;
+
+		#include <common>
+
+		// Van der Corput radical inverse
+		float radicalInverse_VdC( uint bits ) {
+
+			bits = ( bits << 16u ) | ( bits >> 16u );
+			bits = ( ( bits & 0x55555555u ) << 1u ) | ( ( bits & 0xAAAAAAAAu ) >> 1u );
+			bits = ( ( bits & 0x33333333u ) << 2u ) | ( ( bits & 0xCCCCCCCCu ) >> 2u );
+			bits = ( ( bits & 0x0F0F0F0Fu ) << 4u ) | ( ( bits & 0xF0F0F0F0u ) >> 4u );
+			bits = ( ( bits & 0x00FF00FFu ) << 8u ) | ( ( bits & 0xFF00FF00u ) >> 8u );
+			return float( bits ) * 2.3283064365386963e-10; // / 0x100000000
+
+		}
+
+		// Hammersley sequence
+		vec2 hammersley( uint i, uint N ) {
+
+			return vec2( float( i ) / float( N ), radicalInverse_VdC( i ) );
+
+		}
+
+		void main() {
+
+			vec3 N = normalize( vWorldDirection );
+
+			// For very low roughness, just sample the environment directly
+			if ( roughness < 0.001 ) {
+
+				gl_FragColor = vec4( textureLod( envMap, N, 0.0 ).rgb, 1.0 );
+				return;
+
+			}
+
+			float alpha = roughness * roughness;
+			float alpha2 = alpha * alpha;
+
+			// Tangent space basis for VNDF sampling
+			vec3 up = abs( N.z ) < 0.999 ? vec3( 0.0, 0.0, 1.0 ) : vec3( 1.0, 0.0, 0.0 );
+			vec3 tangent = normalize( cross( up, N ) );
+			vec3 bitangent = cross( N, tangent );
+
+			vec3 prefilteredColor = vec3( 0.0 );
+			float totalWeight = 0.0;
+
+			for ( uint i = 0u; i < GGX_SAMPLES; i ++ ) {
+
+				vec2 Xi = hammersley( i, GGX_SAMPLES );
+
+				// With V = N, sample the reflected direction directly.
+				float invQ = 1.0 / ( 1.0 - Xi.x + alpha2 * Xi.x );
+				float NdotL = ( 1.0 - Xi.x - alpha2 * Xi.x ) * invQ;
+
+				if ( NdotL > 0.0 ) {
+
+					float phi = 2.0 * PI * Xi.y;
+					float sinTheta = 2.0 * alpha * sqrt( Xi.x * ( 1.0 - Xi.x ) ) * invQ;
+					vec3 L = N * NdotL + ( tangent * cos( phi ) + bitangent * sin( phi ) ) * sinTheta;
+
+					// Match the source mip to the sample's solid angle. The terms
+					// independent of the sample are precomputed in lodBias.
+					float d = alpha2 * invQ;
+					float lod = max( log2( d ) + lodBias, 0.0 );
+
+					// Weight by NdotL for the split-sum approximation
+					prefilteredColor += textureLod( envMap, L, lod ).rgb * NdotL;
+					totalWeight += NdotL;
+
+				}
+
+			}
+
+			gl_FragColor = vec4( prefilteredColor / totalWeight, 1.0 );
+
+		}
+	`)}function DM(){return gl("PMREMGGXIntegration",{envMap:{value:null},roughness:{value:0},sourceLod:{value:0},sourceSize:{value:Cg}},`
+
+		varying vec3 vWorldDirection;
+
+		uniform samplerCube envMap;
+		uniform float roughness;
+		uniform float sourceLod;
+		uniform int sourceSize;
+
+		void main() {
+
+			vec3 N = normalize( vWorldDirection );
+
+			float alpha = roughness * roughness;
+			float alpha2 = alpha * alpha;
+
+			float texelSize = 2.0 / float( sourceSize );
+
+			vec3 prefilteredColor = vec3( 0.0 );
+			float totalWeight = 0.0;
+
+			// Pair opposite texels: only the one in N's hemisphere contributes.
+			for ( int face = 0; face < 3; face ++ ) {
+
+				for ( int y = 0; y < sourceSize; y ++ ) {
+
+					for ( int x = 0; x < sourceSize; x ++ ) {
+
+						vec2 uv = ( vec2( x, y ) + 0.5 ) * texelSize - 1.0;
+						vec3 texelDirection = face == 0 ? vec3( 1.0, uv ) : ( face == 1 ? vec3( uv.x, 1.0, uv.y ) : vec3( uv, 1.0 ) );
+
+						float invDistance = inversesqrt( 1.0 + dot( uv, uv ) );
+						float NdotL = dot( N, texelDirection );
+						texelDirection *= NdotL < 0.0 ? - 1.0 : 1.0;
+						NdotL = abs( NdotL ) * invDistance;
+
+						// With V = N, NdotH squared is ( 1 + NdotL ) / 2. Common factors
+						// in the GGX distribution and texel solid angle cancel when normalized.
+						float d = 1.0 + alpha2 + ( alpha2 - 1.0 ) * NdotL;
+						float weight = NdotL * invDistance * invDistance * invDistance / ( d * d );
+
+						prefilteredColor += textureLod( envMap, texelDirection, sourceLod ).rgb * weight;
+						totalWeight += weight;
+
+					}
+
+				}
+
+			}
+
+			gl_FragColor = vec4( prefilteredColor / totalWeight, 1.0 );
+
+		}
+	`)}function NM(){return gl("PMREMSphericalGaussianBlur",{envMap:{value:null},sigma:{value:0}},`
+
+		#define SAMPLES ${CM}
+		#define GOLDEN_ANGLE 2.39996322973
+
+		varying vec3 vWorldDirection;
+
+		uniform samplerCube envMap;
+		uniform float sigma;
+
+		#include <common>
+
+		void main() {
+
+			vec3 outputDirection = normalize( vWorldDirection );
+
+			vec3 up = abs( outputDirection.z ) < 0.999 ? vec3( 0.0, 0.0, 1.0 ) : vec3( 1.0, 0.0, 0.0 );
+			vec3 tangent = normalize( cross( up, outputDirection ) );
+			vec3 bitangent = cross( outputDirection, tangent );
+
+			// Truncate the kernel at three standard deviations or at the antipode.
+			float thetaMax = min( 3.0 * sigma, PI );
+			float truncation = 1.0 - exp( - 0.5 * thetaMax * thetaMax / ( sigma * sigma ) );
+
+			vec3 accumColor = vec3( 0.0 );
+			float accumWeight = 0.0;
+
+			for ( int i = 0; i < SAMPLES; i ++ ) {
+
+				// Stratified inverse-CDF sampling of the Gaussian, placed on a golden-angle spiral.
+				float stratum = ( float( i ) + 0.5 ) / float( SAMPLES );
+				float theta = sigma * sqrt( - 2.0 * log( 1.0 - stratum * truncation ) );
+				float phi = float( i ) * GOLDEN_ANGLE;
+
+				vec3 offset = cos( phi ) * tangent + sin( phi ) * bitangent;
+				vec3 sampleDirection = cos( theta ) * outputDirection + sin( theta ) * offset;
+
+				// Correct the planar sample density to solid angle.
+				float weight = sin( theta ) / theta;
+
+				accumColor += weight * textureLod( envMap, sampleDirection, 0.0 ).rgb;
+				accumWeight += weight;
+
+			}
+
+			gl_FragColor = vec4( accumColor / accumWeight, 1.0 );
+
+		}
+	`)}function og(){return gl("PMREMEquirectangularToCubemap",{envMap:{value:null}},`
+
+		varying vec3 vWorldDirection;
+
+		uniform sampler2D envMap;
+
+		#include <common>
+
+		void main() {
+
+			// Average four subpixel samples to preserve small, bright features.
+			vec3 direction = normalize( vWorldDirection );
+			vec3 dx = dFdx( direction ) * 0.25;
+			vec3 dy = dFdy( direction ) * 0.25;
+
+			vec3 color = textureLod( envMap, equirectUv( normalize( direction - dx - dy ) ), 0.0 ).rgb;
+			color += textureLod( envMap, equirectUv( normalize( direction + dx - dy ) ), 0.0 ).rgb;
+			color += textureLod( envMap, equirectUv( normalize( direction - dx + dy ) ), 0.0 ).rgb;
+			color += textureLod( envMap, equirectUv( normalize( direction + dx + dy ) ), 0.0 ).rgb;
+			gl_FragColor = vec4( color * 0.25, 1.0 );
+
+		}
+	`)}function ag(){return gl("PMREMCubemapToCubemap",{envMap:{value:null},flipEnvMap:{value:-1}},`
+
+		varying vec3 vWorldDirection;
+
+		uniform samplerCube envMap;
+		uniform float flipEnvMap;
+
+		void main() {
+
+			gl_FragColor = vec4( textureCube( envMap, vec3( flipEnvMap * vWorldDirection.x, vWorldDirection.yz ) ).rgb, 1.0 );
+
+		}
+	`)}function UM(i){let t=new WeakMap,e=new WeakMap,n=null;function s(d,f=!1){return d==null?null:f?o(d):r(d)}function r(d){if(d&&d.isTexture){let f=d.mapping;if(f===Wc||f===Xc)if(t.has(d)){let p=t.get(d).texture;return a(p,d.mapping)}else{let p=d.image;if(p&&p.height>0){let _=new ml(p.height);return _.fromEquirectangularTexture(i,d),t.set(d,_),d.addEventListener("dispose",l),a(_.texture,d.mapping)}else return null}}return d}function o(d){if(d&&d.isTexture&&d.isPMREMTexture!==!0){let f=d.mapping,p=f===Wc||f===Xc,_=f===Dr||f===zo;if(p||_){let m=e.get(d),g=m!==void 0?m.texture.pmremVersion:0;if(d.isRenderTargetTexture&&d.pmremVersion!==g)return n===null&&(n=new Dh(i)),m=p?n.fromEquirectangular(d,m):n.fromCubemap(d,m),m.texture.pmremVersion=d.pmremVersion,e.set(d,m),m.texture;if(m!==void 0)return m.texture;{let x=d.image;return p&&x&&x.height>0||_&&x&&c(x)?(n===null&&(n=new Dh(i)),m=p?n.fromEquirectangular(d):n.fromCubemap(d),m.texture.pmremVersion=d.pmremVersion,e.set(d,m),d.addEventListener("dispose",u),m.texture):null}}}return d}function a(d,f){return f===Wc?d.mapping=Dr:f===Xc&&(d.mapping=zo),d}function c(d){let f=0,p=6;for(let _=0;_<p;_++)d[_]!==void 0&&f++;return f===p}function l(d){let f=d.target;f.removeEventListener("dispose",l);let p=t.get(f);p!==void 0&&(t.delete(f),p.dispose())}function u(d){let f=d.target;f.removeEventListener("dispose",u);let p=e.get(f);p!==void 0&&(e.delete(f),p.dispose())}function h(){t=new WeakMap,e=new WeakMap,n!==null&&(n.dispose(),n=null)}return{get:s,dispose:h}}function OM(i){let t={};function e(n){if(t[n]!==void 0)return t[n];let s=i.getExtension(n);return t[n]=s,s}return{has:function(n){return e(n)!==null},init:function(){e("EXT_color_buffer_float"),e("WEBGL_clip_cull_distance"),e("OES_texture_float_linear"),e("EXT_color_buffer_half_float"),e("WEBGL_multisampled_render_to_texture"),e("WEBGL_render_shared_exponent")},get:function(n){let s=e(n);return s===null&&wa("WebGLRenderer: "+n+" extension not supported."),s}}}function FM(i,t,e,n){let s={},r=new WeakMap,o=new FinalizationRegistry(p=>delete s[p]);function a(p){c(p.target)}function c(p){p.index!==null&&t.remove(p.index);for(let m in p.attributes)t.remove(p.attributes[m]);p.removeEventListener("dispose",a),delete s[p.id],o.unregister(p);let _=r.get(p);_&&(t.remove(_),r.delete(p)),n.releaseStatesOfGeometry(p),p.isInstancedBufferGeometry===!0&&delete p._maxInstanceCount,e.memory.geometries--}function l(p,_){return s[_.id]!==void 0||(_.addEventListener("dispose",a),s[_.id]=new WeakRef(_),o.register(_,_.id,_),e.memory.geometries++),_}function u(p){let _=p.attributes;for(let m in _)t.update(_[m],i.ARRAY_BUFFER)}function h(p){let _=p.index,m=p.attributes.position,g=0;if(m===void 0)return;let x=_!==null?_.array.length:m.array.length/3-1,E=m.count>=65535?Oa:Ua,S=new E(Math.ceil(x/3)*6,1),M=S.array;if(_!==null){let y=_.array;g=_.version;for(let b=0,U=0;b<x;b+=3){let I=y[b+0],L=y[b+1],B=y[b+2];M[U++]=I,M[U++]=L,M[U++]=L,M[U++]=B,M[U++]=B,M[U++]=I}}else{g=m.version;for(let y=0,b=0;y<x;y+=3){let U=y+0,I=y+1,L=y+2;M[b++]=U,M[b++]=I,M[b++]=I,M[b++]=L,M[b++]=L,M[b++]=U}}S.version=g;let T=r.get(p);T&&t.remove(T),r.set(p,S)}function d(p){let _=r.get(p);if(_){let m=p.index;m!==null&&_.version<m.version&&h(p)}else h(p);return r.get(p)}function f(){for(let p in s){let _=s[p].deref();_!==void 0&&c(_)}}return{get:l,update:u,getWireframeAttribute:d,dispose:f}}function BM(i,t,e){let n;function s(h){n=h}let r,o;function a(h){r=h.type,o=h.bytesPerElement}function c(h,d){i.drawElements(n,d,r,h*o),e.update(d,n,1)}function l(h,d,f){f!==0&&(i.drawElementsInstanced(n,d,r,h*o,f),e.update(d,n,f))}function u(h,d,f){if(f===0)return;t.get("WEBGL_multi_draw").multiDrawElementsWEBGL(n,d,0,r,h,0,f);let _=0;for(let m=0;m<f;m++)_+=d[m];e.update(_,n,1)}this.setMode=s,this.setIndex=a,this.render=c,this.renderInstances=l,this.renderMultiDraw=u}function kM(i){let t={geometries:0,textures:0},e={frame:0,calls:0,triangles:0,points:0,lines:0};function n(r,o,a){switch(e.calls++,o){case i.TRIANGLES:e.triangles+=a*(r/3);break;case i.LINES:e.lines+=a*(r/2);break;case i.LINE_STRIP:e.lines+=a*(r-1);break;case i.LINE_LOOP:e.lines+=a*r;break;case i.POINTS:e.points+=a*r;break;default:te("WebGLInfo: Unknown draw mode:",o);break}}function s(){e.calls=0,e.triangles=0,e.points=0,e.lines=0}return{memory:t,render:e,programs:null,autoReset:!0,reset:s,update:n}}function zM(i,t,e){let n=new WeakMap,s=new Le;function r(o,a,c){let l=o.morphTargetInfluences,u=a.morphAttributes.position||a.morphAttributes.normal||a.morphAttributes.color,h=u!==void 0?u.length:0,d=n.get(a);if(d===void 0||d.count!==h){let U=function(){y.dispose(),n.delete(a),a.removeEventListener("dispose",U)};d!==void 0&&d.texture.dispose();let f=a.morphAttributes.position!==void 0,p=a.morphAttributes.normal!==void 0,_=a.morphAttributes.color!==void 0,m=a.morphAttributes.position||[],g=a.morphAttributes.normal||[],x=a.morphAttributes.color||[],E=0;f===!0&&(E=1),p===!0&&(E=2),_===!0&&(E=3);let S=a.attributes.position.count*E,M=1;S>t.maxTextureSize&&(M=Math.ceil(S/t.maxTextureSize),S=t.maxTextureSize);let T=new Float32Array(S*M*4*h),y=new La(T,S,M,h);y.type=Fi,y.needsUpdate=!0;let b=E*4;for(let I=0;I<h;I++){let L=m[I],B=g[I],W=x[I],P=S*M*4*I;for(let k=0;k<L.count;k++){let Y=k*b;f===!0&&(s.fromBufferAttribute(L,k),T[P+Y+0]=s.x,T[P+Y+1]=s.y,T[P+Y+2]=s.z,T[P+Y+3]=0),p===!0&&(s.fromBufferAttribute(B,k),T[P+Y+4]=s.x,T[P+Y+5]=s.y,T[P+Y+6]=s.z,T[P+Y+7]=0),_===!0&&(s.fromBufferAttribute(W,k),T[P+Y+8]=s.x,T[P+Y+9]=s.y,T[P+Y+10]=s.z,T[P+Y+11]=W.itemSize===4?s.w:1)}}d={count:h,texture:y,size:new kt(S,M)},n.set(a,d),a.addEventListener("dispose",U)}if(o.isInstancedMesh===!0&&o.morphTexture!==null)c.getUniforms().setValue(i,"morphTexture",o.morphTexture,e);else{let f=0;for(let _=0;_<l.length;_++)f+=l[_];let p=a.morphTargetsRelative?1:1-f;c.getUniforms().setValue(i,"morphTargetBaseInfluence",p),c.getUniforms().setValue(i,"morphTargetInfluences",l)}c.getUniforms().setValue(i,"morphTargetsTexture",d.texture,e),c.getUniforms().setValue(i,"morphTargetsTextureSize",d.size)}return{update:r}}function VM(i,t,e,n,s){let r=new WeakMap;function o(l){let u=s.render.frame,h=l.geometry,d=t.get(l,h);if(r.get(d)!==u&&(t.update(d),r.set(d,u)),l.isInstancedMesh&&(l.hasEventListener("dispose",c)===!1&&l.addEventListener("dispose",c),r.get(l)!==u&&(e.update(l.instanceMatrix,i.ARRAY_BUFFER),l.instanceColor!==null&&e.update(l.instanceColor,i.ARRAY_BUFFER),r.set(l,u))),l.isSkinnedMesh){let f=l.skeleton;r.get(f)!==u&&(f.update(),r.set(f,u))}return d}function a(){r=new WeakMap}function c(l){let u=l.target;u.removeEventListener("dispose",c),n.releaseStatesOfObject(u),e.remove(u.instanceMatrix),u.instanceColor!==null&&e.remove(u.instanceColor)}return{update:o,dispose:a}}var GM={[Td]:"LINEAR_TONE_MAPPING",[Ed]:"REINHARD_TONE_MAPPING",[Ad]:"CINEON_TONE_MAPPING",[Cd]:"ACES_FILMIC_TONE_MAPPING",[Pd]:"AGX_TONE_MAPPING",[Id]:"NEUTRAL_TONE_MAPPING",[Rd]:"CUSTOM_TONE_MAPPING"};function HM(i,t,e,n,s,r){let o=new ci(t,e,{type:i,depthBuffer:s,stencilBuffer:r,samples:n?4:0,storeMultisampledDepthBuffer:!1,storeMultisampledStencilBuffer:!1,resolveDepthBuffer:!1,resolveStencilBuffer:!1}),a=null,c=null,l=null,u=new pe;u.setAttribute("position",new se([-1,3,0,-1,-1,0,3,-1,0],3)),u.setAttribute("uv",new se([0,2,0,0,2,0],2));let h=new Rc({uniforms:{tDiffuse:{value:null}},vertexShader:`
+			precision highp float;
+
+			uniform mat4 modelViewMatrix;
+			uniform mat4 projectionMatrix;
+
+			attribute vec3 position;
+			attribute vec2 uv;
+
+			varying vec2 vUv;
+
+			void main() {
+				vUv = uv;
+				gl_Position = projectionMatrix * modelViewMatrix * vec4( position, 1.0 );
+			}`,fragmentShader:`
+			precision highp float;
+
+			uniform sampler2D tDiffuse;
+
+			varying vec2 vUv;
+
+			#include <tonemapping_pars_fragment>
+			#include <colorspace_pars_fragment>
+
+			void main() {
+				gl_FragColor = texture2D( tDiffuse, vUv );
+
+				#ifdef LINEAR_TONE_MAPPING
+					gl_FragColor.rgb = LinearToneMapping( gl_FragColor.rgb );
+				#elif defined( REINHARD_TONE_MAPPING )
+					gl_FragColor.rgb = ReinhardToneMapping( gl_FragColor.rgb );
+				#elif defined( CINEON_TONE_MAPPING )
+					gl_FragColor.rgb = CineonToneMapping( gl_FragColor.rgb );
+				#elif defined( ACES_FILMIC_TONE_MAPPING )
+					gl_FragColor.rgb = ACESFilmicToneMapping( gl_FragColor.rgb );
+				#elif defined( AGX_TONE_MAPPING )
+					gl_FragColor.rgb = AgXToneMapping( gl_FragColor.rgb );
+				#elif defined( NEUTRAL_TONE_MAPPING )
+					gl_FragColor.rgb = NeutralToneMapping( gl_FragColor.rgb );
+				#elif defined( CUSTOM_TONE_MAPPING )
+					gl_FragColor.rgb = CustomToneMapping( gl_FragColor.rgb );
+				#endif
+
+				#ifdef SRGB_TRANSFER
+					gl_FragColor = sRGBTransferOETF( gl_FragColor );
+				#endif
+			}`,depthTest:!1,depthWrite:!1}),d=new Mt(u,h),f=new ja(-1,1,1,-1,0,1),p=null,_=null,m=!1,g,x=null,E=[],S=!1;this.setSize=function(M,T){o.setSize(M,T),a!==null&&a.setSize(M,T),c!==null&&c.setSize(M,T);for(let y=0;y<E.length;y++){let b=E[y];b.setSize&&b.setSize(M,T)}},this.setEffects=function(M){E=M,S=E.length>0&&E[0].isRenderPass===!0;let T=o.width,y=o.height;E.length>0&&a===null&&(a=new ci(T,y,{type:Zi,depthBuffer:!1,stencilBuffer:!1}),c=new ci(T,y,{type:Zi,depthBuffer:!1,stencilBuffer:!1}));let b=s===!0&&E.some(U=>U.needsDepthTexture===!0);b!==(o.depthTexture!==null)&&(b===!0&&l===null&&(l=new Us(T,y),r===!0&&(l.format=Bs,l.type=Nr)),o.dispose(),o.depthTexture=b?l:null,o.resolveDepthBuffer=b,o.storeMultisampledDepthBuffer=b);for(let U=0;U<E.length;U++){let I=E[U];I.setSize&&I.setSize(T,y),b&&I.needsDepthTexture===!0&&I.setDepthTexture&&I.setDepthTexture(l)}},this.begin=function(M,T){if(m||M.toneMapping===hs&&E.length===0)return!1;if(x=T,T!==null){let y=T.width,b=T.height;(o.width!==y||o.height!==b)&&this.setSize(y,b)}return S===!1&&M.setRenderTarget(o),g=M.toneMapping,M.toneMapping=hs,!0},this.hasRenderPass=function(){return S},this.end=function(M,T){M.toneMapping=g,m=!0;let y=o,b=a;for(let U=0;U<E.length;U++){let I=E[U];I.enabled!==!1&&(I.render(M,b,y,T),I.needsSwap!==!1&&(y=b,b=b===a?c:a))}if(p!==M.outputColorSpace||_!==M.toneMapping){p=M.outputColorSpace,_=M.toneMapping,h.defines={},Se.getTransfer(p)===Pe&&(h.defines.SRGB_TRANSFER="");let U=GM[_];U&&(h.defines[U]=""),h.needsUpdate=!0}h.uniforms.tDiffuse.value=y.texture,M.setRenderTarget(x),M.render(d,f),x=null,m=!1},this.isCompositing=function(){return m},this.dispose=function(){o.dispose(),a!==null&&a.dispose(),c!==null&&c.dispose(),u.dispose(),h.dispose()}}var Rg=new Wn,Pg=new Us(1,1),Ig=new Va(1),Lg=new La,Dg=new wc,Ng=new ka,lg=[],cg=[],hg=new Float32Array(16),ug=new Float32Array(9),dg=new Float32Array(4);function Ho(i,t,e){let n=i[0];if(n<=0||n>0)return i;let s=t*e,r=lg[s];if(r===void 0&&(r=new Float32Array(s),lg[s]=r),t!==0){n.toArray(r,0);for(let o=1,a=0;o!==t;++o)a+=e,i[o].toArray(r,a)}return r}function Rn(i,t){if(i.length!==t.length)return!1;for(let e=0,n=i.length;e<n;e++)if(i[e]!==t[e])return!1;return!0}function Pn(i,t){for(let e=0,n=t.length;e<n;e++)i[e]=t[e]}function Uh(i,t){let e=cg[t];e===void 0&&(e=new Int32Array(t),cg[t]=e);for(let n=0;n!==t;++n)e[n]=i.allocateTextureUnit();return e}function WM(i,t){let e=this.cache;e[0]!==t&&(i.uniform1f(this.addr,t),e[0]=t)}function XM(i,t){let e=this.cache;if(t.x!==void 0)(e[0]!==t.x||e[1]!==t.y)&&(i.uniform2f(this.addr,t.x,t.y),e[0]=t.x,e[1]=t.y);else{if(Rn(e,t))return;i.uniform2fv(this.addr,t),Pn(e,t)}}function YM(i,t){let e=this.cache;if(t.x!==void 0)(e[0]!==t.x||e[1]!==t.y||e[2]!==t.z)&&(i.uniform3f(this.addr,t.x,t.y,t.z),e[0]=t.x,e[1]=t.y,e[2]=t.z);else if(t.r!==void 0)(e[0]!==t.r||e[1]!==t.g||e[2]!==t.b)&&(i.uniform3f(this.addr,t.r,t.g,t.b),e[0]=t.r,e[1]=t.g,e[2]=t.b);else{if(Rn(e,t))return;i.uniform3fv(this.addr,t),Pn(e,t)}}function qM(i,t){let e=this.cache;if(t.x!==void 0)(e[0]!==t.x||e[1]!==t.y||e[2]!==t.z||e[3]!==t.w)&&(i.uniform4f(this.addr,t.x,t.y,t.z,t.w),e[0]=t.x,e[1]=t.y,e[2]=t.z,e[3]=t.w);else{if(Rn(e,t))return;i.uniform4fv(this.addr,t),Pn(e,t)}}function $M(i,t){let e=this.cache,n=t.elements;if(n===void 0){if(Rn(e,t))return;i.uniformMatrix2fv(this.addr,!1,t),Pn(e,t)}else{if(Rn(e,n))return;dg.set(n),i.uniformMatrix2fv(this.addr,!1,dg),Pn(e,n)}}function ZM(i,t){let e=this.cache,n=t.elements;if(n===void 0){if(Rn(e,t))return;i.uniformMatrix3fv(this.addr,!1,t),Pn(e,t)}else{if(Rn(e,n))return;ug.set(n),i.uniformMatrix3fv(this.addr,!1,ug),Pn(e,n)}}function JM(i,t){let e=this.cache,n=t.elements;if(n===void 0){if(Rn(e,t))return;i.uniformMatrix4fv(this.addr,!1,t),Pn(e,t)}else{if(Rn(e,n))return;hg.set(n),i.uniformMatrix4fv(this.addr,!1,hg),Pn(e,n)}}function jM(i,t){let e=this.cache;e[0]!==t&&(i.uniform1i(this.addr,t),e[0]=t)}function KM(i,t){let e=this.cache;if(t.x!==void 0)(e[0]!==t.x||e[1]!==t.y)&&(i.uniform2i(this.addr,t.x,t.y),e[0]=t.x,e[1]=t.y);else{if(Rn(e,t))return;i.uniform2iv(this.addr,t),Pn(e,t)}}function QM(i,t){let e=this.cache;if(t.x!==void 0)(e[0]!==t.x||e[1]!==t.y||e[2]!==t.z)&&(i.uniform3i(this.addr,t.x,t.y,t.z),e[0]=t.x,e[1]=t.y,e[2]=t.z);else{if(Rn(e,t))return;i.uniform3iv(this.addr,t),Pn(e,t)}}function tb(i,t){let e=this.cache;if(t.x!==void 0)(e[0]!==t.x||e[1]!==t.y||e[2]!==t.z||e[3]!==t.w)&&(i.uniform4i(this.addr,t.x,t.y,t.z,t.w),e[0]=t.x,e[1]=t.y,e[2]=t.z,e[3]=t.w);else{if(Rn(e,t))return;i.uniform4iv(this.addr,t),Pn(e,t)}}function eb(i,t){let e=this.cache;e[0]!==t&&(i.uniform1ui(this.addr,t),e[0]=t)}function nb(i,t){let e=this.cache;if(t.x!==void 0)(e[0]!==t.x||e[1]!==t.y)&&(i.uniform2ui(this.addr,t.x,t.y),e[0]=t.x,e[1]=t.y);else{if(Rn(e,t))return;i.uniform2uiv(this.addr,t),Pn(e,t)}}function ib(i,t){let e=this.cache;if(t.x!==void 0)(e[0]!==t.x||e[1]!==t.y||e[2]!==t.z)&&(i.uniform3ui(this.addr,t.x,t.y,t.z),e[0]=t.x,e[1]=t.y,e[2]=t.z);else{if(Rn(e,t))return;i.uniform3uiv(this.addr,t),Pn(e,t)}}function sb(i,t){let e=this.cache;if(t.x!==void 0)(e[0]!==t.x||e[1]!==t.y||e[2]!==t.z||e[3]!==t.w)&&(i.uniform4ui(this.addr,t.x,t.y,t.z,t.w),e[0]=t.x,e[1]=t.y,e[2]=t.z,e[3]=t.w);else{if(Rn(e,t))return;i.uniform4uiv(this.addr,t),Pn(e,t)}}function Oh(i){return i.version===0&&(i.compareFunction=Vd,i.needsUpdate=!0),i}function rb(i,t,e){let n=this.cache,s=e.allocateTextureUnit();n[0]!==s&&(i.uniform1i(this.addr,s),n[0]=s);let r;this.type===i.SAMPLER_2D_SHADOW?r=Oh(Pg):r=Rg,e.setTexture2D(t||r,s)}function ob(i,t,e){let n=this.cache,s=e.allocateTextureUnit();n[0]!==s&&(i.uniform1i(this.addr,s),n[0]=s),e.setTexture3D(t||Dg,s)}function ab(i,t,e){let n=this.cache,s=e.allocateTextureUnit();n[0]!==s&&(i.uniform1i(this.addr,s),n[0]=s);let r;this.type===i.SAMPLER_CUBE_SHADOW?r=Oh(Ig):r=Ng,e.setTextureCube(t||r,s)}function lb(i,t,e){let n=this.cache,s=e.allocateTextureUnit();n[0]!==s&&(i.uniform1i(this.addr,s),n[0]=s),e.setTexture2DArray(t||Lg,s)}function cb(i){switch(i){case 5126:return WM;case 35664:return XM;case 35665:return YM;case 35666:return qM;case 35674:return $M;case 35675:return ZM;case 35676:return JM;case 5124:case 35670:return jM;case 35667:case 35671:return KM;case 35668:case 35672:return QM;case 35669:case 35673:return tb;case 5125:return eb;case 36294:return nb;case 36295:return ib;case 36296:return sb;case 35678:case 36198:case 36298:case 36306:case 35682:return rb;case 35679:case 36299:case 36307:return ob;case 35680:case 36300:case 36308:case 36293:return ab;case 36289:case 36303:case 36311:case 36292:return lb}}function hb(i,t){i.uniform1fv(this.addr,t)}function ub(i,t){let e=Ho(t,this.size,2);i.uniform2fv(this.addr,e)}function db(i,t){let e=Ho(t,this.size,3);i.uniform3fv(this.addr,e)}function fb(i,t){let e=Ho(t,this.size,4);i.uniform4fv(this.addr,e)}function pb(i,t){let e=Ho(t,this.size,4);i.uniformMatrix2fv(this.addr,!1,e)}function mb(i,t){let e=Ho(t,this.size,9);i.uniformMatrix3fv(this.addr,!1,e)}function gb(i,t){let e=Ho(t,this.size,16);i.uniformMatrix4fv(this.addr,!1,e)}function _b(i,t){i.uniform1iv(this.addr,t)}function xb(i,t){i.uniform2iv(this.addr,t)}function yb(i,t){i.uniform3iv(this.addr,t)}function vb(i,t){i.uniform4iv(this.addr,t)}function Sb(i,t){i.uniform1uiv(this.addr,t)}function Mb(i,t){i.uniform2uiv(this.addr,t)}function bb(i,t){i.uniform3uiv(this.addr,t)}function wb(i,t){i.uniform4uiv(this.addr,t)}function Tb(i,t,e){let n=this.cache,s=t.length,r=Uh(e,s);Rn(n,r)||(i.uniform1iv(this.addr,r),Pn(n,r));let o;this.type===i.SAMPLER_2D_SHADOW?o=Oh(Pg):o=Rg;for(let a=0;a!==s;++a)e.setTexture2D(t[a]||o,r[a])}function Eb(i,t,e){let n=this.cache,s=t.length,r=Uh(e,s);Rn(n,r)||(i.uniform1iv(this.addr,r),Pn(n,r));for(let o=0;o!==s;++o)e.setTexture3D(t[o]||Dg,r[o])}function Ab(i,t,e){let n=this.cache,s=t.length,r=Uh(e,s);Rn(n,r)||(i.uniform1iv(this.addr,r),Pn(n,r));let o;this.type===i.SAMPLER_CUBE_SHADOW?o=Oh(Ig):o=Ng;for(let a=0;a!==s;++a)e.setTextureCube(t[a]||o,r[a])}function Cb(i,t,e){let n=this.cache,s=t.length,r=Uh(e,s);Rn(n,r)||(i.uniform1iv(this.addr,r),Pn(n,r));for(let o=0;o!==s;++o)e.setTexture2DArray(t[o]||Lg,r[o])}function Rb(i){switch(i){case 5126:return hb;case 35664:return ub;case 35665:return db;case 35666:return fb;case 35674:return pb;case 35675:return mb;case 35676:return gb;case 5124:case 35670:return _b;case 35667:case 35671:return xb;case 35668:case 35672:return yb;case 35669:case 35673:return vb;case 5125:return Sb;case 36294:return Mb;case 36295:return bb;case 36296:return wb;case 35678:case 36198:case 36298:case 36306:case 35682:return Tb;case 35679:case 36299:case 36307:return Eb;case 35680:case 36300:case 36308:case 36293:return Ab;case 36289:case 36303:case 36311:case 36292:return Cb}}var tf=class{constructor(t,e,n){this.id=t,this.addr=n,this.cache=[],this.type=e.type,this.setValue=cb(e.type)}},ef=class{constructor(t,e,n){this.id=t,this.addr=n,this.cache=[],this.type=e.type,this.size=e.size,this.setValue=Rb(e.type)}},nf=class{constructor(t){this.id=t,this.seq=[],this.map={}}setValue(t,e,n){let s=this.seq;for(let r=0,o=s.length;r!==o;++r){let a=s[r];a.setValue(t,e[a.id],n)}}},Kd=/(\w+)(\])?(\[|\.)?/g;function fg(i,t){i.seq.push(t),i.map[t.id]=t}function Pb(i,t,e){let n=i.name,s=n.length;for(Kd.lastIndex=0;;){let r=Kd.exec(n),o=Kd.lastIndex,a=r[1],c=r[2]==="]",l=r[3];if(c&&(a=a|0),l===void 0||l==="["&&o+2===s){fg(e,l===void 0?new tf(a,i,t):new ef(a,i,t));break}else{let h=e.map[a];h===void 0&&(h=new nf(a),fg(e,h)),e=h}}}var Go=class{constructor(t,e){this.seq=[],this.map={};let n=t.getProgramParameter(e,t.ACTIVE_UNIFORMS);for(let o=0;o<n;++o){let a=t.getActiveUniform(e,o),c=t.getUniformLocation(e,a.name);Pb(a,c,this)}let s=[],r=[];for(let o of this.seq)o.type===t.SAMPLER_2D_SHADOW||o.type===t.SAMPLER_CUBE_SHADOW||o.type===t.SAMPLER_2D_ARRAY_SHADOW?s.push(o):r.push(o);s.length>0&&(this.seq=s.concat(r))}setValue(t,e,n,s){let r=this.map[e];r!==void 0&&r.setValue(t,n,s)}setOptional(t,e,n){let s=e[n];s!==void 0&&this.setValue(t,n,s)}static upload(t,e,n,s){for(let r=0,o=e.length;r!==o;++r){let a=e[r],c=n[a.id];c.needsUpdate!==!1&&a.setValue(t,c.value,s)}}static seqWithValue(t,e){let n=[];for(let s=0,r=t.length;s!==r;++s){let o=t[s];o.id in e&&n.push(o)}return n}};function pg(i,t,e){let n=i.createShader(t);return i.shaderSource(n,e),i.compileShader(n),n}var Ib=37297,Lb=0;function Db(i,t){let e=i.split(`
+`),n=[],s=Math.max(t-6,0),r=Math.min(t+6,e.length);for(let o=s;o<r;o++){let a=o+1;n.push(`${a===t?">":" "} ${a}: ${e[o]}`)}return n.join(`
+`)}var mg=new re;function Nb(i){Se._getMatrix(mg,Se.workingColorSpace,i);let t=`mat3( ${mg.elements.map(e=>e.toFixed(4))} )`;switch(Se.getTransfer(i)){case Ra:return[t,"LinearTransferOETF"];case Pe:return[t,"sRGBTransferOETF"];default:return jt("WebGLProgram: Unsupported color space: ",i),[t,"LinearTransferOETF"]}}function gg(i,t,e){let n=i.getShaderParameter(t,i.COMPILE_STATUS),r=(i.getShaderInfoLog(t)||"").trim();if(n&&r==="")return"";let o=/ERROR: 0:(\d+)/.exec(r);if(o){let a=parseInt(o[1]);return e.toUpperCase()+`
+
+`+r+`
+
+`+Db(i.getShaderSource(t),a)}else return r}function Ub(i,t){let e=Nb(t);return[`vec4 ${i}( vec4 value ) {`,`	return ${e[1]}( vec4( ${e[0]} * value.rgb, value.a ) );`,"}"].join(`
+`)}var Ob={[Td]:"Linear",[Ed]:"Reinhard",[Ad]:"Cineon",[Cd]:"ACESFilmic",[Pd]:"AgX",[Id]:"Neutral",[Rd]:"Custom"};function Fb(i,t){let e=Ob[t];return e===void 0?(jt("WebGLProgram: Unsupported toneMapping:",t),"vec3 "+i+"( vec3 color ) { return LinearToneMapping( color ); }"):"vec3 "+i+"( vec3 color ) { return "+e+"ToneMapping( color ); }"}var Lh=new R;function Bb(){Se.getLuminanceCoefficients(Lh);let i=Lh.x.toFixed(4),t=Lh.y.toFixed(4),e=Lh.z.toFixed(4);return["float luminance( const in vec3 rgb ) {",`	const vec3 weights = vec3( ${i}, ${t}, ${e} );`,"	return dot( weights, rgb );","}"].join(`
+`)}function kb(i){return[i.extensionClipCullDistance?"#extension GL_ANGLE_clip_cull_distance : require":"",i.extensionMultiDraw?"#extension GL_ANGLE_multi_draw : require":""].filter(pl).join(`
+`)}function zb(i){let t=[];for(let e in i){let n=i[e];n!==!1&&t.push("#define "+e+" "+n)}return t.join(`
+`)}function Vb(i,t){let e={},n=i.getProgramParameter(t,i.ACTIVE_ATTRIBUTES);for(let s=0;s<n;s++){let r=i.getActiveAttrib(t,s),o=r.name,a=1;r.type===i.FLOAT_MAT2&&(a=2),r.type===i.FLOAT_MAT3&&(a=3),r.type===i.FLOAT_MAT4&&(a=4),e[o]={type:r.type,location:i.getAttribLocation(t,o),locationSize:a}}return e}function pl(i){return i!==""}function _g(i,t){let e=t.numSpotLightShadows+t.numSpotLightMaps-t.numSpotLightShadowsWithMaps;return i.replace(/NUM_SUN_LIGHTS/g,t.numSunLights).replace(/NUM_DIR_LIGHTS/g,t.numDirLights).replace(/NUM_SPOT_LIGHTS/g,t.numSpotLights).replace(/NUM_SPOT_LIGHT_MAPS/g,t.numSpotLightMaps).replace(/NUM_SPOT_LIGHT_COORDS/g,e).replace(/NUM_RECT_AREA_LIGHTS/g,t.numRectAreaLights).replace(/NUM_POINT_LIGHTS/g,t.numPointLights).replace(/NUM_HEMI_LIGHTS/g,t.numHemiLights).replace(/NUM_SUN_LIGHT_SHADOWS/g,t.numSunLightShadows).replace(/NUM_DIR_LIGHT_SHADOWS/g,t.numDirLightShadows).replace(/NUM_SPOT_LIGHT_SHADOWS_WITH_MAPS/g,t.numSpotLightShadowsWithMaps).replace(/NUM_SPOT_LIGHT_SHADOWS/g,t.numSpotLightShadows).replace(/NUM_POINT_LIGHT_SHADOWS/g,t.numPointLightShadows).replace(/NUM_LIGHT_PROBE_GRIDS/g,t.numLightProbeGrids)}function xg(i,t){return i.replace(/NUM_CLIPPING_PLANES/g,t.numClippingPlanes).replace(/UNION_CLIPPING_PLANES/g,t.numClippingPlanes-t.numClipIntersection)}var Gb=/^[ \t]*#include +<([\w\d./]+)>/gm;function sf(i){return i.replace(Gb,Hb)}function Hb(i,t){let e=me[t];if(e===void 0)throw new Error("THREE.WebGLProgram: Can not resolve #include <"+t+">");return sf(e)}var Wb=/#pragma unroll_loop_start\s+for\s*\(\s*int\s+i\s*=\s*(\d+)\s*;\s*i\s*<\s*(\d+)\s*;\s*i\s*\+\+\s*\)\s*{([\s\S]+?)}\s+#pragma unroll_loop_end/g;function yg(i){return i.replace(Wb,Xb)}function Xb(i,t,e,n){let s="";for(let r=parseInt(t);r<parseInt(e);r++)s+=n.replace(/\[\s*i\s*\]/g,"[ "+r+" ]").replace(/UNROLLED_LOOP_INDEX/g,r);return s}function vg(i){let t=`precision ${i.precision} float;
+	precision ${i.precision} int;
+	precision ${i.precision} sampler2D;
+	precision ${i.precision} samplerCube;
+	precision ${i.precision} sampler3D;
+	precision ${i.precision} sampler2DArray;
+	precision ${i.precision} sampler2DShadow;
+	precision ${i.precision} samplerCubeShadow;
+	precision ${i.precision} sampler2DArrayShadow;
+	precision ${i.precision} isampler2D;
+	precision ${i.precision} isampler3D;
+	precision ${i.precision} isamplerCube;
+	precision ${i.precision} isampler2DArray;
+	precision ${i.precision} usampler2D;
+	precision ${i.precision} usampler3D;
+	precision ${i.precision} usamplerCube;
+	precision ${i.precision} usampler2DArray;
+	`;return i.precision==="highp"?t+=`
+#define HIGH_PRECISION`:i.precision==="mediump"?t+=`
+#define MEDIUM_PRECISION`:i.precision==="lowp"&&(t+=`
+#define LOW_PRECISION`),t}var Yb={[Pr]:"SHADOWMAP_TYPE_PCF",[Bo]:"SHADOWMAP_TYPE_VSM"};function qb(i){return Yb[i.shadowMapType]||"SHADOWMAP_TYPE_BASIC"}var $b={[zo]:"ENVMAP_MODE_REFRACTION"};function Zb(i){return i.envMap===!1?"ENVMAP_MODE_REFLECTION":$b[i.envMapMode]||"ENVMAP_MODE_REFLECTION"}var Jb={[Hc]:"ENVMAP_BLENDING_MULTIPLY",[km]:"ENVMAP_BLENDING_MIX",[zm]:"ENVMAP_BLENDING_ADD"};function jb(i){return i.envMap===!1?"ENVMAP_BLENDING_NONE":Jb[i.combine]||"ENVMAP_BLENDING_NONE"}function Kb(i,t,e,n){let s=i.getContext(),r=e.defines,o=e.vertexShader,a=e.fragmentShader,c=qb(e),l=e.envMapPMREM===!0?"ENVMAP_TYPE_PMREM":"ENVMAP_TYPE_CUBE",u=Zb(e),h=jb(e),d=kb(e),f=zb(r),p=s.createProgram(),_,m,g=e.glslVersion?"#version "+e.glslVersion+`
+`:"";e.isRawShaderMaterial?(_=["#define SHADER_TYPE "+e.shaderType,"#define SHADER_NAME "+e.shaderName,f].filter(pl).join(`
+`),_.length>0&&(_+=`
+`),m=["#define SHADER_TYPE "+e.shaderType,"#define SHADER_NAME "+e.shaderName,f].filter(pl).join(`
+`),m.length>0&&(m+=`
+`)):(_=[vg(e),"#define SHADER_TYPE "+e.shaderType,"#define SHADER_NAME "+e.shaderName,f,e.extensionClipCullDistance?"#define USE_CLIP_DISTANCE":"",e.batching?"#define USE_BATCHING":"",e.batchingColor?"#define USE_BATCHING_COLOR":"",e.instancing?"#define USE_INSTANCING":"",e.instancingColor?"#define USE_INSTANCING_COLOR":"",e.instancingMorph?"#define USE_INSTANCING_MORPH":"",e.useFog&&e.fog?"#define USE_FOG":"",e.useFog&&e.fogExp2?"#define FOG_EXP2":"",e.map?"#define USE_MAP":"",e.envMap?"#define USE_ENVMAP":"",e.envMap?"#define "+u:"",e.lightMap?"#define USE_LIGHTMAP":"",e.aoMap?"#define USE_AOMAP":"",e.bumpMap?"#define USE_BUMPMAP":"",e.normalMap?"#define USE_NORMALMAP":"",e.normalMapObjectSpace?"#define USE_NORMALMAP_OBJECTSPACE":"",e.normalMapTangentSpace?"#define USE_NORMALMAP_TANGENTSPACE":"",e.displacementMap?"#define USE_DISPLACEMENTMAP":"",e.emissiveMap?"#define USE_EMISSIVEMAP":"",e.anisotropy?"#define USE_ANISOTROPY":"",e.anisotropyMap?"#define USE_ANISOTROPYMAP":"",e.clearcoatMap?"#define USE_CLEARCOATMAP":"",e.clearcoatRoughnessMap?"#define USE_CLEARCOAT_ROUGHNESSMAP":"",e.clearcoatNormalMap?"#define USE_CLEARCOAT_NORMALMAP":"",e.diffuseRoughnessMap?"#define USE_DIFFUSE_ROUGHNESSMAP":"",e.iridescenceMap?"#define USE_IRIDESCENCEMAP":"",e.iridescenceThicknessMap?"#define USE_IRIDESCENCE_THICKNESSMAP":"",e.specularMap?"#define USE_SPECULARMAP":"",e.specularColorMap?"#define USE_SPECULAR_COLORMAP":"",e.specularIntensityMap?"#define USE_SPECULAR_INTENSITYMAP":"",e.roughnessMap?"#define USE_ROUGHNESSMAP":"",e.metalnessMap?"#define USE_METALNESSMAP":"",e.alphaMap?"#define USE_ALPHAMAP":"",e.alphaHash?"#define USE_ALPHAHASH":"",e.transmission?"#define USE_TRANSMISSION":"",e.transmissionMap?"#define USE_TRANSMISSIONMAP":"",e.thicknessMap?"#define USE_THICKNESSMAP":"",e.sheenColorMap?"#define USE_SHEEN_COLORMAP":"",e.sheenRoughnessMap?"#define USE_SHEEN_ROUGHNESSMAP":"",e.mapUv?"#define MAP_UV "+e.mapUv:"",e.alphaMapUv?"#define ALPHAMAP_UV "+e.alphaMapUv:"",e.lightMapUv?"#define LIGHTMAP_UV "+e.lightMapUv:"",e.aoMapUv?"#define AOMAP_UV "+e.aoMapUv:"",e.emissiveMapUv?"#define EMISSIVEMAP_UV "+e.emissiveMapUv:"",e.bumpMapUv?"#define BUMPMAP_UV "+e.bumpMapUv:"",e.normalMapUv?"#define NORMALMAP_UV "+e.normalMapUv:"",e.displacementMapUv?"#define DISPLACEMENTMAP_UV "+e.displacementMapUv:"",e.metalnessMapUv?"#define METALNESSMAP_UV "+e.metalnessMapUv:"",e.roughnessMapUv?"#define ROUGHNESSMAP_UV "+e.roughnessMapUv:"",e.anisotropyMapUv?"#define ANISOTROPYMAP_UV "+e.anisotropyMapUv:"",e.clearcoatMapUv?"#define CLEARCOATMAP_UV "+e.clearcoatMapUv:"",e.clearcoatNormalMapUv?"#define CLEARCOAT_NORMALMAP_UV "+e.clearcoatNormalMapUv:"",e.clearcoatRoughnessMapUv?"#define CLEARCOAT_ROUGHNESSMAP_UV "+e.clearcoatRoughnessMapUv:"",e.diffuseRoughnessMapUv?"#define DIFFUSE_ROUGHNESSMAP_UV "+e.diffuseRoughnessMapUv:"",e.iridescenceMapUv?"#define IRIDESCENCEMAP_UV "+e.iridescenceMapUv:"",e.iridescenceThicknessMapUv?"#define IRIDESCENCE_THICKNESSMAP_UV "+e.iridescenceThicknessMapUv:"",e.sheenColorMapUv?"#define SHEEN_COLORMAP_UV "+e.sheenColorMapUv:"",e.sheenRoughnessMapUv?"#define SHEEN_ROUGHNESSMAP_UV "+e.sheenRoughnessMapUv:"",e.specularMapUv?"#define SPECULARMAP_UV "+e.specularMapUv:"",e.specularColorMapUv?"#define SPECULAR_COLORMAP_UV "+e.specularColorMapUv:"",e.specularIntensityMapUv?"#define SPECULAR_INTENSITYMAP_UV "+e.specularIntensityMapUv:"",e.transmissionMapUv?"#define TRANSMISSIONMAP_UV "+e.transmissionMapUv:"",e.thicknessMapUv?"#define THICKNESSMAP_UV "+e.thicknessMapUv:"",e.vertexTangents&&e.flatShading===!1?"#define USE_TANGENT":"",e.vertexNormals?"#define HAS_NORMAL":"",e.vertexColors?"#define USE_COLOR":"",e.vertexAlphas?"#define USE_COLOR_ALPHA":"",e.vertexUv1s?"#define USE_UV1":"",e.vertexUv2s?"#define USE_UV2":"",e.vertexUv3s?"#define USE_UV3":"",e.pointsUvs?"#define USE_POINTS_UV":"",e.flatShading?"#define FLAT_SHADED":"",e.skinning?"#define USE_SKINNING":"",e.morphTargets?"#define USE_MORPHTARGETS":"",e.morphNormals&&e.flatShading===!1?"#define USE_MORPHNORMALS":"",e.morphColors?"#define USE_MORPHCOLORS":"",e.morphTargetsCount>0?"#define MORPHTARGETS_TEXTURE_STRIDE "+e.morphTextureStride:"",e.morphTargetsCount>0?"#define MORPHTARGETS_COUNT "+e.morphTargetsCount:"",e.doubleSided?"#define DOUBLE_SIDED":"",e.flipSided?"#define FLIP_SIDED":"",e.shadowMapEnabled?"#define USE_SHADOWMAP":"",e.shadowMapEnabled?"#define "+c:"",e.sizeAttenuation?"#define USE_SIZEATTENUATION":"",e.numLightProbes>0?"#define USE_LIGHT_PROBES":"",e.logarithmicDepthBuffer?"#define USE_LOGARITHMIC_DEPTH_BUFFER":"",e.reversedDepthBuffer?"#define USE_REVERSED_DEPTH_BUFFER":"","uniform mat4 modelMatrix;","uniform mat4 modelViewMatrix;","uniform mat4 projectionMatrix;","uniform mat4 viewMatrix;","uniform mat3 normalMatrix;","uniform vec3 cameraPosition;","uniform bool isOrthographic;","#ifdef USE_INSTANCING","	attribute mat4 instanceMatrix;","#endif","#ifdef USE_INSTANCING_COLOR","	attribute vec3 instanceColor;","#endif","#ifdef USE_INSTANCING_MORPH","	uniform sampler2D morphTexture;","#endif","attribute vec3 position;","attribute vec3 normal;","attribute vec2 uv;","#ifdef USE_UV1","	attribute vec2 uv1;","#endif","#ifdef USE_UV2","	attribute vec2 uv2;","#endif","#ifdef USE_UV3","	attribute vec2 uv3;","#endif","#ifdef USE_TANGENT","	attribute vec4 tangent;","#endif","#if defined( USE_COLOR_ALPHA )","	attribute vec4 color;","#elif defined( USE_COLOR )","	attribute vec3 color;","#endif","#ifdef USE_SKINNING","	attribute vec4 skinIndex;","	attribute vec4 skinWeight;","#endif",`
+`].filter(pl).join(`
+`),m=[vg(e),"#define SHADER_TYPE "+e.shaderType,"#define SHADER_NAME "+e.shaderName,f,e.useFog&&e.fog?"#define USE_FOG":"",e.useFog&&e.fogExp2?"#define FOG_EXP2":"",e.alphaToCoverage?"#define ALPHA_TO_COVERAGE":"",e.map?"#define USE_MAP":"",e.matcap?"#define USE_MATCAP":"",e.envMap?"#define USE_ENVMAP":"",e.envMap?"#define "+l:"",e.envMap?"#define "+u:"",e.envMap?"#define "+h:"",e.envMapPMREM?"#define ENVMAP_MAX_LOD "+e.envMapMaxLod+".0":"",e.envMapPMREM?"#define ENVMAP_SIZE "+e.envMapSize+".0":"",e.lightMap?"#define USE_LIGHTMAP":"",e.aoMap?"#define USE_AOMAP":"",e.bumpMap?"#define USE_BUMPMAP":"",e.normalMap?"#define USE_NORMALMAP":"",e.normalMapObjectSpace?"#define USE_NORMALMAP_OBJECTSPACE":"",e.normalMapTangentSpace?"#define USE_NORMALMAP_TANGENTSPACE":"",e.packedNormalMap?"#define USE_PACKED_NORMALMAP":"",e.emissiveMap?"#define USE_EMISSIVEMAP":"",e.anisotropy?"#define USE_ANISOTROPY":"",e.anisotropyMap?"#define USE_ANISOTROPYMAP":"",e.clearcoat?"#define USE_CLEARCOAT":"",e.clearcoatMap?"#define USE_CLEARCOATMAP":"",e.clearcoatRoughnessMap?"#define USE_CLEARCOAT_ROUGHNESSMAP":"",e.clearcoatNormalMap?"#define USE_CLEARCOAT_NORMALMAP":"",e.diffuseRoughness?"#define USE_DIFFUSE_ROUGHNESS":"",e.diffuseRoughnessMap?"#define USE_DIFFUSE_ROUGHNESSMAP":"",e.dispersion?"#define USE_DISPERSION":"",e.retroreflection?"#define USE_RETROREFLECTION":"",e.iridescence?"#define USE_IRIDESCENCE":"",e.iridescenceMap?"#define USE_IRIDESCENCEMAP":"",e.iridescenceThicknessMap?"#define USE_IRIDESCENCE_THICKNESSMAP":"",e.specularMap?"#define USE_SPECULARMAP":"",e.specularColorMap?"#define USE_SPECULAR_COLORMAP":"",e.specularIntensityMap?"#define USE_SPECULAR_INTENSITYMAP":"",e.roughnessMap?"#define USE_ROUGHNESSMAP":"",e.metalnessMap?"#define USE_METALNESSMAP":"",e.alphaMap?"#define USE_ALPHAMAP":"",e.alphaTest?"#define USE_ALPHATEST":"",e.alphaHash?"#define USE_ALPHAHASH":"",e.sheen?"#define USE_SHEEN":"",e.sheenColorMap?"#define USE_SHEEN_COLORMAP":"",e.sheenRoughnessMap?"#define USE_SHEEN_ROUGHNESSMAP":"",e.transmission?"#define USE_TRANSMISSION":"",e.transmissionMap?"#define USE_TRANSMISSIONMAP":"",e.thicknessMap?"#define USE_THICKNESSMAP":"",e.vertexTangents&&e.flatShading===!1?"#define USE_TANGENT":"",e.vertexColors||e.instancingColor?"#define USE_COLOR":"",e.vertexAlphas||e.batchingColor?"#define USE_COLOR_ALPHA":"",e.vertexUv1s?"#define USE_UV1":"",e.vertexUv2s?"#define USE_UV2":"",e.vertexUv3s?"#define USE_UV3":"",e.pointsUvs?"#define USE_POINTS_UV":"",e.gradientMap?"#define USE_GRADIENTMAP":"",e.flatShading?"#define FLAT_SHADED":"",e.doubleSided?"#define DOUBLE_SIDED":"",e.flipSided?"#define FLIP_SIDED":"",e.shadowMapEnabled?"#define USE_SHADOWMAP":"",e.shadowMapEnabled?"#define "+c:"",e.premultipliedAlpha?"#define PREMULTIPLIED_ALPHA":"",e.numLightProbes>0?"#define USE_LIGHT_PROBES":"",e.decodeVideoTexture?"#define DECODE_VIDEO_TEXTURE":"",e.decodeVideoTextureEmissive?"#define DECODE_VIDEO_TEXTURE_EMISSIVE":"",e.logarithmicDepthBuffer?"#define USE_LOGARITHMIC_DEPTH_BUFFER":"",e.reversedDepthBuffer?"#define USE_REVERSED_DEPTH_BUFFER":"","uniform mat4 viewMatrix;","uniform vec3 cameraPosition;","uniform bool isOrthographic;",e.toneMapping!==hs?"#define TONE_MAPPING":"",e.toneMapping!==hs?me.tonemapping_pars_fragment:"",e.toneMapping!==hs?Fb("toneMapping",e.toneMapping):"",e.dithering?"#define DITHERING":"",e.opaque?"#define OPAQUE":"",me.colorspace_pars_fragment,Ub("linearToOutputTexel",e.outputColorSpace),Bb(),e.useDepthPacking?"#define DEPTH_PACKING "+e.depthPacking:"",`
+`].filter(pl).join(`
+`)),o=sf(o),o=_g(o,e),o=xg(o,e),a=sf(a),a=_g(a,e),a=xg(a,e),o=yg(o),a=yg(a),e.isRawShaderMaterial!==!0&&(g=`#version 300 es
+`,_=[d,"#define attribute in","#define varying out","#define texture2D texture"].join(`
+`)+`
+`+_,m=["#define varying in",e.glslVersion===Hd?"":"layout(location = 0) out highp vec4 pc_fragColor;",e.glslVersion===Hd?"":"#define gl_FragColor pc_fragColor","#define gl_FragDepthEXT gl_FragDepth","#define texture2D texture","#define textureCube texture","#define texture2DProj textureProj","#define texture2DLodEXT textureLod","#define texture2DProjLodEXT textureProjLod","#define textureCubeLodEXT textureLod","#define texture2DGradEXT textureGrad","#define texture2DProjGradEXT textureProjGrad","#define textureCubeGradEXT textureGrad"].join(`
+`)+`
+`+m);let x=g+_+o,E=g+m+a,S=pg(s,s.VERTEX_SHADER,x),M=pg(s,s.FRAGMENT_SHADER,E);s.attachShader(p,S),s.attachShader(p,M),e.index0AttributeName!==void 0?s.bindAttribLocation(p,0,e.index0AttributeName):e.hasPositionAttribute===!0&&s.bindAttribLocation(p,0,"position"),s.linkProgram(p);function T(I){if(i.debug.checkShaderErrors){let L=s.getProgramInfoLog(p)||"",B=s.getShaderInfoLog(S)||"",W=s.getShaderInfoLog(M)||"",P=L.trim(),k=B.trim(),Y=W.trim(),G=!0,at=!0;if(s.getProgramParameter(p,s.LINK_STATUS)===!1)if(G=!1,typeof i.debug.onShaderError=="function")i.debug.onShaderError(s,p,S,M);else{let $=gg(s,S,"vertex"),Q=gg(s,M,"fragment");te("WebGLProgram: Shader Error "+s.getError()+" - VALIDATE_STATUS "+s.getProgramParameter(p,s.VALIDATE_STATUS)+`
+
+Material Name: `+I.name+`
+Material Type: `+I.type+`
+
+Program Info Log: `+P+`
+`+$+`
+`+Q)}else P!==""?jt("WebGLProgram: Program Info Log:",P):(k===""||Y==="")&&(at=!1);at&&(I.diagnostics={runnable:G,programLog:P,vertexShader:{log:k,prefix:_},fragmentShader:{log:Y,prefix:m}})}s.deleteShader(S),s.deleteShader(M),y=new Go(s,p),b=Vb(s,p)}let y;this.getUniforms=function(){return y===void 0&&T(this),y};let b;this.getAttributes=function(){return b===void 0&&T(this),b};let U=e.rendererExtensionParallelShaderCompile===!1;return this.isReady=function(){return U===!1&&(U=s.getProgramParameter(p,Ib)),U},this.destroy=function(){n.releaseStatesOfProgram(this),s.deleteProgram(p),this.program=void 0},this.type=e.shaderType,this.name=e.shaderName,this.id=Lb++,this.cacheKey=t,this.usedTimes=1,this.program=p,this.vertexShader=S,this.fragmentShader=M,this}var Qb=0,rf=class{constructor(){this.shaderCache=new Map,this.materialCache=new Map}update(t,e,n){let s=this._getShaderCacheForMaterial(t);return s.has(e)===!1&&(s.add(e),e.usedTimes++),s.has(n)===!1&&(s.add(n),n.usedTimes++),this}remove(t){let e=this.materialCache.get(t);for(let n of e)n.usedTimes--,n.usedTimes===0&&this.shaderCache.delete(n.code);return this.materialCache.delete(t),this}getVertexShaderStage(t){return this._getShaderStage(t.vertexShader)}getFragmentShaderStage(t){return this._getShaderStage(t.fragmentShader)}dispose(){this.shaderCache.clear(),this.materialCache.clear()}_getShaderCacheForMaterial(t){let e=this.materialCache,n=e.get(t);return n===void 0&&(n=new Set,e.set(t,n)),n}_getShaderStage(t){let e=this.shaderCache,n=e.get(t);return n===void 0&&(n=new of(t),e.set(t,n)),n}},of=class{constructor(t){this.id=Qb++,this.code=t,this.usedTimes=0}};function tw(i){return i===dr||i===ll||i===cl}function ew(i,t,e,n,s,r){let o=new Ro,a=new rf,c=new Set,l=[],u=new Map,h=n.logarithmicDepthBuffer,d={MeshDepthMaterial:"depth",MeshDistanceMaterial:"distance",MeshNormalMaterial:"normal",MeshBasicMaterial:"basic",MeshLambertMaterial:"lambert",MeshPhongMaterial:"phong",MeshToonMaterial:"toon",MeshStandardMaterial:"physical",MeshPhysicalMaterial:"physical",MeshMatcapMaterial:"matcap",LineBasicMaterial:"basic",LineDashedMaterial:"dashed",PointsMaterial:"points",ShadowMaterial:"shadow",SpriteMaterial:"sprite"};function f(y){return c.add(y),y===0?"uv":`uv${y}`}function p(y,b,U,I,L,B){let W=I.fog,P=L.geometry,k=y.isMeshStandardMaterial||y.isMeshLambertMaterial||y.isMeshPhongMaterial?I.environment:null,Y=y.isMeshStandardMaterial||y.isMeshLambertMaterial&&!y.envMap||y.isMeshPhongMaterial&&!y.envMap,G=t.get(y.envMap||k,Y),at=d[y.type],$=n.precision;y.precision!==null&&($=n.getMaxPrecision(y.precision),$!==y.precision&&jt("WebGLProgram.getParameters:",y.precision,"not supported, using",$,"instead."));let Q=P.morphAttributes.position||P.morphAttributes.normal||P.morphAttributes.color,it=Q!==void 0?Q.length:0,ut=0;P.morphAttributes.position!==void 0&&(ut=1),P.morphAttributes.normal!==void 0&&(ut=2),P.morphAttributes.color!==void 0&&(ut=3);let dt,tt,mt,xt;if(at){let Pt=ui[at];dt=Pt.vertexShader,tt=Pt.fragmentShader}else{dt=y.vertexShader,tt=y.fragmentShader;let Pt=a.getVertexShaderStage(y),ue=a.getFragmentShaderStage(y);a.update(y,Pt,ue),mt=Pt.id,xt=ue.id}let Rt=i.getRenderTarget(),bt=i.state.buffers.depth.getReversed(),$t=L.isInstancedMesh===!0,le=L.isBatchedMesh===!0,Xt=!!y.map,ge=!!y.matcap,de=!!G,oe=de&&G.isPMREMTexture===!0,Qe=!!y.aoMap,We=!!y.lightMap,pn=!!y.bumpMap&&y.wireframe===!1,Be=!!y.normalMap,Nn=!!y.displacementMap,be=!!y.emissiveMap,wn=!!y.metalnessMap,on=!!y.roughnessMap,mn=y.anisotropy>0,V=y.clearcoat>0,It=y.diffuseRoughness>0,Kt=y.dispersion>0,ce=y.retroreflectivity>0,wt=y.iridescence>0,ze=y.sheen>0,Wt=y.transmission>0,Jt=mn&&!!y.anisotropyMap,D=V&&!!y.clearcoatMap,w=V&&!!y.clearcoatNormalMap,q=V&&!!y.clearcoatRoughnessMap,ht=It&&!!y.diffuseRoughnessMap,ot=wt&&!!y.iridescenceMap,_t=wt&&!!y.iridescenceThicknessMap,yt=ze&&!!y.sheenColorMap,et=ze&&!!y.sheenRoughnessMap,st=!!y.specularMap,pt=!!y.specularColorMap,z=!!y.specularIntensityMap,rt=Wt&&!!y.transmissionMap,nt=Wt&&!!y.thicknessMap,Tt=!!y.gradientMap,gt=!!y.alphaMap,St=y.alphaTest>0,Yt=!!y.alphaHash,ee=!!y.extensions,ct=hs;y.toneMapped&&(Rt===null||Rt.isXRRenderTarget===!0)&&(ct=i.toneMapping);let zt=oe?G.isCompressedCubeTexture?G.image[0].mipmaps:G.mipmaps:null,ne={shaderID:at,shaderType:y.type,shaderName:y.name,vertexShader:dt,fragmentShader:tt,defines:y.defines,customVertexShaderID:mt,customFragmentShaderID:xt,isRawShaderMaterial:y.isRawShaderMaterial===!0,glslVersion:y.glslVersion,precision:$,batching:le,batchingColor:le&&L._colorsTexture!==null,instancing:$t,instancingColor:$t&&L.instanceColor!==null,instancingMorph:$t&&L.morphTexture!==null,outputColorSpace:Rt===null?i.outputColorSpace:Rt.isXRRenderTarget===!0?Rt.texture.colorSpace:Se.workingColorSpace,alphaToCoverage:!!y.alphaToCoverage,map:Xt,matcap:ge,envMap:de,envMapMode:de&&G.mapping,envMapPMREM:oe,envMapMaxLod:oe?zt.length-1:null,envMapSize:oe?zt[0].width:null,aoMap:Qe,lightMap:We,bumpMap:pn,normalMap:Be,displacementMap:Nn,emissiveMap:be,normalMapObjectSpace:Be&&y.normalMapType===Hm,normalMapTangentSpace:Be&&y.normalMapType===hl,packedNormalMap:Be&&y.normalMapType===hl&&tw(y.normalMap.format),metalnessMap:wn,roughnessMap:on,anisotropy:mn,anisotropyMap:Jt,clearcoat:V,clearcoatMap:D,clearcoatNormalMap:w,clearcoatRoughnessMap:q,diffuseRoughness:It,diffuseRoughnessMap:ht,dispersion:Kt,retroreflection:ce,iridescence:wt,iridescenceMap:ot,iridescenceThicknessMap:_t,sheen:ze,sheenColorMap:yt,sheenRoughnessMap:et,specularMap:st,specularColorMap:pt,specularIntensityMap:z,transmission:Wt,transmissionMap:rt,thicknessMap:nt,gradientMap:Tt,opaque:y.transparent===!1&&y.blending===ko&&y.alphaToCoverage===!1,alphaMap:gt,alphaTest:St,alphaHash:Yt,combine:y.combine,mapUv:Xt&&f(y.map.channel),aoMapUv:Qe&&f(y.aoMap.channel),lightMapUv:We&&f(y.lightMap.channel),bumpMapUv:pn&&f(y.bumpMap.channel),normalMapUv:Be&&f(y.normalMap.channel),displacementMapUv:Nn&&f(y.displacementMap.channel),emissiveMapUv:be&&f(y.emissiveMap.channel),metalnessMapUv:wn&&f(y.metalnessMap.channel),roughnessMapUv:on&&f(y.roughnessMap.channel),anisotropyMapUv:Jt&&f(y.anisotropyMap.channel),clearcoatMapUv:D&&f(y.clearcoatMap.channel),clearcoatNormalMapUv:w&&f(y.clearcoatNormalMap.channel),clearcoatRoughnessMapUv:q&&f(y.clearcoatRoughnessMap.channel),diffuseRoughnessMapUv:ht&&f(y.diffuseRoughnessMap.channel),iridescenceMapUv:ot&&f(y.iridescenceMap.channel),iridescenceThicknessMapUv:_t&&f(y.iridescenceThicknessMap.channel),sheenColorMapUv:yt&&f(y.sheenColorMap.channel),sheenRoughnessMapUv:et&&f(y.sheenRoughnessMap.channel),specularMapUv:st&&f(y.specularMap.channel),specularColorMapUv:pt&&f(y.specularColorMap.channel),specularIntensityMapUv:z&&f(y.specularIntensityMap.channel),transmissionMapUv:rt&&f(y.transmissionMap.channel),thicknessMapUv:nt&&f(y.thicknessMap.channel),alphaMapUv:gt&&f(y.alphaMap.channel),vertexTangents:!!P.attributes.tangent&&(Be||mn),vertexNormals:!!P.attributes.normal,vertexColors:y.vertexColors,vertexAlphas:y.vertexColors===!0&&!!P.attributes.color&&P.attributes.color.itemSize===4,pointsUvs:L.isPoints===!0&&!!P.attributes.uv&&(Xt||gt),fog:!!W,useFog:y.fog===!0,fogExp2:!!W&&W.isFogExp2,flatShading:y.wireframe===!1&&(y.flatShading===!0||P.attributes.normal===void 0&&Be===!1&&(y.isMeshLambertMaterial||y.isMeshPhongMaterial||y.isMeshStandardMaterial||y.isMeshPhysicalMaterial)),sizeAttenuation:y.sizeAttenuation===!0,logarithmicDepthBuffer:h,reversedDepthBuffer:bt,skinning:L.isSkinnedMesh===!0,hasPositionAttribute:P.attributes.position!==void 0,morphTargets:P.morphAttributes.position!==void 0,morphNormals:P.morphAttributes.normal!==void 0,morphColors:P.morphAttributes.color!==void 0,morphTargetsCount:it,morphTextureStride:ut,numSunLights:b.sun.length,numDirLights:b.directional.length,numPointLights:b.point.length,numSpotLights:b.spot.length,numSpotLightMaps:b.spotLightMap.length,numRectAreaLights:b.rectArea.length,numHemiLights:b.hemi.length,numSunLightShadows:b.sunShadowMap.length,numDirLightShadows:b.directionalShadowMap.length,numPointLightShadows:b.pointShadowMap.length,numSpotLightShadows:b.spotShadowMap.length,numSpotLightShadowsWithMaps:b.numSpotLightShadowsWithMaps,numLightProbes:b.numLightProbes,numLightProbeGrids:B.filter(Pt=>Pt.texture!==null).length,numClippingPlanes:r.numPlanes,numClipIntersection:r.numIntersection,dithering:y.dithering,shadowMapEnabled:i.shadowMap.enabled&&U.length>0,shadowMapType:i.shadowMap.type,toneMapping:ct,decodeVideoTexture:Xt&&y.map.isVideoTexture===!0&&Se.getTransfer(y.map.colorSpace)===Pe,decodeVideoTextureEmissive:be&&y.emissiveMap.isVideoTexture===!0&&Se.getTransfer(y.emissiveMap.colorSpace)===Pe,premultipliedAlpha:y.premultipliedAlpha,doubleSided:y.side===Sn,flipSided:y.side===Xn,useDepthPacking:y.depthPacking>=0,depthPacking:y.depthPacking||0,index0AttributeName:y.index0AttributeName,extensionClipCullDistance:ee&&y.extensions.clipCullDistance===!0&&e.has("WEBGL_clip_cull_distance"),extensionMultiDraw:(ee&&y.extensions.multiDraw===!0||le)&&e.has("WEBGL_multi_draw"),rendererExtensionParallelShaderCompile:e.has("KHR_parallel_shader_compile"),customProgramCacheKey:y.customProgramCacheKey()};return ne.vertexUv1s=c.has(1),ne.vertexUv2s=c.has(2),ne.vertexUv3s=c.has(3),c.clear(),ne}function _(y){let b=[];if(y.shaderID?b.push(y.shaderID):(b.push(y.customVertexShaderID),b.push(y.customFragmentShaderID)),y.defines!==void 0)for(let U in y.defines)b.push(U),b.push(y.defines[U]);return y.isRawShaderMaterial===!1&&(m(b,y),g(b,y),b.push(i.outputColorSpace)),b.push(y.customProgramCacheKey),b.join()}function m(y,b){y.push(b.precision),y.push(b.outputColorSpace),y.push(b.envMapMode),y.push(b.envMapPMREM),y.push(b.envMapMaxLod),y.push(b.envMapSize),y.push(b.mapUv),y.push(b.alphaMapUv),y.push(b.lightMapUv),y.push(b.aoMapUv),y.push(b.bumpMapUv),y.push(b.normalMapUv),y.push(b.displacementMapUv),y.push(b.emissiveMapUv),y.push(b.metalnessMapUv),y.push(b.roughnessMapUv),y.push(b.anisotropyMapUv),y.push(b.clearcoatMapUv),y.push(b.clearcoatNormalMapUv),y.push(b.clearcoatRoughnessMapUv),y.push(b.diffuseRoughnessMapUv),y.push(b.iridescenceMapUv),y.push(b.iridescenceThicknessMapUv),y.push(b.sheenColorMapUv),y.push(b.sheenRoughnessMapUv),y.push(b.specularMapUv),y.push(b.specularColorMapUv),y.push(b.specularIntensityMapUv),y.push(b.transmissionMapUv),y.push(b.thicknessMapUv),y.push(b.combine),y.push(b.fogExp2),y.push(b.sizeAttenuation),y.push(b.morphTargetsCount),y.push(b.numSunLights),y.push(b.numDirLights),y.push(b.numPointLights),y.push(b.numSpotLights),y.push(b.numSpotLightMaps),y.push(b.numHemiLights),y.push(b.numRectAreaLights),y.push(b.numSunLightShadows),y.push(b.numDirLightShadows),y.push(b.numPointLightShadows),y.push(b.numSpotLightShadows),y.push(b.numSpotLightShadowsWithMaps),y.push(b.numLightProbes),y.push(b.numLightProbeGrids),y.push(b.shadowMapType),y.push(b.toneMapping),y.push(b.numClippingPlanes),y.push(b.numClipIntersection),y.push(b.depthPacking)}function g(y,b){o.disableAll(),b.instancing&&o.enable(0),b.instancingColor&&o.enable(1),b.instancingMorph&&o.enable(2),b.matcap&&o.enable(3),b.envMap&&o.enable(4),b.normalMapObjectSpace&&o.enable(5),b.normalMapTangentSpace&&o.enable(6),b.clearcoat&&o.enable(7),b.iridescence&&o.enable(8),b.alphaTest&&o.enable(9),b.vertexColors&&o.enable(10),b.vertexAlphas&&o.enable(11),b.vertexUv1s&&o.enable(12),b.vertexUv2s&&o.enable(13),b.vertexUv3s&&o.enable(14),b.vertexTangents&&o.enable(15),b.anisotropy&&o.enable(16),b.alphaHash&&o.enable(17),b.batching&&o.enable(18),b.dispersion&&o.enable(19),b.retroreflection&&o.enable(24),b.diffuseRoughness&&o.enable(25),b.batchingColor&&o.enable(20),b.gradientMap&&o.enable(21),b.packedNormalMap&&o.enable(22),b.vertexNormals&&o.enable(23),y.push(o.mask),o.disableAll(),b.fog&&o.enable(0),b.useFog&&o.enable(1),b.flatShading&&o.enable(2),b.logarithmicDepthBuffer&&o.enable(3),b.reversedDepthBuffer&&o.enable(4),b.skinning&&o.enable(5),b.morphTargets&&o.enable(6),b.morphNormals&&o.enable(7),b.morphColors&&o.enable(8),b.premultipliedAlpha&&o.enable(9),b.shadowMapEnabled&&o.enable(10),b.doubleSided&&o.enable(11),b.flipSided&&o.enable(12),b.useDepthPacking&&o.enable(13),b.dithering&&o.enable(14),b.transmission&&o.enable(15),b.sheen&&o.enable(16),b.opaque&&o.enable(17),b.pointsUvs&&o.enable(18),b.decodeVideoTexture&&o.enable(19),b.decodeVideoTextureEmissive&&o.enable(20),b.alphaToCoverage&&o.enable(21),b.numLightProbeGrids>0&&o.enable(22),b.hasPositionAttribute&&o.enable(23),y.push(o.mask)}function x(y){let b=d[y.type],U;if(b){let I=ui[b];U=dl.clone(I.uniforms)}else U=y.uniforms;return U}function E(y,b){let U=u.get(b);return U!==void 0?++U.usedTimes:(U=new Kb(i,b,y,s),l.push(U),u.set(b,U)),U}function S(y){if(--y.usedTimes===0){let b=l.indexOf(y);l[b]=l[l.length-1],l.pop(),u.delete(y.cacheKey),y.destroy()}}function M(y){a.remove(y)}function T(){a.dispose()}return{getParameters:p,getProgramCacheKey:_,getUniforms:x,acquireProgram:E,releaseProgram:S,releaseShaderCache:M,programs:l,dispose:T}}function nw(){let i=new WeakMap;function t(o){return i.has(o)}function e(o){let a=i.get(o);return a===void 0&&(a={},i.set(o,a)),a}function n(o){i.delete(o)}function s(o,a,c){i.get(o)[a]=c}function r(){i=new WeakMap}return{has:t,get:e,remove:n,update:s,dispose:r}}function iw(i,t){return i.groupOrder!==t.groupOrder?i.groupOrder-t.groupOrder:i.renderOrder!==t.renderOrder?i.renderOrder-t.renderOrder:i.material.id!==t.material.id?i.material.id-t.material.id:i.materialVariant!==t.materialVariant?i.materialVariant-t.materialVariant:i.z!==t.z?i.z-t.z:i.id-t.id}function Sg(i,t){return i.groupOrder!==t.groupOrder?i.groupOrder-t.groupOrder:i.renderOrder!==t.renderOrder?i.renderOrder-t.renderOrder:i.z!==t.z?t.z-i.z:i.id-t.id}function Mg(){let i=[],t=0,e=[],n=[],s=[];function r(){t=0,e.length=0,n.length=0,s.length=0}function o(d){let f=0;return d.isInstancedMesh&&(f+=2),d.isSkinnedMesh&&(f+=1),f}function a(d,f,p,_,m,g){let x=i[t];return x===void 0?(x={id:d.id,object:d,geometry:f,material:p,materialVariant:o(d),groupOrder:_,renderOrder:d.renderOrder,z:m,group:g},i[t]=x):(x.id=d.id,x.object=d,x.geometry=f,x.material=p,x.materialVariant=o(d),x.groupOrder=_,x.renderOrder=d.renderOrder,x.z=m,x.group=g),t++,x}function c(d,f,p,_,m,g,x){x.reversedDepth===!0&&(m=-m);let E=a(d,f,p,_,m,g);p.transmission>0?n.push(E):p.transparent===!0?s.push(E):e.push(E)}function l(d,f,p,_,m,g){let x=a(d,f,p,_,m,g);p.transmission>0?n.unshift(x):p.transparent===!0?s.unshift(x):e.unshift(x)}function u(d,f){e.length>1&&e.sort(d||iw),n.length>1&&n.sort(f||Sg),s.length>1&&s.sort(f||Sg)}function h(){for(let d=t,f=i.length;d<f;d++){let p=i[d];if(p.id===null)break;p.id=null,p.object=null,p.geometry=null,p.material=null,p.group=null}}return{opaque:e,transmissive:n,transparent:s,init:r,push:c,unshift:l,finish:h,sort:u}}function sw(){let i=new WeakMap;function t(n,s){let r=i.get(n),o;return r===void 0?(o=new Mg,i.set(n,[o])):s>=r.length?(o=new Mg,r.push(o)):o=r[s],o}function e(){i=new WeakMap}return{get:t,dispose:e}}function rw(){let i={};return{get:function(t){if(i[t.id]!==void 0)return i[t.id];let e;switch(t.type){case"SunLight":case"DirectionalLight":e={direction:new R,color:new Ht};break;case"SpotLight":e={position:new R,direction:new R,color:new Ht,distance:0,coneCos:0,penumbraCos:0,decay:0};break;case"PointLight":e={position:new R,color:new Ht,distance:0,decay:0};break;case"HemisphereLight":e={direction:new R,skyColor:new Ht,groundColor:new Ht};break;case"RectAreaLight":e={color:new Ht,position:new R,halfWidth:new R,halfHeight:new R};break}return i[t.id]=e,e}}}function ow(){let i={};return{get:function(t){if(i[t.id]!==void 0)return i[t.id];let e;switch(t.type){case"SunLight":case"DirectionalLight":e={shadowIntensity:1,shadowBias:0,shadowNormalBias:0,shadowRadius:1,shadowMapSize:new kt};break;case"SpotLight":e={shadowIntensity:1,shadowBias:0,shadowNormalBias:0,shadowRadius:1,shadowMapSize:new kt};break;case"PointLight":e={shadowIntensity:1,shadowBias:0,shadowNormalBias:0,shadowRadius:1,shadowMapSize:new kt,shadowCameraNear:1,shadowCameraFar:1e3};break}return i[t.id]=e,e}}}var aw=0;function lw(i,t){return(t.castShadow?2:0)-(i.castShadow?2:0)+(t.map?1:0)-(i.map?1:0)}function cw(i){let t=new rw,e=ow(),n={version:0,hash:{sunLength:-1,directionalLength:-1,pointLength:-1,spotLength:-1,rectAreaLength:-1,hemiLength:-1,numSunShadows:-1,numDirectionalShadows:-1,numPointShadows:-1,numSpotShadows:-1,numSpotMaps:-1,numLightProbes:-1},ambient:[0,0,0],probe:[],sun:[],sunShadow:[],sunShadowMap:[],sunShadowMatrix:[],sunShadowCascade:[],directional:[],directionalShadow:[],directionalShadowMap:[],directionalShadowMatrix:[],spot:[],spotLightMap:[],spotShadow:[],spotShadowMap:[],spotLightMatrix:[],rectArea:[],rectAreaLTC1:null,rectAreaLTC2:null,point:[],pointShadow:[],pointShadowMap:[],pointShadowMatrix:[],hemi:[],numSpotLightShadowsWithMaps:0,numLightProbes:0};for(let l=0;l<9;l++)n.probe.push(new R);let s=new R,r=new qt,o=new qt;function a(l){let u=0,h=0,d=0;for(let B=0;B<9;B++)n.probe[B].set(0,0,0);let f=0,p=0,_=0,m=0,g=0,x=0,E=0,S=0,M=0,T=0,y=0,b=0,U=0,I=0;l.sort(lw);for(let B=0,W=l.length;B<W;B++){let P=l[B],k=P.color,Y=P.intensity,G=P.distance,at=null;if(P.shadow&&P.shadow.map&&(P.shadow.map.texture.format===dr?at=P.shadow.map.texture:at=P.shadow.map.depthTexture||P.shadow.map.texture),P.isAmbientLight)u+=k.r*Y,h+=k.g*Y,d+=k.b*Y;else if(P.isLightProbe){for(let $=0;$<9;$++)n.probe[$].addScaledVector(P.sh.coefficients[$],Y);I++}else if(P.isSunLight){let $=t.get(P);if($.color.copy(P.color).multiplyScalar(P.intensity),P.castShadow){let Q=P.shadow,it=e.get(P);it.shadowIntensity=Q.intensity,it.shadowBias=Q.bias,it.shadowNormalBias=Q.normalBias,it.shadowRadius=Q.radius,it.shadowMapSize.copy(Q.mapSize).multiply(Q.getFrameExtents()),n.sunShadow[p]=it,n.sunShadowMap[p]=at;let ut=Q.getViewportCount();for(let dt=0;dt<ut;dt++)n.sunShadowMatrix[_+dt]=Q.getMatrix(dt),n.sunShadowCascade[_+dt]=Q._cascadeData[dt];_+=ut,p++}n.sun[f]=$,f++}else if(P.isDirectionalLight){let $=t.get(P);if($.color.copy(P.color).multiplyScalar(P.intensity),P.castShadow){let Q=P.shadow,it=e.get(P);it.shadowIntensity=Q.intensity,it.shadowBias=Q.bias,it.shadowNormalBias=Q.normalBias,it.shadowRadius=Q.radius,it.shadowMapSize=Q.mapSize,n.directionalShadow[m]=it,n.directionalShadowMap[m]=at,n.directionalShadowMatrix[m]=P.shadow.matrix,M++}n.directional[m]=$,m++}else if(P.isSpotLight){let $=t.get(P);$.position.setFromMatrixPosition(P.matrixWorld),$.color.copy(k).multiplyScalar(Y),$.distance=G,$.coneCos=Math.cos(P.angle),$.penumbraCos=Math.cos(P.angle*(1-P.penumbra)),$.decay=P.decay,n.spot[x]=$;let Q=P.shadow;if(P.map&&(n.spotLightMap[b]=P.map,b++,Q.updateMatrices(P),P.castShadow&&U++),n.spotLightMatrix[x]=Q.matrix,P.castShadow){let it=e.get(P);it.shadowIntensity=Q.intensity,it.shadowBias=Q.bias,it.shadowNormalBias=Q.normalBias,it.shadowRadius=Q.radius,it.shadowMapSize=Q.mapSize,n.spotShadow[x]=it,n.spotShadowMap[x]=at,y++}x++}else if(P.isRectAreaLight){let $=t.get(P);$.color.copy(k).multiplyScalar(Y),$.halfWidth.set(P.width*.5,0,0),$.halfHeight.set(0,P.height*.5,0),n.rectArea[E]=$,E++}else if(P.isPointLight){let $=t.get(P);if($.color.copy(P.color).multiplyScalar(P.intensity),$.distance=P.distance,$.decay=P.decay,P.castShadow){let Q=P.shadow,it=e.get(P);it.shadowIntensity=Q.intensity,it.shadowBias=Q.bias,it.shadowNormalBias=Q.normalBias,it.shadowRadius=Q.radius,it.shadowMapSize=Q.mapSize,it.shadowCameraNear=Q.camera.near,it.shadowCameraFar=Q.camera.far,n.pointShadow[g]=it,n.pointShadowMap[g]=at,n.pointShadowMatrix[g]=P.shadow.matrix,T++}n.point[g]=$,g++}else if(P.isHemisphereLight){let $=t.get(P);$.skyColor.copy(P.color).multiplyScalar(Y),$.groundColor.copy(P.groundColor).multiplyScalar(Y),n.hemi[S]=$,S++}}E>0&&(i.has("OES_texture_float_linear")===!0?(n.rectAreaLTC1=Lt.LTC_FLOAT_1,n.rectAreaLTC2=Lt.LTC_FLOAT_2):(n.rectAreaLTC1=Lt.LTC_HALF_1,n.rectAreaLTC2=Lt.LTC_HALF_2)),n.ambient[0]=u,n.ambient[1]=h,n.ambient[2]=d;let L=n.hash;(L.sunLength!==f||L.directionalLength!==m||L.pointLength!==g||L.spotLength!==x||L.rectAreaLength!==E||L.hemiLength!==S||L.numSunShadows!==p||L.numDirectionalShadows!==M||L.numPointShadows!==T||L.numSpotShadows!==y||L.numSpotMaps!==b||L.numLightProbes!==I)&&(n.sun.length=f,n.directional.length=m,n.spot.length=x,n.rectArea.length=E,n.point.length=g,n.hemi.length=S,n.sunShadow.length=p,n.sunShadowMap.length=p,n.sunShadowMatrix.length=_,n.sunShadowCascade.length=_,n.directionalShadow.length=M,n.directionalShadowMap.length=M,n.directionalShadowMatrix.length=M,n.pointShadow.length=T,n.pointShadowMap.length=T,n.pointShadowMatrix.length=T,n.spotShadow.length=y,n.spotShadowMap.length=y,n.spotLightMatrix.length=y+b-U,n.spotLightMap.length=b,n.numSpotLightShadowsWithMaps=U,n.numLightProbes=I,L.sunLength=f,L.directionalLength=m,L.pointLength=g,L.spotLength=x,L.rectAreaLength=E,L.hemiLength=S,L.numSunShadows=p,L.numDirectionalShadows=M,L.numPointShadows=T,L.numSpotShadows=y,L.numSpotMaps=b,L.numLightProbes=I,n.version=aw++)}function c(l,u){let h=0,d=0,f=0,p=0,_=0,m=0,g=u.matrixWorldInverse;for(let x=0,E=l.length;x<E;x++){let S=l[x];if(S.isSunLight){let M=n.sun[h];M.direction.setFromMatrixPosition(S.matrixWorld),M.direction.transformDirection(g),h++}else if(S.isDirectionalLight){let M=n.directional[d];M.direction.setFromMatrixPosition(S.matrixWorld),s.setFromMatrixPosition(S.target.matrixWorld),M.direction.sub(s),M.direction.transformDirection(g),d++}else if(S.isSpotLight){let M=n.spot[p];M.position.setFromMatrixPosition(S.matrixWorld),M.position.applyMatrix4(g),M.direction.setFromMatrixPosition(S.matrixWorld),s.setFromMatrixPosition(S.target.matrixWorld),M.direction.sub(s),M.direction.transformDirection(g),p++}else if(S.isRectAreaLight){let M=n.rectArea[_];M.position.setFromMatrixPosition(S.matrixWorld),M.position.applyMatrix4(g),o.identity(),r.copy(S.matrixWorld),r.premultiply(g),o.extractRotation(r),M.halfWidth.set(S.width*.5,0,0),M.halfHeight.set(0,S.height*.5,0),M.halfWidth.applyMatrix4(o),M.halfHeight.applyMatrix4(o),_++}else if(S.isPointLight){let M=n.point[f];M.position.setFromMatrixPosition(S.matrixWorld),M.position.applyMatrix4(g),f++}else if(S.isHemisphereLight){let M=n.hemi[m];M.direction.setFromMatrixPosition(S.matrixWorld),M.direction.transformDirection(g),m++}}}return{setup:a,setupView:c,state:n}}function bg(i){let t=new cw(i),e=[],n=[],s=[];function r(h){u.camera=h,e.length=0,n.length=0,s.length=0}function o(h){h.isLightProbeGrid?s.push(h):e.push(h)}function a(h){n.push(h)}function c(){t.setup(e),s.sort((h,d)=>h.priority-d.priority||h.id-d.id)}function l(h){t.setupView(e,h)}let u={lightsArray:e,shadowsArray:n,lightProbeGridArray:s,camera:null,lights:t,transmissionRenderTarget:{},textureUnits:0};return{init:r,state:u,setupLights:c,setupLightsView:l,pushLight:o,pushShadow:a}}function hw(i){let t=new WeakMap;function e(s,r=0){let o=t.get(s),a;return o===void 0?(a=new bg(i),t.set(s,[a])):r>=o.length?(a=new bg(i),o.push(a)):a=o[r],a}function n(){t=new WeakMap}return{get:e,dispose:n}}var uw=`void main() {
+	gl_Position = vec4( position, 1.0 );
+}`,dw=`uniform sampler2D shadow_pass;
+uniform vec2 resolution;
+uniform float radius;
+void main() {
+	const float samples = float( VSM_SAMPLES );
+	float mean = 0.0;
+	float squared_mean = 0.0;
+	float uvStride = samples <= 1.0 ? 0.0 : 2.0 / ( samples - 1.0 );
+	float uvStart = samples <= 1.0 ? 0.0 : - 1.0;
+	for ( float i = 0.0; i < samples; i ++ ) {
+		float uvOffset = uvStart + i * uvStride;
+		#ifdef HORIZONTAL_PASS
+			vec2 distribution = texture2D( shadow_pass, ( gl_FragCoord.xy + vec2( uvOffset, 0.0 ) * radius ) / resolution ).rg;
+			mean += distribution.x;
+			squared_mean += distribution.y * distribution.y + distribution.x * distribution.x;
+		#else
+			float depth = texture2D( shadow_pass, ( gl_FragCoord.xy + vec2( 0.0, uvOffset ) * radius ) / resolution ).r;
+			mean += depth;
+			squared_mean += depth * depth;
+		#endif
+	}
+	mean = mean / samples;
+	squared_mean = squared_mean / samples;
+	float std_dev = sqrt( max( 0.0, squared_mean - mean * mean ) );
+	gl_FragColor = vec4( mean, std_dev, 0.0, 1.0 );
+}`,fw=[new R(1,0,0),new R(-1,0,0),new R(0,1,0),new R(0,-1,0),new R(0,0,1),new R(0,0,-1)],pw=[new R(0,-1,0),new R(0,-1,0),new R(0,0,1),new R(0,0,-1),new R(0,-1,0),new R(0,-1,0)],wg=new qt,fl=new R,Qd=new R;function mw(i,t,e){let n=new er,s=new kt,r=new kt,o=new Le,a=new Pc,c=new Ic,l={},u=e.maxTextureSize,h={[ur]:Xn,[Xn]:ur,[Sn]:Sn},d=new mi({defines:{VSM_SAMPLES:8},uniforms:{shadow_pass:{value:null},resolution:{value:new kt},radius:{value:4}},vertexShader:uw,fragmentShader:dw}),f=d.clone();f.defines.HORIZONTAL_PASS=1;let p=new pe;p.setAttribute("position",new Ie(new Float32Array([-1,-1,.5,3,-1,.5,-1,3,.5]),3));let _=new Mt(p,d),m=this;this.enabled=!1,this.autoUpdate=!0,this.needsUpdate=!1,this.type=Pr;let g=this.type;this.render=function(T,y,b){if(m.enabled===!1||m.autoUpdate===!1&&m.needsUpdate===!1||T.length===0)return;this.type===vm&&(jt("WebGLShadowMap: PCFSoftShadowMap has been removed. Using PCFShadowMap instead."),this.type=Pr);let U=i.getRenderTarget(),I=i.getActiveCubeFace(),L=i.getActiveMipmapLevel(),B=i.state;B.setBlending(Ir),B.buffers.depth.getReversed()===!0?B.buffers.color.setClear(0,0,0,0):B.buffers.color.setClear(1,1,1,1),B.buffers.depth.setTest(!0),B.setScissorTest(!1);let W=g!==this.type;W&&y.traverse(function(P){P.material&&(Array.isArray(P.material)?P.material.forEach(k=>k.needsUpdate=!0):P.material.needsUpdate=!0)});for(let P=0,k=T.length;P<k;P++){let Y=T[P],G=Y.shadow;if(G===void 0){jt("WebGLShadowMap:",Y,"has no shadow.");continue}if(G.autoUpdate===!1&&G.needsUpdate===!1)continue;s.copy(G.mapSize);let at=G.getFrameExtents();s.multiply(at),r.copy(G.mapSize),(s.x>u||s.y>u)&&(s.x>u&&(r.x=Math.floor(u/at.x),s.x=r.x*at.x,G.mapSize.x=r.x),s.y>u&&(r.y=Math.floor(u/at.y),s.y=r.y*at.y,G.mapSize.y=r.y));let $=i.state.buffers.depth.getReversed();if(G.camera._reversedDepth=$,G.map===null||W===!0){if(G.map!==null&&(G.map.depthTexture!==null&&(G.map.depthTexture.dispose(),G.map.depthTexture=null),G.map.dispose()),this.type===Bo){if(Y.isPointLight){jt("WebGLShadowMap: VSM shadow maps are not supported for PointLights. Use PCF or BasicShadowMap instead.");continue}G.map=new ci(s.x,s.y,{format:dr,type:Zi,minFilter:li,magFilter:li,generateMipmaps:!1}),G.map.texture.name=Y.name+".shadowMap",G.map.depthTexture=new Us(s.x,s.y,Fi),G.map.depthTexture.name=Y.name+".shadowMapDepth",G.map.depthTexture.format=Ps,G.map.depthTexture.compareFunction=null,G.map.depthTexture.minFilter=zn,G.map.depthTexture.magFilter=zn}else Y.isPointLight?(G.map=new ml(s.x),G.map.depthTexture=new Va(s.x,$i)):(G.map=new ci(s.x,s.y),G.map.depthTexture=new Us(s.x,s.y,$i)),G.map.depthTexture.name=Y.name+".shadowMap",G.map.depthTexture.format=Ps,this.type===Pr?(G.map.depthTexture.compareFunction=$?zd:kd,G.map.depthTexture.minFilter=li,G.map.depthTexture.magFilter=li):(G.map.depthTexture.compareFunction=null,G.map.depthTexture.minFilter=zn,G.map.depthTexture.magFilter=zn);G.camera.updateProjectionMatrix()}G.map.isWebGLCubeRenderTarget!==!0&&(G.map.width!==s.x||G.map.height!==s.y)&&G.map.setSize(s.x,s.y);let Q=G.map.isWebGLCubeRenderTarget?6:G.getViewportCount();Y.isPointLight!==!0&&G.updateMatrices(Y,b);let it=(G.camera.layers.mask&4294967294)!==0?G.camera.layers:b.layers;for(let ut=0;ut<Q;ut++){let dt=G.getCamera(ut);if(Y.isPointLight){let tt=G.camera,mt=G.matrix,xt=Y.distance||tt.far;xt!==tt.far&&(tt.far=xt,tt.updateProjectionMatrix()),fl.setFromMatrixPosition(Y.matrixWorld),tt.position.copy(fl),Qd.copy(tt.position),Qd.add(fw[ut]),tt.up.copy(pw[ut]),tt.lookAt(Qd),tt.updateMatrixWorld(),mt.makeTranslation(-fl.x,-fl.y,-fl.z),wg.multiplyMatrices(tt.projectionMatrix,tt.matrixWorldInverse),G._frustum.setFromProjectionMatrix(wg,tt.coordinateSystem,tt.reversedDepth)}if(G.map.isWebGLCubeRenderTarget)i.setRenderTarget(G.map,ut),i.clear();else{ut===0&&(i.setRenderTarget(G.map),i.clear());let tt=G.getViewport(ut);o.set(r.x*tt.x,r.y*tt.y,r.x*tt.z,r.y*tt.w),B.viewport(o)}n=G.getFrustum(ut),S(y,b,dt,Y,it,this.type)}G.isPointLightShadow!==!0&&this.type===Bo&&x(G,b),G.needsUpdate=!1}g=this.type,m.needsUpdate=!1,i.setRenderTarget(U,I,L)};function x(T,y){let b=t.update(_);d.defines.VSM_SAMPLES!==T.blurSamples&&(d.defines.VSM_SAMPLES=T.blurSamples,f.defines.VSM_SAMPLES=T.blurSamples,d.needsUpdate=!0,f.needsUpdate=!0),T.mapPass===null?T.mapPass=new ci(s.x,s.y,{format:dr,type:Zi}):(T.mapPass.width!==T.map.width||T.mapPass.height!==T.map.height)&&T.mapPass.setSize(T.map.width,T.map.height),d.uniforms.shadow_pass.value=T.map.depthTexture,d.uniforms.resolution.value.set(T.map.width,T.map.height),d.uniforms.radius.value=T.radius,i.setRenderTarget(T.mapPass),i.clear(),i.renderBufferDirect(y,null,b,d,_,null),f.uniforms.shadow_pass.value=T.mapPass.texture,f.uniforms.resolution.value.set(T.map.width,T.map.height),f.uniforms.radius.value=T.radius,i.setRenderTarget(T.map),i.clear(),i.renderBufferDirect(y,null,b,f,_,null)}function E(T,y,b,U){let I=null,L=b.isPointLight===!0?T.customDistanceMaterial:T.customDepthMaterial;if(L!==void 0)I=L;else if(I=b.isPointLight===!0?c:a,i.localClippingEnabled&&y.clipShadows===!0&&Array.isArray(y.clippingPlanes)&&y.clippingPlanes.length!==0||y.displacementMap&&y.displacementScale!==0||y.alphaMap&&y.alphaTest>0||y.map&&y.alphaTest>0||y.alphaToCoverage===!0){let B=I.uuid,W=y.uuid,P=l[B];P===void 0&&(P={},l[B]=P);let k=P[W];k===void 0&&(k=I.clone(),P[W]=k,y.addEventListener("dispose",M)),I=k}if(I.visible=y.visible,I.wireframe=y.wireframe,U===Bo?I.side=y.shadowSide!==null?y.shadowSide:y.side:I.side=y.shadowSide!==null?y.shadowSide:h[y.side],I.alphaMap=y.alphaMap,I.alphaTest=y.alphaToCoverage===!0?.5:y.alphaTest,I.map=y.map,I.clipShadows=y.clipShadows,I.clippingPlanes=y.clippingPlanes,I.clipIntersection=y.clipIntersection,I.displacementMap=y.displacementMap,I.displacementScale=y.displacementScale,I.displacementBias=y.displacementBias,I.wireframeLinewidth=y.wireframeLinewidth,I.linewidth=y.linewidth,b.isPointLight===!0&&I.isMeshDistanceMaterial===!0){let B=i.properties.get(I);B.light=b}return I}function S(T,y,b,U,I,L){if(T.visible===!1)return;if(T.layers.test(I)&&(T.isMesh||T.isLine||T.isPoints)&&(T.castShadow||T.receiveShadow&&L===Bo)&&(!T.frustumCulled||T.intersectsFrustum(n))){T.modelViewMatrix.multiplyMatrices(b.matrixWorldInverse,T.matrixWorld);let P=t.update(T),k=T.material;if(Array.isArray(k)){let Y=P.groups;for(let G=0,at=Y.length;G<at;G++){let $=Y[G],Q=k[$.materialIndex];if(Q&&Q.visible){let it=E(T,Q,U,L);T.onBeforeShadow(i,T,y,b,P,it,$),i.renderBufferDirect(b,null,P,it,T,$),T.onAfterShadow(i,T,y,b,P,it,$)}}}else if(k.visible){let Y=E(T,k,U,L);T.onBeforeShadow(i,T,y,b,P,Y,null),i.renderBufferDirect(b,null,P,Y,T,null),T.onAfterShadow(i,T,y,b,P,Y,null)}}let W=T.children;for(let P=0,k=W.length;P<k;P++)S(W[P],y,b,U,I,L)}function M(T){T.target.removeEventListener("dispose",M);for(let b in l){let U=l[b],I=T.target.uuid;I in U&&(U[I].dispose(),delete U[I])}}}function gw(i,t){function e(){let z=!1,rt=new Le,nt=null,Tt=new Le(0,0,0,0);return{setMask:function(gt){nt!==gt&&!z&&(i.colorMask(gt,gt,gt,gt),nt=gt)},setLocked:function(gt){z=gt},setClear:function(gt,St,Yt,ee,ct){ct===!0&&(gt*=ee,St*=ee,Yt*=ee),rt.set(gt,St,Yt,ee),Tt.equals(rt)===!1&&(i.clearColor(gt,St,Yt,ee),Tt.copy(rt))},reset:function(){z=!1,nt=null,Tt.set(-1,0,0,0)}}}function n(){let z=!1,rt=!1,nt=null,Tt=null,gt=null;return{setReversed:function(St){if(rt!==St){let Yt=t.get("EXT_clip_control");St?Yt.clipControlEXT(Yt.LOWER_LEFT_EXT,Yt.ZERO_TO_ONE_EXT):Yt.clipControlEXT(Yt.LOWER_LEFT_EXT,Yt.NEGATIVE_ONE_TO_ONE_EXT),rt=St;let ee=gt;gt=null,this.setClear(ee)}},getReversed:function(){return rt},setTest:function(St){St?bt(i.DEPTH_TEST):$t(i.DEPTH_TEST)},setMask:function(St){nt!==St&&!z&&(i.depthMask(St),nt=St)},setFunc:function(St){if(rt&&(St=Qm[St]),Tt!==St){switch(St){case fc:i.depthFunc(i.NEVER);break;case pc:i.depthFunc(i.ALWAYS);break;case mc:i.depthFunc(i.LESS);break;case wo:i.depthFunc(i.LEQUAL);break;case gc:i.depthFunc(i.EQUAL);break;case _c:i.depthFunc(i.GEQUAL);break;case xc:i.depthFunc(i.GREATER);break;case yc:i.depthFunc(i.NOTEQUAL);break;default:i.depthFunc(i.LEQUAL)}Tt=St}},setLocked:function(St){z=St},setClear:function(St){gt!==St&&(gt=St,rt&&(St=1-St),i.clearDepth(St))},reset:function(){z=!1,nt=null,Tt=null,gt=null,rt=!1}}}function s(){let z=!1,rt=null,nt=null,Tt=null,gt=null,St=null,Yt=null,ee=null,ct=null;return{setTest:function(zt){z||(zt?bt(i.STENCIL_TEST):$t(i.STENCIL_TEST))},setMask:function(zt){rt!==zt&&!z&&(i.stencilMask(zt),rt=zt)},setFunc:function(zt,ne,Pt){(nt!==zt||Tt!==ne||gt!==Pt)&&(i.stencilFunc(zt,ne,Pt),nt=zt,Tt=ne,gt=Pt)},setOp:function(zt,ne,Pt){(St!==zt||Yt!==ne||ee!==Pt)&&(i.stencilOp(zt,ne,Pt),St=zt,Yt=ne,ee=Pt)},setLocked:function(zt){z=zt},setClear:function(zt){ct!==zt&&(i.clearStencil(zt),ct=zt)},reset:function(){z=!1,rt=null,nt=null,Tt=null,gt=null,St=null,Yt=null,ee=null,ct=null}}}let r=new e,o=new n,a=new s,c={},l=new WeakMap,u={},h={},d={},f=new WeakMap,p=[],_=null,m=!1,g=null,x=null,E=null,S=null,M=null,T=null,y=null,b=new Ht(0,0,0),U=0,I=!1,L=null,B=null,W=null,P=null,k=null,Y=i.getParameter(i.MAX_COMBINED_TEXTURE_IMAGE_UNITS),G=!1,at=0,$=i.getParameter(i.VERSION);$.indexOf("WebGL")!==-1?(at=parseFloat(/^WebGL (\d)/.exec($)[1]),G=at>=1):$.indexOf("OpenGL ES")!==-1&&(at=parseFloat(/^OpenGL ES (\d)/.exec($)[1]),G=at>=2);let Q=null,it={},ut=i.getParameter(i.SCISSOR_BOX),dt=i.getParameter(i.VIEWPORT),tt=new Le().fromArray(ut),mt=new Le().fromArray(dt);function xt(z,rt,nt,Tt){let gt=new Uint8Array(4),St=i.createTexture();i.bindTexture(z,St),i.texParameteri(z,i.TEXTURE_MIN_FILTER,i.NEAREST),i.texParameteri(z,i.TEXTURE_MAG_FILTER,i.NEAREST);for(let Yt=0;Yt<nt;Yt++)z===i.TEXTURE_3D||z===i.TEXTURE_2D_ARRAY?i.texImage3D(rt,0,i.RGBA,1,1,Tt,0,i.RGBA,i.UNSIGNED_BYTE,gt):i.texImage2D(rt+Yt,0,i.RGBA,1,1,0,i.RGBA,i.UNSIGNED_BYTE,gt);return St}let Rt={};Rt[i.TEXTURE_2D]=xt(i.TEXTURE_2D,i.TEXTURE_2D,1),Rt[i.TEXTURE_CUBE_MAP]=xt(i.TEXTURE_CUBE_MAP,i.TEXTURE_CUBE_MAP_POSITIVE_X,6),Rt[i.TEXTURE_2D_ARRAY]=xt(i.TEXTURE_2D_ARRAY,i.TEXTURE_2D_ARRAY,1,1),Rt[i.TEXTURE_3D]=xt(i.TEXTURE_3D,i.TEXTURE_3D,1,1),r.setClear(0,0,0,1),o.setClear(1),a.setClear(0),bt(i.DEPTH_TEST),o.setFunc(wo),pn(!1),Be(yd),bt(i.CULL_FACE),Qe(Ir);function bt(z){u[z]!==!0&&(i.enable(z),u[z]=!0)}function $t(z){u[z]!==!1&&(i.disable(z),u[z]=!1)}function le(z,rt){return d[z]!==rt?(i.bindFramebuffer(z,rt),d[z]=rt,z===i.DRAW_FRAMEBUFFER&&(d[i.FRAMEBUFFER]=rt),z===i.FRAMEBUFFER&&(d[i.DRAW_FRAMEBUFFER]=rt),!0):!1}function Xt(z,rt){let nt=p,Tt=!1;if(z){nt=f.get(rt),nt===void 0&&(nt=[],f.set(rt,nt));let gt=z.textures;if(nt.length!==gt.length||nt[0]!==i.COLOR_ATTACHMENT0){for(let St=0,Yt=gt.length;St<Yt;St++)nt[St]=i.COLOR_ATTACHMENT0+St;nt.length=gt.length,Tt=!0}}else nt[0]!==i.BACK&&(nt[0]=i.BACK,Tt=!0);Tt&&i.drawBuffers(nt)}function ge(z){return _!==z?(i.useProgram(z),_=z,!0):!1}let de={[Lr]:i.FUNC_ADD,[Mm]:i.FUNC_SUBTRACT,[bm]:i.FUNC_REVERSE_SUBTRACT};de[wm]=i.MIN,de[Tm]=i.MAX;let oe={[Em]:i.ZERO,[Am]:i.ONE,[Cm]:i.SRC_COLOR,[bd]:i.SRC_ALPHA,[Nm]:i.SRC_ALPHA_SATURATE,[Lm]:i.DST_COLOR,[Pm]:i.DST_ALPHA,[Rm]:i.ONE_MINUS_SRC_COLOR,[wd]:i.ONE_MINUS_SRC_ALPHA,[Dm]:i.ONE_MINUS_DST_COLOR,[Im]:i.ONE_MINUS_DST_ALPHA,[Um]:i.CONSTANT_COLOR,[Om]:i.ONE_MINUS_CONSTANT_COLOR,[Fm]:i.CONSTANT_ALPHA,[Bm]:i.ONE_MINUS_CONSTANT_ALPHA};function Qe(z,rt,nt,Tt,gt,St,Yt,ee,ct,zt){if(z===Ir){m===!0&&($t(i.BLEND),m=!1);return}if(m===!1&&(bt(i.BLEND),m=!0),z!==Sm){if(z!==g||zt!==I){if((x!==Lr||M!==Lr)&&(i.blendEquation(i.FUNC_ADD),x=Lr,M=Lr),zt)switch(z){case ko:i.blendFuncSeparate(i.ONE,i.ONE_MINUS_SRC_ALPHA,i.ONE,i.ONE_MINUS_SRC_ALPHA);break;case vd:i.blendFunc(i.ONE,i.ONE);break;case Sd:i.blendFuncSeparate(i.ZERO,i.ONE_MINUS_SRC_COLOR,i.ZERO,i.ONE);break;case Md:i.blendFuncSeparate(i.DST_COLOR,i.ONE_MINUS_SRC_ALPHA,i.ZERO,i.ONE);break;default:te("WebGLState: Invalid blending: ",z);break}else switch(z){case ko:i.blendFuncSeparate(i.SRC_ALPHA,i.ONE_MINUS_SRC_ALPHA,i.ONE,i.ONE_MINUS_SRC_ALPHA);break;case vd:i.blendFuncSeparate(i.SRC_ALPHA,i.ONE,i.ONE,i.ONE);break;case Sd:te("WebGLState: SubtractiveBlending requires material.premultipliedAlpha = true");break;case Md:te("WebGLState: MultiplyBlending requires material.premultipliedAlpha = true");break;default:te("WebGLState: Invalid blending: ",z);break}E=null,S=null,T=null,y=null,b.set(0,0,0),U=0,g=z,I=zt}return}gt=gt||rt,St=St||nt,Yt=Yt||Tt,(rt!==x||gt!==M)&&(i.blendEquationSeparate(de[rt],de[gt]),x=rt,M=gt),(nt!==E||Tt!==S||St!==T||Yt!==y)&&(i.blendFuncSeparate(oe[nt],oe[Tt],oe[St],oe[Yt]),E=nt,S=Tt,T=St,y=Yt),(ee.equals(b)===!1||ct!==U)&&(i.blendColor(ee.r,ee.g,ee.b,ct),b.copy(ee),U=ct),g=z,I=!1}function We(z,rt){z.side===Sn?$t(i.CULL_FACE):bt(i.CULL_FACE);let nt=z.side===Xn;rt&&(nt=!nt),pn(nt),z.blending===ko&&z.transparent===!1?Qe(Ir):Qe(z.blending,z.blendEquation,z.blendSrc,z.blendDst,z.blendEquationAlpha,z.blendSrcAlpha,z.blendDstAlpha,z.blendColor,z.blendAlpha,z.premultipliedAlpha),o.setFunc(z.depthFunc),o.setTest(z.depthTest),o.setMask(z.depthWrite),r.setMask(z.colorWrite);let Tt=z.stencilWrite;a.setTest(Tt),Tt&&(a.setMask(z.stencilWriteMask),a.setFunc(z.stencilFunc,z.stencilRef,z.stencilFuncMask),a.setOp(z.stencilFail,z.stencilZFail,z.stencilZPass)),be(z.polygonOffset,z.polygonOffsetFactor,z.polygonOffsetUnits),z.alphaToCoverage===!0?bt(i.SAMPLE_ALPHA_TO_COVERAGE):$t(i.SAMPLE_ALPHA_TO_COVERAGE)}function pn(z){L!==z&&(z?i.frontFace(i.CW):i.frontFace(i.CCW),L=z)}function Be(z){z!==xm?(bt(i.CULL_FACE),z!==B&&(z===yd?i.cullFace(i.BACK):z===ym?i.cullFace(i.FRONT):i.cullFace(i.FRONT_AND_BACK))):$t(i.CULL_FACE),B=z}function Nn(z){z!==W&&(G&&i.lineWidth(z),W=z)}function be(z,rt,nt){z?(bt(i.POLYGON_OFFSET_FILL),(P!==rt||k!==nt)&&(P=rt,k=nt,o.getReversed()&&(rt=-rt,nt=-nt),i.polygonOffset(rt,nt))):$t(i.POLYGON_OFFSET_FILL)}function wn(z){z?bt(i.SCISSOR_TEST):$t(i.SCISSOR_TEST)}function on(z){z===void 0&&(z=i.TEXTURE0+Y-1),Q!==z&&(i.activeTexture(z),Q=z)}function mn(z,rt,nt){nt===void 0&&(Q===null?nt=i.TEXTURE0+Y-1:nt=Q);let Tt=it[nt];Tt===void 0&&(Tt={type:void 0,texture:void 0},it[nt]=Tt),(Tt.type!==z||Tt.texture!==rt)&&(Q!==nt&&(i.activeTexture(nt),Q=nt),i.bindTexture(z,rt||Rt[z]),Tt.type=z,Tt.texture=rt)}function V(){let z=it[Q];z!==void 0&&z.type!==void 0&&(i.bindTexture(z.type,null),z.type=void 0,z.texture=void 0)}function It(){try{i.compressedTexImage2D(...arguments)}catch(z){te("WebGLState:",z)}}function Kt(){try{i.compressedTexImage3D(...arguments)}catch(z){te("WebGLState:",z)}}function ce(){try{i.texSubImage2D(...arguments)}catch(z){te("WebGLState:",z)}}function wt(){try{i.texSubImage3D(...arguments)}catch(z){te("WebGLState:",z)}}function ze(){try{i.compressedTexSubImage2D(...arguments)}catch(z){te("WebGLState:",z)}}function Wt(){try{i.compressedTexSubImage3D(...arguments)}catch(z){te("WebGLState:",z)}}function Jt(){try{i.texStorage2D(...arguments)}catch(z){te("WebGLState:",z)}}function D(){try{i.texStorage3D(...arguments)}catch(z){te("WebGLState:",z)}}function w(){try{i.texImage2D(...arguments)}catch(z){te("WebGLState:",z)}}function q(){try{i.texImage3D(...arguments)}catch(z){te("WebGLState:",z)}}function ht(z){return h[z]!==void 0?h[z]:i.getParameter(z)}function ot(z,rt){h[z]!==rt&&(i.pixelStorei(z,rt),h[z]=rt)}function _t(z){tt.equals(z)===!1&&(i.scissor(z.x,z.y,z.z,z.w),tt.copy(z))}function yt(z){mt.equals(z)===!1&&(i.viewport(z.x,z.y,z.z,z.w),mt.copy(z))}function et(z,rt){let nt=l.get(rt);nt===void 0&&(nt=new WeakMap,l.set(rt,nt));let Tt=nt.get(z);Tt===void 0&&(Tt=i.getUniformBlockIndex(rt,z.name),i.uniformBlockBinding(rt,Tt,Tt),nt.set(z,Tt))}function st(z,rt,nt){let gt=l.get(rt).get(z);c[gt]!==nt&&(i.bindBufferBase(i.UNIFORM_BUFFER,gt,nt),c[gt]=nt)}function pt(){i.disable(i.BLEND),i.disable(i.CULL_FACE),i.disable(i.DEPTH_TEST),i.disable(i.POLYGON_OFFSET_FILL),i.disable(i.SCISSOR_TEST),i.disable(i.STENCIL_TEST),i.disable(i.SAMPLE_ALPHA_TO_COVERAGE),i.blendEquation(i.FUNC_ADD),i.blendFunc(i.ONE,i.ZERO),i.blendFuncSeparate(i.ONE,i.ZERO,i.ONE,i.ZERO),i.blendColor(0,0,0,0),i.colorMask(!0,!0,!0,!0),i.clearColor(0,0,0,0),i.depthMask(!0),i.depthFunc(i.LESS),o.setReversed(!1),i.clearDepth(1),i.stencilMask(4294967295),i.stencilFunc(i.ALWAYS,0,4294967295),i.stencilOp(i.KEEP,i.KEEP,i.KEEP),i.clearStencil(0),i.cullFace(i.BACK),i.frontFace(i.CCW),i.polygonOffset(0,0),i.activeTexture(i.TEXTURE0),i.bindFramebuffer(i.FRAMEBUFFER,null),i.bindFramebuffer(i.DRAW_FRAMEBUFFER,null),i.bindFramebuffer(i.READ_FRAMEBUFFER,null),i.useProgram(null),i.lineWidth(1),i.scissor(0,0,i.canvas.width,i.canvas.height),i.viewport(0,0,i.canvas.width,i.canvas.height),i.pixelStorei(i.PACK_ALIGNMENT,4),i.pixelStorei(i.UNPACK_ALIGNMENT,4),i.pixelStorei(i.UNPACK_FLIP_Y_WEBGL,!1),i.pixelStorei(i.UNPACK_PREMULTIPLY_ALPHA_WEBGL,!1),i.pixelStorei(i.UNPACK_COLORSPACE_CONVERSION_WEBGL,i.BROWSER_DEFAULT_WEBGL),i.pixelStorei(i.PACK_ROW_LENGTH,0),i.pixelStorei(i.PACK_SKIP_PIXELS,0),i.pixelStorei(i.PACK_SKIP_ROWS,0),i.pixelStorei(i.UNPACK_ROW_LENGTH,0),i.pixelStorei(i.UNPACK_IMAGE_HEIGHT,0),i.pixelStorei(i.UNPACK_SKIP_PIXELS,0),i.pixelStorei(i.UNPACK_SKIP_ROWS,0),i.pixelStorei(i.UNPACK_SKIP_IMAGES,0),u={},h={},Q=null,it={},d={},c={},f=new WeakMap,p=[],_=null,m=!1,g=null,x=null,E=null,S=null,M=null,T=null,y=null,b=new Ht(0,0,0),U=0,I=!1,L=null,B=null,W=null,P=null,k=null,tt.set(0,0,i.canvas.width,i.canvas.height),mt.set(0,0,i.canvas.width,i.canvas.height),r.reset(),o.reset(),a.reset()}return{buffers:{color:r,depth:o,stencil:a},enable:bt,disable:$t,bindFramebuffer:le,drawBuffers:Xt,useProgram:ge,setBlending:Qe,setMaterial:We,setFlipSided:pn,setCullFace:Be,setLineWidth:Nn,setPolygonOffset:be,setScissorTest:wn,activeTexture:on,bindTexture:mn,unbindTexture:V,compressedTexImage2D:It,compressedTexImage3D:Kt,texImage2D:w,texImage3D:q,pixelStorei:ot,getParameter:ht,updateUBOMapping:et,uniformBlockBinding:st,texStorage2D:Jt,texStorage3D:D,texSubImage2D:ce,texSubImage3D:wt,compressedTexSubImage2D:ze,compressedTexSubImage3D:Wt,scissor:_t,viewport:yt,reset:pt}}function _w(i,t,e,n,s,r,o){let a=t.has("WEBGL_multisampled_render_to_texture")?t.get("WEBGL_multisampled_render_to_texture"):null,c=typeof navigator>"u"?!1:/OculusBrowser/g.test(navigator.userAgent),l=new kt,u=new WeakMap,h=new Set,d,f=new WeakMap,p=new Set,_=new FinalizationRegistry(D=>p.delete(D)),m=!1;try{m=typeof OffscreenCanvas<"u"&&new OffscreenCanvas(1,1).getContext("2d")!==null}catch{}function g(D,w){return m?new OffscreenCanvas(D,w):Pa("canvas")}function x(D,w,q){let ht=1,ot=Jt(D);if((ot.width>q||ot.height>q)&&(ht=q/Math.max(ot.width,ot.height)),ht<1)if(typeof HTMLImageElement<"u"&&D instanceof HTMLImageElement||typeof HTMLCanvasElement<"u"&&D instanceof HTMLCanvasElement||typeof ImageBitmap<"u"&&D instanceof ImageBitmap||typeof VideoFrame<"u"&&D instanceof VideoFrame){let _t=Math.floor(ht*ot.width),yt=Math.floor(ht*ot.height);d===void 0&&(d=g(_t,yt));let et=w?g(_t,yt):d;return et.width=_t,et.height=yt,et.getContext("2d").drawImage(D,0,0,_t,yt),jt("WebGLRenderer: Texture has been resized from ("+ot.width+"x"+ot.height+") to ("+_t+"x"+yt+")."),et}else return"data"in D&&jt("WebGLRenderer: Image in DataTexture is too big ("+ot.width+"x"+ot.height+")."),D;return D}function E(D){return D.generateMipmaps}function S(D){i.generateMipmap(D)}function M(D){return D.isWebGLCubeRenderTarget?i.TEXTURE_CUBE_MAP:D.isWebGL3DRenderTarget?i.TEXTURE_3D:D.isWebGLArrayRenderTarget||D.isCompressedArrayTexture?i.TEXTURE_2D_ARRAY:i.TEXTURE_2D}function T(D,w,q,ht,ot,_t=!1){if(D!==null){if(i[D]!==void 0)return i[D];jt("WebGLRenderer: Attempt to use non-existing WebGL internal format '"+D+"'")}let yt;ht&&(yt=t.get("EXT_texture_norm16"),yt||jt("WebGLRenderer: Unable to use normalized textures without EXT_texture_norm16 extension"));let et=w;if(w===i.RED&&(q===i.FLOAT&&(et=i.R32F),q===i.HALF_FLOAT&&(et=i.R16F),q===i.UNSIGNED_BYTE&&(et=i.R8),q===i.UNSIGNED_SHORT&&yt&&(et=yt.R16_EXT),q===i.SHORT&&yt&&(et=yt.R16_SNORM_EXT)),w===i.RED_INTEGER&&(q===i.UNSIGNED_BYTE&&(et=i.R8UI),q===i.UNSIGNED_SHORT&&(et=i.R16UI),q===i.UNSIGNED_INT&&(et=i.R32UI),q===i.BYTE&&(et=i.R8I),q===i.SHORT&&(et=i.R16I),q===i.INT&&(et=i.R32I)),w===i.RG&&(q===i.FLOAT&&(et=i.RG32F),q===i.HALF_FLOAT&&(et=i.RG16F),q===i.UNSIGNED_BYTE&&(et=i.RG8),q===i.UNSIGNED_SHORT&&yt&&(et=yt.RG16_EXT),q===i.SHORT&&yt&&(et=yt.RG16_SNORM_EXT)),w===i.RG_INTEGER&&(q===i.UNSIGNED_BYTE&&(et=i.RG8UI),q===i.UNSIGNED_SHORT&&(et=i.RG16UI),q===i.UNSIGNED_INT&&(et=i.RG32UI),q===i.BYTE&&(et=i.RG8I),q===i.SHORT&&(et=i.RG16I),q===i.INT&&(et=i.RG32I)),w===i.RGB_INTEGER&&(q===i.UNSIGNED_BYTE&&(et=i.RGB8UI),q===i.UNSIGNED_SHORT&&(et=i.RGB16UI),q===i.UNSIGNED_INT&&(et=i.RGB32UI),q===i.BYTE&&(et=i.RGB8I),q===i.SHORT&&(et=i.RGB16I),q===i.INT&&(et=i.RGB32I)),w===i.RGBA_INTEGER&&(q===i.UNSIGNED_BYTE&&(et=i.RGBA8UI),q===i.UNSIGNED_SHORT&&(et=i.RGBA16UI),q===i.UNSIGNED_INT&&(et=i.RGBA32UI),q===i.BYTE&&(et=i.RGBA8I),q===i.SHORT&&(et=i.RGBA16I),q===i.INT&&(et=i.RGBA32I)),w===i.RGB&&(q===i.UNSIGNED_SHORT&&yt&&(et=yt.RGB16_EXT),q===i.SHORT&&yt&&(et=yt.RGB16_SNORM_EXT),q===i.UNSIGNED_INT_5_9_9_9_REV&&(et=i.RGB9_E5),q===i.UNSIGNED_INT_10F_11F_11F_REV&&(et=i.R11F_G11F_B10F)),w===i.RGBA){let st=_t?Ra:Se.getTransfer(ot);q===i.FLOAT&&(et=i.RGBA32F),q===i.HALF_FLOAT&&(et=i.RGBA16F),q===i.UNSIGNED_BYTE&&(et=st===Pe?i.SRGB8_ALPHA8:i.RGBA8),q===i.UNSIGNED_SHORT&&yt&&(et=yt.RGBA16_EXT),q===i.SHORT&&yt&&(et=yt.RGBA16_SNORM_EXT),q===i.UNSIGNED_SHORT_4_4_4_4&&(et=i.RGBA4),q===i.UNSIGNED_SHORT_5_5_5_1&&(et=i.RGB5_A1)}return(et===i.R16F||et===i.R32F||et===i.RG16F||et===i.RG32F||et===i.RGBA16F||et===i.RGBA32F)&&t.get("EXT_color_buffer_float"),et}function y(D,w){let q;return D?w===null||w===$i||w===Nr?q=i.DEPTH24_STENCIL8:w===Fi?q=i.DEPTH32F_STENCIL8:w===Vo&&(q=i.DEPTH24_STENCIL8,jt("DepthTexture: 16 bit depth attachment is not supported with stencil. Using 24-bit attachment.")):w===null||w===$i||w===Nr?q=i.DEPTH_COMPONENT24:w===Fi?q=i.DEPTH_COMPONENT32F:w===Vo&&(q=i.DEPTH_COMPONENT16),q}function b(D,w){return E(D)===!0||D.isFramebufferTexture&&D.minFilter!==zn&&D.minFilter!==li?Math.log2(Math.max(w.width,w.height))+1:D.mipmaps.length>0?D.mipmaps.length:D.isCompressedTexture&&Array.isArray(D.image)?w.mipmaps.length:1}function U(D){let w=new WeakRef(D);n.get(D).__ref=w,p.add(w),_.register(D,w,w)}function I(D){let w=n.get(D).__ref;w!==void 0&&(p.delete(w),_.unregister(w))}function L(D){W(D.target)}function B(D){P(D.target)}function W(D){D.removeEventListener("dispose",L),I(D),Y(D),D.isVideoTexture&&u.delete(D),D.isHTMLTexture&&h.delete(D)}function P(D){D.removeEventListener("dispose",B),I(D),at(D)}function k(){for(let D of p){let w=D.deref();w!==void 0&&(w.isRenderTarget===!0?P(w):W(w))}p.clear(),h.clear()}function Y(D){let w=n.get(D);if(w.__webglInit===void 0)return;let q=D.source,ht=f.get(q);if(ht){let ot=ht[w.__cacheKey];ot.usedTimes--,ot.usedTimes===0&&G(D),Object.keys(ht).length===0&&f.delete(q)}n.remove(D)}function G(D){let w=n.get(D);i.deleteTexture(w.__webglTexture);let q=D.source,ht=f.get(q);delete ht[w.__cacheKey],o.memory.textures--}function at(D){let w=n.get(D);w.__depthDisposeCallback&&w.__depthDisposeCallback();let q=D.depthTexture;if(q&&q.renderTarget===D&&W(q),D.isWebGLCubeRenderTarget)for(let ot=0;ot<6;ot++){if(Array.isArray(w.__webglFramebuffer[ot]))for(let _t=0;_t<w.__webglFramebuffer[ot].length;_t++)i.deleteFramebuffer(w.__webglFramebuffer[ot][_t]);else i.deleteFramebuffer(w.__webglFramebuffer[ot]);w.__webglDepthbuffer&&i.deleteRenderbuffer(w.__webglDepthbuffer[ot])}else{if(Array.isArray(w.__webglFramebuffer))for(let ot=0;ot<w.__webglFramebuffer.length;ot++)i.deleteFramebuffer(w.__webglFramebuffer[ot]);else i.deleteFramebuffer(w.__webglFramebuffer);if(w.__webglDepthbuffer&&i.deleteRenderbuffer(w.__webglDepthbuffer),w.__webglMultisampledFramebuffer&&i.deleteFramebuffer(w.__webglMultisampledFramebuffer),w.__webglColorRenderbuffer)for(let ot=0;ot<w.__webglColorRenderbuffer.length;ot++)w.__webglColorRenderbuffer[ot]&&i.deleteRenderbuffer(w.__webglColorRenderbuffer[ot]);w.__webglDepthRenderbuffer&&i.deleteRenderbuffer(w.__webglDepthRenderbuffer)}let ht=D.textures;for(let ot=0,_t=ht.length;ot<_t;ot++){let yt=n.get(ht[ot]);yt.__webglTexture&&(i.deleteTexture(yt.__webglTexture),o.memory.textures--),n.remove(ht[ot])}n.remove(D)}let $=0;function Q(){$=0}function it(){return $}function ut(D){$=D}function dt(){let D=$;return D>=s.maxTextures&&jt("WebGLTextures: Trying to use "+(D+1)+" texture units while this GPU supports only "+s.maxTextures),$+=1,D}function tt(D){let w=[];return w.push(D.wrapS),w.push(D.wrapT),w.push(D.wrapR||0),w.push(D.magFilter),w.push(D.minFilter),w.push(D.anisotropy),w.push(D.internalFormat),w.push(D.format),w.push(D.type),w.push(D.generateMipmaps),w.push(D.mipmapsAutoUpdate),w.push(D.premultiplyAlpha),w.push(D.flipY),w.push(D.unpackAlignment),w.push(D.colorSpace),w.join()}function mt(D,w){let q=n.get(D);if(D.isVideoTexture&&ze(D),D.isRenderTargetTexture===!1&&D.isExternalTexture!==!0&&D.version>0&&q.__version!==D.version){let ht=D.image;if(ht===null)jt("WebGLRenderer: Texture marked for update but no image data found.");else if(ht.complete===!1)jt("WebGLRenderer: Texture marked for update but image is incomplete");else{We(q,D,w);return}}else D.isExternalTexture&&(q.__webglTexture=D.sourceTexture?D.sourceTexture:null);e.bindTexture(i.TEXTURE_2D,q.__webglTexture,i.TEXTURE0+w)}function xt(D,w){let q=n.get(D);if(D.isRenderTargetTexture===!1&&D.version>0&&q.__version!==D.version){We(q,D,w);return}else D.isExternalTexture&&(q.__webglTexture=D.sourceTexture?D.sourceTexture:null);e.bindTexture(i.TEXTURE_2D_ARRAY,q.__webglTexture,i.TEXTURE0+w)}function Rt(D,w){let q=n.get(D);if(D.isRenderTargetTexture===!1&&D.version>0&&q.__version!==D.version){We(q,D,w);return}e.bindTexture(i.TEXTURE_3D,q.__webglTexture,i.TEXTURE0+w)}function bt(D,w){let q=n.get(D);if(D.version>0&&q.__version!==D.version){pn(q,D,w);return}e.bindTexture(i.TEXTURE_CUBE_MAP,q.__webglTexture,i.TEXTURE0+w)}let $t={[To]:i.REPEAT,[cs]:i.CLAMP_TO_EDGE,[vc]:i.MIRRORED_REPEAT},le={[zn]:i.NEAREST,[Vm]:i.NEAREST_MIPMAP_NEAREST,[il]:i.NEAREST_MIPMAP_LINEAR,[li]:i.LINEAR,[Yc]:i.LINEAR_MIPMAP_NEAREST,[Fs]:i.LINEAR_MIPMAP_LINEAR},Xt={[Xm]:i.NEVER,[Vd]:i.ALWAYS,[Ym]:i.LESS,[kd]:i.LEQUAL,[qm]:i.EQUAL,[zd]:i.GEQUAL,[$m]:i.GREATER,[Zm]:i.NOTEQUAL};function ge(D,w){if(w.type===Fi&&t.has("OES_texture_float_linear")===!1&&(w.magFilter===li||w.magFilter===Yc||w.magFilter===il||w.magFilter===Fs||w.minFilter===li||w.minFilter===Yc||w.minFilter===il||w.minFilter===Fs)&&jt("WebGLRenderer: Unable to use linear filtering with floating point textures. OES_texture_float_linear not supported on this device."),i.texParameteri(D,i.TEXTURE_WRAP_S,$t[w.wrapS]),i.texParameteri(D,i.TEXTURE_WRAP_T,$t[w.wrapT]),(D===i.TEXTURE_3D||D===i.TEXTURE_2D_ARRAY)&&i.texParameteri(D,i.TEXTURE_WRAP_R,$t[w.wrapR]),i.texParameteri(D,i.TEXTURE_MAG_FILTER,le[w.magFilter]),i.texParameteri(D,i.TEXTURE_MIN_FILTER,le[w.minFilter]),w.compareFunction&&(i.texParameteri(D,i.TEXTURE_COMPARE_MODE,i.COMPARE_REF_TO_TEXTURE),i.texParameteri(D,i.TEXTURE_COMPARE_FUNC,Xt[w.compareFunction])),t.has("EXT_texture_filter_anisotropic")===!0){if(w.magFilter===zn||w.minFilter!==il&&w.minFilter!==Fs||w.type===Fi&&t.has("OES_texture_float_linear")===!1)return;if(w.anisotropy>1||n.get(w).__currentAnisotropy){let q=t.get("EXT_texture_filter_anisotropic");i.texParameterf(D,q.TEXTURE_MAX_ANISOTROPY_EXT,Math.min(w.anisotropy,s.getMaxAnisotropy())),n.get(w).__currentAnisotropy=w.anisotropy}}}function de(D,w){let q=!1;D.__webglInit===void 0&&(D.__webglInit=!0,w.addEventListener("dispose",L),U(w));let ht=w.source,ot=f.get(ht);ot===void 0&&(ot={},f.set(ht,ot));let _t=tt(w);if(_t!==D.__cacheKey){ot[_t]===void 0&&(ot[_t]={texture:i.createTexture(),usedTimes:0},o.memory.textures++,q=!0),ot[_t].usedTimes++;let yt=ot[D.__cacheKey];yt!==void 0&&(ot[D.__cacheKey].usedTimes--,yt.usedTimes===0&&G(w)),D.__cacheKey=_t,D.__webglTexture=ot[_t].texture}return q}function oe(D,w,q){return Math.floor(Math.floor(D/q)/w)}function Qe(D,w,q,ht){let _t=D.updateRanges;if(_t.length===0)e.texSubImage2D(i.TEXTURE_2D,0,0,0,w.width,w.height,q,ht,w.data);else{_t.sort((z,rt)=>z.start-rt.start);let yt=0;for(let z=1;z<_t.length;z++){let rt=_t[yt],nt=_t[z],Tt=rt.start+rt.count,gt=oe(nt.start,w.width,4),St=oe(rt.start,w.width,4);nt.start<=Tt+1&&gt===St&&oe(nt.start+nt.count-1,w.width,4)===gt?rt.count=Math.max(rt.count,nt.start+nt.count-rt.start):(++yt,_t[yt]=nt)}_t.length=yt+1;let et=e.getParameter(i.UNPACK_ROW_LENGTH),st=e.getParameter(i.UNPACK_SKIP_PIXELS),pt=e.getParameter(i.UNPACK_SKIP_ROWS);e.pixelStorei(i.UNPACK_ROW_LENGTH,w.width);for(let z=0,rt=_t.length;z<rt;z++){let nt=_t[z],Tt=Math.floor(nt.start/4),gt=Math.ceil(nt.count/4),St=Tt%w.width,Yt=Math.floor(Tt/w.width),ee=gt,ct=1;e.pixelStorei(i.UNPACK_SKIP_PIXELS,St),e.pixelStorei(i.UNPACK_SKIP_ROWS,Yt),e.texSubImage2D(i.TEXTURE_2D,0,St,Yt,ee,ct,q,ht,w.data)}D.clearUpdateRanges(),e.pixelStorei(i.UNPACK_ROW_LENGTH,et),e.pixelStorei(i.UNPACK_SKIP_PIXELS,st),e.pixelStorei(i.UNPACK_SKIP_ROWS,pt)}}function We(D,w,q){let ht=i.TEXTURE_2D;(w.isDataArrayTexture||w.isCompressedArrayTexture)&&(ht=i.TEXTURE_2D_ARRAY),w.isData3DTexture&&(ht=i.TEXTURE_3D);let ot=de(D,w),_t=w.source;e.bindTexture(ht,D.__webglTexture,i.TEXTURE0+q);let yt=n.get(_t);if(_t.version!==yt.__version||ot===!0){if(e.activeTexture(i.TEXTURE0+q),(typeof ImageBitmap<"u"&&w.image instanceof ImageBitmap)===!1){let ct=Se.getPrimaries(Se.workingColorSpace),zt=w.colorSpace===ks?null:Se.getPrimaries(w.colorSpace),ne=w.colorSpace===ks||ct===zt?i.NONE:i.BROWSER_DEFAULT_WEBGL;e.pixelStorei(i.UNPACK_FLIP_Y_WEBGL,w.flipY),e.pixelStorei(i.UNPACK_PREMULTIPLY_ALPHA_WEBGL,w.premultiplyAlpha),e.pixelStorei(i.UNPACK_COLORSPACE_CONVERSION_WEBGL,ne)}e.pixelStorei(i.UNPACK_ALIGNMENT,w.unpackAlignment);let st=x(w.image,!1,s.maxTextureSize);st=Wt(w,st);let pt=r.convert(w.format,w.colorSpace),z=r.convert(w.type),rt=T(w.internalFormat,pt,z,w.normalized,w.colorSpace,w.isVideoTexture);ge(ht,w);let nt,Tt=w.mipmaps,gt=w.isVideoTexture!==!0,St=yt.__version===void 0||ot===!0,Yt=_t.dataReady,ee=b(w,st);if(w.isDepthTexture)rt=y(w.format===Bs,w.type),St&&(gt?e.texStorage2D(i.TEXTURE_2D,1,rt,st.width,st.height):e.texImage2D(i.TEXTURE_2D,0,rt,st.width,st.height,0,pt,z,null));else if(w.isDataTexture)if(Tt.length>0){gt&&St&&e.texStorage2D(i.TEXTURE_2D,ee,rt,Tt[0].width,Tt[0].height);for(let ct=0,zt=Tt.length;ct<zt;ct++)nt=Tt[ct],gt?Yt&&e.texSubImage2D(i.TEXTURE_2D,ct,0,0,nt.width,nt.height,pt,z,nt.data):e.texImage2D(i.TEXTURE_2D,ct,rt,nt.width,nt.height,0,pt,z,nt.data);w.generateMipmaps=!1}else gt?(St&&e.texStorage2D(i.TEXTURE_2D,ee,rt,st.width,st.height),Yt&&Qe(w,st,pt,z)):e.texImage2D(i.TEXTURE_2D,0,rt,st.width,st.height,0,pt,z,st.data);else if(w.isCompressedTexture)if(w.isCompressedArrayTexture){gt&&St&&e.texStorage3D(i.TEXTURE_2D_ARRAY,ee,rt,Tt[0].width,Tt[0].height,st.depth);for(let ct=0,zt=Tt.length;ct<zt;ct++)if(nt=Tt[ct],w.format!==Ji)if(pt!==null)if(gt){if(Yt)if(w.layerUpdates.size>0){let ne=jd(nt.width,nt.height,w.format,w.type);for(let Pt of w.layerUpdates){let ue=nt.data.subarray(Pt*ne/nt.data.BYTES_PER_ELEMENT,(Pt+1)*ne/nt.data.BYTES_PER_ELEMENT);e.compressedTexSubImage3D(i.TEXTURE_2D_ARRAY,ct,0,0,Pt,nt.width,nt.height,1,pt,ue)}}else e.compressedTexSubImage3D(i.TEXTURE_2D_ARRAY,ct,0,0,0,nt.width,nt.height,st.depth,pt,nt.data)}else e.compressedTexImage3D(i.TEXTURE_2D_ARRAY,ct,rt,nt.width,nt.height,st.depth,0,nt.data,0,0);else jt("WebGLRenderer: Attempt to load unsupported compressed texture format in .uploadTexture()");else gt?Yt&&e.texSubImage3D(i.TEXTURE_2D_ARRAY,ct,0,0,0,nt.width,nt.height,st.depth,pt,z,nt.data):e.texImage3D(i.TEXTURE_2D_ARRAY,ct,rt,nt.width,nt.height,st.depth,0,pt,z,nt.data);w.layerUpdates.size>0&&w.clearLayerUpdates()}else{gt&&St&&e.texStorage2D(i.TEXTURE_2D,ee,rt,Tt[0].width,Tt[0].height);for(let ct=0,zt=Tt.length;ct<zt;ct++)nt=Tt[ct],w.format!==Ji?pt!==null?gt?Yt&&e.compressedTexSubImage2D(i.TEXTURE_2D,ct,0,0,nt.width,nt.height,pt,nt.data):e.compressedTexImage2D(i.TEXTURE_2D,ct,rt,nt.width,nt.height,0,nt.data):jt("WebGLRenderer: Attempt to load unsupported compressed texture format in .uploadTexture()"):gt?Yt&&e.texSubImage2D(i.TEXTURE_2D,ct,0,0,nt.width,nt.height,pt,z,nt.data):e.texImage2D(i.TEXTURE_2D,ct,rt,nt.width,nt.height,0,pt,z,nt.data)}else if(w.isDataArrayTexture)if(gt){if(St&&e.texStorage3D(i.TEXTURE_2D_ARRAY,ee,rt,st.width,st.height,st.depth),Yt)if(w.layerUpdates.size>0){let ct=jd(st.width,st.height,w.format,w.type);for(let zt of w.layerUpdates){let ne=st.data.subarray(zt*ct/st.data.BYTES_PER_ELEMENT,(zt+1)*ct/st.data.BYTES_PER_ELEMENT);e.texSubImage3D(i.TEXTURE_2D_ARRAY,0,0,0,zt,st.width,st.height,1,pt,z,ne)}w.clearLayerUpdates()}else e.texSubImage3D(i.TEXTURE_2D_ARRAY,0,0,0,0,st.width,st.height,st.depth,pt,z,st.data)}else e.texImage3D(i.TEXTURE_2D_ARRAY,0,rt,st.width,st.height,st.depth,0,pt,z,st.data);else if(w.isData3DTexture)gt?(St&&e.texStorage3D(i.TEXTURE_3D,ee,rt,st.width,st.height,st.depth),Yt&&e.texSubImage3D(i.TEXTURE_3D,0,0,0,0,st.width,st.height,st.depth,pt,z,st.data)):e.texImage3D(i.TEXTURE_3D,0,rt,st.width,st.height,st.depth,0,pt,z,st.data);else if(w.isFramebufferTexture){if(St)if(gt)e.texStorage2D(i.TEXTURE_2D,ee,rt,st.width,st.height);else{let ct=st.width,zt=st.height;for(let ne=0;ne<ee;ne++)e.texImage2D(i.TEXTURE_2D,ne,rt,ct,zt,0,pt,z,null),ct>>=1,zt>>=1}}else if(w.isHTMLTexture){if("texElementImage2D"in i){let ct=i.canvas;if(ct.hasAttribute("layoutsubtree")||ct.setAttribute("layoutsubtree","true"),st.parentNode!==ct){ct.appendChild(st),h.add(w),ct.onpaint=zt=>{let ne=zt.changedElements;for(let Pt of h)ne.includes(Pt.image)&&(Pt.needsUpdate=!0)},ct.requestPaint();return}if(i.texElementImage2D.length===3)i.texElementImage2D(i.TEXTURE_2D,i.RGBA8,st);else{let ne=i.RGBA,Pt=i.RGBA,ue=i.UNSIGNED_BYTE;i.texElementImage2D(i.TEXTURE_2D,0,ne,Pt,ue,st)}i.texParameteri(i.TEXTURE_2D,i.TEXTURE_MIN_FILTER,i.LINEAR),i.texParameteri(i.TEXTURE_2D,i.TEXTURE_WRAP_S,i.CLAMP_TO_EDGE),i.texParameteri(i.TEXTURE_2D,i.TEXTURE_WRAP_T,i.CLAMP_TO_EDGE)}}else if(Tt.length>0){if(gt&&St){let ct=Jt(Tt[0]);e.texStorage2D(i.TEXTURE_2D,ee,rt,ct.width,ct.height)}for(let ct=0,zt=Tt.length;ct<zt;ct++)nt=Tt[ct],gt?Yt&&e.texSubImage2D(i.TEXTURE_2D,ct,0,0,pt,z,nt):e.texImage2D(i.TEXTURE_2D,ct,rt,pt,z,nt);w.generateMipmaps=!1}else if(gt){if(St){let ct=Jt(st);e.texStorage2D(i.TEXTURE_2D,ee,rt,ct.width,ct.height)}Yt&&e.texSubImage2D(i.TEXTURE_2D,0,0,0,pt,z,st)}else e.texImage2D(i.TEXTURE_2D,0,rt,pt,z,st);E(w)&&w.mipmapsAutoUpdate===!0&&S(ht),yt.__version=_t.version,w.onUpdate&&w.onUpdate(w)}D.__version=w.version}function pn(D,w,q){if(w.image.length!==6)return;let ht=de(D,w),ot=w.source;e.bindTexture(i.TEXTURE_CUBE_MAP,D.__webglTexture,i.TEXTURE0+q);let _t=n.get(ot);if(ot.version!==_t.__version||ht===!0){e.activeTexture(i.TEXTURE0+q);let yt=Se.getPrimaries(Se.workingColorSpace),et=w.colorSpace===ks?null:Se.getPrimaries(w.colorSpace),st=w.colorSpace===ks||yt===et?i.NONE:i.BROWSER_DEFAULT_WEBGL;e.pixelStorei(i.UNPACK_FLIP_Y_WEBGL,w.flipY),e.pixelStorei(i.UNPACK_PREMULTIPLY_ALPHA_WEBGL,w.premultiplyAlpha),e.pixelStorei(i.UNPACK_ALIGNMENT,w.unpackAlignment),e.pixelStorei(i.UNPACK_COLORSPACE_CONVERSION_WEBGL,st);let pt=w.isCompressedTexture||w.image[0].isCompressedTexture,z=w.image[0]&&w.image[0].isDataTexture,rt=[];for(let Pt=0;Pt<6;Pt++)!pt&&!z?rt[Pt]=x(w.image[Pt],!0,s.maxCubemapSize):rt[Pt]=z?w.image[Pt].image:w.image[Pt],rt[Pt]=Wt(w,rt[Pt]);let nt=rt[0],Tt=r.convert(w.format,w.colorSpace),gt=r.convert(w.type),St=T(w.internalFormat,Tt,gt,w.normalized,w.colorSpace),Yt=w.isVideoTexture!==!0,ee=_t.__version===void 0||ht===!0,ct=ot.dataReady,zt=b(w,nt);ge(i.TEXTURE_CUBE_MAP,w);let ne;if(w.isDepthTexture){if(St=y(w.format===Bs,w.type),ee)if(Yt)e.texStorage2D(i.TEXTURE_CUBE_MAP,1,St,nt.width,nt.height);else for(let Pt=0;Pt<6;Pt++)e.texImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+Pt,0,St,nt.width,nt.height,0,Tt,gt,null)}else if(pt){Yt&&ee&&e.texStorage2D(i.TEXTURE_CUBE_MAP,zt,St,nt.width,nt.height);for(let Pt=0;Pt<6;Pt++){ne=rt[Pt].mipmaps;for(let ue=0;ue<ne.length;ue++){let qe=ne[ue];w.format!==Ji?Tt!==null?Yt?ct&&e.compressedTexSubImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+Pt,ue,0,0,qe.width,qe.height,Tt,qe.data):e.compressedTexImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+Pt,ue,St,qe.width,qe.height,0,qe.data):jt("WebGLRenderer: Attempt to load unsupported compressed texture format in .setTextureCube()"):Yt?ct&&e.texSubImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+Pt,ue,0,0,qe.width,qe.height,Tt,gt,qe.data):e.texImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+Pt,ue,St,qe.width,qe.height,0,Tt,gt,qe.data)}}}else{if(ne=w.mipmaps,Yt&&ee){ne.length>0&&zt++;let Pt=Jt(rt[0]);e.texStorage2D(i.TEXTURE_CUBE_MAP,zt,St,Pt.width,Pt.height)}for(let Pt=0;Pt<6;Pt++)if(z){Yt?ct&&e.texSubImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+Pt,0,0,0,rt[Pt].width,rt[Pt].height,Tt,gt,rt[Pt].data):e.texImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+Pt,0,St,rt[Pt].width,rt[Pt].height,0,Tt,gt,rt[Pt].data);for(let ue=0;ue<ne.length;ue++){let ni=ne[ue].image[Pt].image;Yt?ct&&e.texSubImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+Pt,ue+1,0,0,ni.width,ni.height,Tt,gt,ni.data):e.texImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+Pt,ue+1,St,ni.width,ni.height,0,Tt,gt,ni.data)}}else{Yt?ct&&e.texSubImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+Pt,0,0,0,Tt,gt,rt[Pt]):e.texImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+Pt,0,St,Tt,gt,rt[Pt]);for(let ue=0;ue<ne.length;ue++){let qe=ne[ue];Yt?ct&&e.texSubImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+Pt,ue+1,0,0,Tt,gt,qe.image[Pt]):e.texImage2D(i.TEXTURE_CUBE_MAP_POSITIVE_X+Pt,ue+1,St,Tt,gt,qe.image[Pt])}}}E(w)&&w.mipmapsAutoUpdate===!0&&S(i.TEXTURE_CUBE_MAP),_t.__version=ot.version,w.onUpdate&&w.onUpdate(w)}D.__version=w.version}function Be(D,w,q,ht,ot,_t){let yt=r.convert(q.format,q.colorSpace),et=r.convert(q.type),st=T(q.internalFormat,yt,et,q.normalized,q.colorSpace),pt=n.get(w),z=n.get(q);if(z.__renderTarget=w,!pt.__hasExternalTextures){let rt=Math.max(1,w.width>>_t),nt=Math.max(1,w.height>>_t);ot===i.TEXTURE_3D||ot===i.TEXTURE_2D_ARRAY?e.texImage3D(ot,_t,st,rt,nt,w.depth,0,yt,et,null):e.texImage2D(ot,_t,st,rt,nt,0,yt,et,null)}e.bindFramebuffer(i.FRAMEBUFFER,D),wt(w)?a.framebufferTexture2DMultisampleEXT(i.FRAMEBUFFER,ht,ot,z.__webglTexture,0,ce(w)):(ot===i.TEXTURE_2D||ot>=i.TEXTURE_CUBE_MAP_POSITIVE_X&&ot<=i.TEXTURE_CUBE_MAP_NEGATIVE_Z)&&i.framebufferTexture2D(i.FRAMEBUFFER,ht,ot,z.__webglTexture,_t),e.bindFramebuffer(i.FRAMEBUFFER,null)}function Nn(D,w,q){if(i.bindRenderbuffer(i.RENDERBUFFER,D),w.depthBuffer){let ht=w.depthTexture,ot=ht&&ht.isDepthTexture?ht.type:null,_t=y(w.stencilBuffer,ot),yt=w.stencilBuffer?i.DEPTH_STENCIL_ATTACHMENT:i.DEPTH_ATTACHMENT;wt(w)?a.renderbufferStorageMultisampleEXT(i.RENDERBUFFER,ce(w),_t,w.width,w.height):q?i.renderbufferStorageMultisample(i.RENDERBUFFER,ce(w),_t,w.width,w.height):i.renderbufferStorage(i.RENDERBUFFER,_t,w.width,w.height),i.framebufferRenderbuffer(i.FRAMEBUFFER,yt,i.RENDERBUFFER,D)}else{let ht=w.textures;for(let ot=0;ot<ht.length;ot++){let _t=ht[ot],yt=r.convert(_t.format,_t.colorSpace),et=r.convert(_t.type),st=T(_t.internalFormat,yt,et,_t.normalized,_t.colorSpace);wt(w)?a.renderbufferStorageMultisampleEXT(i.RENDERBUFFER,ce(w),st,w.width,w.height):q?i.renderbufferStorageMultisample(i.RENDERBUFFER,ce(w),st,w.width,w.height):i.renderbufferStorage(i.RENDERBUFFER,st,w.width,w.height)}}i.bindRenderbuffer(i.RENDERBUFFER,null)}function be(D,w,q){let ht=w.isWebGLCubeRenderTarget===!0;if(e.bindFramebuffer(i.FRAMEBUFFER,D),!(w.depthTexture&&w.depthTexture.isDepthTexture))throw new Error("THREE.WebGLTextures: renderTarget.depthTexture must be an instance of THREE.DepthTexture.");let ot=n.get(w.depthTexture);ot.__renderTarget=w;let _t=ht?w.depthTexture.image[0]:w.depthTexture.image;(!ot.__webglTexture||_t.width!==w.width||_t.height!==w.height)&&(_t.width=w.width,_t.height=w.height,w.depthTexture.needsUpdate=!0),ht?bt(w.depthTexture,0):mt(w.depthTexture,0);let yt=ot.__webglTexture,et=ce(w),st=ht?i.TEXTURE_CUBE_MAP_POSITIVE_X+q:i.TEXTURE_2D,pt=w.depthTexture.format===Bs?i.DEPTH_STENCIL_ATTACHMENT:i.DEPTH_ATTACHMENT;if(w.depthTexture.format===Ps)wt(w)?a.framebufferTexture2DMultisampleEXT(i.FRAMEBUFFER,pt,st,yt,0,et):i.framebufferTexture2D(i.FRAMEBUFFER,pt,st,yt,0);else if(w.depthTexture.format===Bs)wt(w)?a.framebufferTexture2DMultisampleEXT(i.FRAMEBUFFER,pt,st,yt,0,et):i.framebufferTexture2D(i.FRAMEBUFFER,pt,st,yt,0);else throw new Error("THREE.WebGLTextures: Unknown depthTexture format.")}function wn(D){let w=n.get(D),q=D.isWebGLCubeRenderTarget===!0;if(w.__boundDepthTexture!==D.depthTexture){let ht=D.depthTexture;if(w.__depthDisposeCallback&&w.__depthDisposeCallback(),ht){let ot=()=>{delete w.__boundDepthTexture,delete w.__depthDisposeCallback,ht.removeEventListener("dispose",ot)};ht.addEventListener("dispose",ot),w.__depthDisposeCallback=ot}w.__boundDepthTexture=ht}if(D.depthTexture&&!w.__autoAllocateDepthBuffer)if(q)for(let ht=0;ht<6;ht++)be(w.__webglFramebuffer[ht],D,ht);else D.texture.mipmaps.length>0?be(w.__webglFramebuffer[0],D,0):be(w.__webglFramebuffer,D,0);else if(q){w.__webglDepthbuffer=[];for(let ht=0;ht<6;ht++)if(e.bindFramebuffer(i.FRAMEBUFFER,w.__webglFramebuffer[ht]),w.__webglDepthbuffer[ht]===void 0)w.__webglDepthbuffer[ht]=i.createRenderbuffer(),Nn(w.__webglDepthbuffer[ht],D,!1);else{let ot=D.stencilBuffer?i.DEPTH_STENCIL_ATTACHMENT:i.DEPTH_ATTACHMENT,_t=w.__webglDepthbuffer[ht];i.bindRenderbuffer(i.RENDERBUFFER,_t),i.framebufferRenderbuffer(i.FRAMEBUFFER,ot,i.RENDERBUFFER,_t)}}else if(D.texture.mipmaps.length>0?e.bindFramebuffer(i.FRAMEBUFFER,w.__webglFramebuffer[0]):e.bindFramebuffer(i.FRAMEBUFFER,w.__webglFramebuffer),w.__webglDepthbuffer===void 0)w.__webglDepthbuffer=i.createRenderbuffer(),Nn(w.__webglDepthbuffer,D,!1);else{let ot=D.stencilBuffer?i.DEPTH_STENCIL_ATTACHMENT:i.DEPTH_ATTACHMENT,_t=w.__webglDepthbuffer;i.bindRenderbuffer(i.RENDERBUFFER,_t),i.framebufferRenderbuffer(i.FRAMEBUFFER,ot,i.RENDERBUFFER,_t)}e.bindFramebuffer(i.FRAMEBUFFER,null)}function on(D,w,q){let ht=n.get(D);w!==void 0&&Be(ht.__webglFramebuffer,D,D.texture,i.COLOR_ATTACHMENT0,i.TEXTURE_2D,0),q!==void 0&&wn(D)}function mn(D){let w=D.texture,q=n.get(D),ht=n.get(w);D.addEventListener("dispose",B),U(D);let ot=D.textures,_t=D.isWebGLCubeRenderTarget===!0,yt=ot.length>1;if(yt||(ht.__webglTexture===void 0&&(ht.__webglTexture=i.createTexture()),ht.__version=w.version,o.memory.textures++),_t){q.__webglFramebuffer=[];for(let et=0;et<6;et++)if(w.mipmaps.length>0){q.__webglFramebuffer[et]=[];for(let st=0;st<w.mipmaps.length;st++)q.__webglFramebuffer[et][st]=i.createFramebuffer()}else q.__webglFramebuffer[et]=i.createFramebuffer()}else{if(w.mipmaps.length>0){q.__webglFramebuffer=[];for(let et=0;et<w.mipmaps.length;et++)q.__webglFramebuffer[et]=i.createFramebuffer()}else q.__webglFramebuffer=i.createFramebuffer();if(yt)for(let et=0,st=ot.length;et<st;et++){let pt=n.get(ot[et]);pt.__webglTexture===void 0&&(pt.__webglTexture=i.createTexture(),o.memory.textures++)}if(D.samples>0&&wt(D)===!1){q.__webglMultisampledFramebuffer=i.createFramebuffer(),q.__webglColorRenderbuffer=[],e.bindFramebuffer(i.FRAMEBUFFER,q.__webglMultisampledFramebuffer);for(let et=0;et<ot.length;et++){let st=ot[et];q.__webglColorRenderbuffer[et]=i.createRenderbuffer(),i.bindRenderbuffer(i.RENDERBUFFER,q.__webglColorRenderbuffer[et]);let pt=r.convert(st.format,st.colorSpace),z=r.convert(st.type),rt=T(st.internalFormat,pt,z,st.normalized,st.colorSpace,D.isXRRenderTarget===!0),nt=ce(D);i.renderbufferStorageMultisample(i.RENDERBUFFER,nt,rt,D.width,D.height),i.framebufferRenderbuffer(i.FRAMEBUFFER,i.COLOR_ATTACHMENT0+et,i.RENDERBUFFER,q.__webglColorRenderbuffer[et])}i.bindRenderbuffer(i.RENDERBUFFER,null),D.depthBuffer&&(q.__webglDepthRenderbuffer=i.createRenderbuffer(),Nn(q.__webglDepthRenderbuffer,D,!0)),e.bindFramebuffer(i.FRAMEBUFFER,null)}}if(_t){e.bindTexture(i.TEXTURE_CUBE_MAP,ht.__webglTexture),ge(i.TEXTURE_CUBE_MAP,w);for(let et=0;et<6;et++)if(w.mipmaps.length>0)for(let st=0;st<w.mipmaps.length;st++)Be(q.__webglFramebuffer[et][st],D,w,i.COLOR_ATTACHMENT0,i.TEXTURE_CUBE_MAP_POSITIVE_X+et,st);else Be(q.__webglFramebuffer[et],D,w,i.COLOR_ATTACHMENT0,i.TEXTURE_CUBE_MAP_POSITIVE_X+et,0);E(w)?S(i.TEXTURE_CUBE_MAP):w.mipmaps.length>0&&i.texParameteri(i.TEXTURE_CUBE_MAP,i.TEXTURE_MAX_LEVEL,w.mipmaps.length-1),e.unbindTexture()}else if(yt){for(let et=0,st=ot.length;et<st;et++){let pt=ot[et],z=n.get(pt),rt=i.TEXTURE_2D;(D.isWebGL3DRenderTarget||D.isWebGLArrayRenderTarget)&&(rt=D.isWebGL3DRenderTarget?i.TEXTURE_3D:i.TEXTURE_2D_ARRAY),e.bindTexture(rt,z.__webglTexture),ge(rt,pt),Be(q.__webglFramebuffer,D,pt,i.COLOR_ATTACHMENT0+et,rt,0),E(pt)&&S(rt)}e.unbindTexture()}else{let et=i.TEXTURE_2D;if((D.isWebGL3DRenderTarget||D.isWebGLArrayRenderTarget)&&(et=D.isWebGL3DRenderTarget?i.TEXTURE_3D:i.TEXTURE_2D_ARRAY),e.bindTexture(et,ht.__webglTexture),ge(et,w),w.mipmaps.length>0)for(let st=0;st<w.mipmaps.length;st++)Be(q.__webglFramebuffer[st],D,w,i.COLOR_ATTACHMENT0,et,st);else Be(q.__webglFramebuffer,D,w,i.COLOR_ATTACHMENT0,et,0);E(w)?S(et):w.mipmaps.length>0&&i.texParameteri(et,i.TEXTURE_MAX_LEVEL,w.mipmaps.length-1),e.unbindTexture()}D.depthBuffer&&wn(D)}function V(D){let w=D.textures;for(let q=0,ht=w.length;q<ht;q++){let ot=w[q];if(E(ot)&&ot.mipmapsAutoUpdate===!0){let _t=M(D),yt=n.get(ot).__webglTexture;e.bindTexture(_t,yt),S(_t),e.unbindTexture()}}}let It=[];function Kt(D){if(D.samples>0){if(wt(D)===!1){let w=D.textures,q=D.width,ht=D.height,ot=i.COLOR_BUFFER_BIT,_t=D.stencilBuffer?i.DEPTH_STENCIL_ATTACHMENT:i.DEPTH_ATTACHMENT,yt=n.get(D),et=w.length>1;if(et)for(let pt=0;pt<w.length;pt++)e.bindFramebuffer(i.FRAMEBUFFER,yt.__webglMultisampledFramebuffer),i.framebufferRenderbuffer(i.FRAMEBUFFER,i.COLOR_ATTACHMENT0+pt,i.RENDERBUFFER,null),e.bindFramebuffer(i.FRAMEBUFFER,yt.__webglFramebuffer),i.framebufferTexture2D(i.DRAW_FRAMEBUFFER,i.COLOR_ATTACHMENT0+pt,i.TEXTURE_2D,null,0);e.bindFramebuffer(i.READ_FRAMEBUFFER,yt.__webglMultisampledFramebuffer),D.texture.mipmaps.length>0?e.bindFramebuffer(i.DRAW_FRAMEBUFFER,yt.__webglFramebuffer[0]):e.bindFramebuffer(i.DRAW_FRAMEBUFFER,yt.__webglFramebuffer);for(let pt=0;pt<w.length;pt++){if(D.resolveDepthBuffer&&(D.depthBuffer&&(ot|=i.DEPTH_BUFFER_BIT),D.stencilBuffer&&D.resolveStencilBuffer&&(ot|=i.STENCIL_BUFFER_BIT)),et){i.framebufferRenderbuffer(i.READ_FRAMEBUFFER,i.COLOR_ATTACHMENT0,i.RENDERBUFFER,yt.__webglColorRenderbuffer[pt]);let z=n.get(w[pt]).__webglTexture;i.framebufferTexture2D(i.DRAW_FRAMEBUFFER,i.COLOR_ATTACHMENT0,i.TEXTURE_2D,z,0)}i.blitFramebuffer(0,0,q,ht,0,0,q,ht,ot,i.NEAREST),c===!0&&(It.length=0,It.push(i.COLOR_ATTACHMENT0+pt),D.depthBuffer&&D.storeMultisampledDepthBuffer===!1&&It.push(_t),i.invalidateFramebuffer(i.READ_FRAMEBUFFER,It))}if(e.bindFramebuffer(i.READ_FRAMEBUFFER,null),e.bindFramebuffer(i.DRAW_FRAMEBUFFER,null),et)for(let pt=0;pt<w.length;pt++){e.bindFramebuffer(i.FRAMEBUFFER,yt.__webglMultisampledFramebuffer),i.framebufferRenderbuffer(i.FRAMEBUFFER,i.COLOR_ATTACHMENT0+pt,i.RENDERBUFFER,yt.__webglColorRenderbuffer[pt]);let z=n.get(w[pt]).__webglTexture;e.bindFramebuffer(i.FRAMEBUFFER,yt.__webglFramebuffer),i.framebufferTexture2D(i.DRAW_FRAMEBUFFER,i.COLOR_ATTACHMENT0+pt,i.TEXTURE_2D,z,0)}e.bindFramebuffer(i.DRAW_FRAMEBUFFER,yt.__webglMultisampledFramebuffer)}else if(D.depthBuffer&&D.storeMultisampledDepthBuffer===!1&&c){let w=D.stencilBuffer?i.DEPTH_STENCIL_ATTACHMENT:i.DEPTH_ATTACHMENT;i.invalidateFramebuffer(i.DRAW_FRAMEBUFFER,[w])}}}function ce(D){return Math.min(s.maxSamples,D.samples)}function wt(D){let w=n.get(D);return D.samples>0&&t.has("WEBGL_multisampled_render_to_texture")===!0&&w.__useRenderToTexture!==!1}function ze(D){let w=o.render.frame;u.get(D)!==w&&(u.set(D,w),D.update())}function Wt(D,w){let q=D.colorSpace,ht=D.format,ot=D.type;return D.isCompressedTexture===!0||D.isVideoTexture===!0||q!==Ca&&q!==ks&&(Se.getTransfer(q)===Pe?(ht!==Ji||ot!==gi)&&jt("WebGLTextures: sRGB encoded textures have to use RGBAFormat and UnsignedByteType."):te("WebGLTextures: Unsupported texture color space:",q)),w}function Jt(D){return typeof HTMLImageElement<"u"&&D instanceof HTMLImageElement?(l.width=D.naturalWidth||D.width,l.height=D.naturalHeight||D.height):typeof VideoFrame<"u"&&D instanceof VideoFrame?(l.width=D.displayWidth,l.height=D.displayHeight):(l.width=D.width,l.height=D.height),l}this.allocateTextureUnit=dt,this.resetTextureUnits=Q,this.getTextureUnits=it,this.setTextureUnits=ut,this.setTexture2D=mt,this.setTexture2DArray=xt,this.setTexture3D=Rt,this.setTextureCube=bt,this.rebindTextures=on,this.setupRenderTarget=mn,this.updateRenderTargetMipmap=V,this.updateMultisampleRenderTarget=Kt,this.setupDepthRenderbuffer=wn,this.setupFrameBufferTexture=Be,this.useMultisampledRTT=wt,this.dispose=k}function xw(i,t){function e(n,s=ks){let r,o=Se.getTransfer(s);if(n===gi)return i.UNSIGNED_BYTE;if(n===$c)return i.UNSIGNED_SHORT_4_4_4_4;if(n===Zc)return i.UNSIGNED_SHORT_5_5_5_1;if(n===Ud)return i.UNSIGNED_INT_5_9_9_9_REV;if(n===Od)return i.UNSIGNED_INT_10F_11F_11F_REV;if(n===Dd)return i.BYTE;if(n===Nd)return i.SHORT;if(n===Vo)return i.UNSIGNED_SHORT;if(n===qc)return i.INT;if(n===$i)return i.UNSIGNED_INT;if(n===Fi)return i.FLOAT;if(n===Zi)return i.HALF_FLOAT;if(n===Fd)return i.ALPHA;if(n===Bd)return i.RGB;if(n===Ji)return i.RGBA;if(n===Ps)return i.DEPTH_COMPONENT;if(n===Bs)return i.DEPTH_STENCIL;if(n===Jc)return i.RED;if(n===jc)return i.RED_INTEGER;if(n===dr)return i.RG;if(n===Kc)return i.RG_INTEGER;if(n===Qc)return i.RGBA_INTEGER;if(n===sl||n===rl||n===ol||n===al)if(o===Pe)if(r=t.get("WEBGL_compressed_texture_s3tc_srgb"),r!==null){if(n===sl)return r.COMPRESSED_SRGB_S3TC_DXT1_EXT;if(n===rl)return r.COMPRESSED_SRGB_ALPHA_S3TC_DXT1_EXT;if(n===ol)return r.COMPRESSED_SRGB_ALPHA_S3TC_DXT3_EXT;if(n===al)return r.COMPRESSED_SRGB_ALPHA_S3TC_DXT5_EXT}else return null;else if(r=t.get("WEBGL_compressed_texture_s3tc"),r!==null){if(n===sl)return r.COMPRESSED_RGB_S3TC_DXT1_EXT;if(n===rl)return r.COMPRESSED_RGBA_S3TC_DXT1_EXT;if(n===ol)return r.COMPRESSED_RGBA_S3TC_DXT3_EXT;if(n===al)return r.COMPRESSED_RGBA_S3TC_DXT5_EXT}else return null;if(n===th||n===eh||n===nh||n===ih)if(r=t.get("WEBGL_compressed_texture_pvrtc"),r!==null){if(n===th)return r.COMPRESSED_RGB_PVRTC_4BPPV1_IMG;if(n===eh)return r.COMPRESSED_RGB_PVRTC_2BPPV1_IMG;if(n===nh)return r.COMPRESSED_RGBA_PVRTC_4BPPV1_IMG;if(n===ih)return r.COMPRESSED_RGBA_PVRTC_2BPPV1_IMG}else return null;if(n===sh||n===rh||n===oh||n===ah||n===lh||n===ll||n===ch)if(r=t.get("WEBGL_compressed_texture_etc"),r!==null){if(n===sh||n===rh)return o===Pe?r.COMPRESSED_SRGB8_ETC2:r.COMPRESSED_RGB8_ETC2;if(n===oh)return o===Pe?r.COMPRESSED_SRGB8_ALPHA8_ETC2_EAC:r.COMPRESSED_RGBA8_ETC2_EAC;if(n===ah)return r.COMPRESSED_R11_EAC;if(n===lh)return r.COMPRESSED_SIGNED_R11_EAC;if(n===ll)return r.COMPRESSED_RG11_EAC;if(n===ch)return r.COMPRESSED_SIGNED_RG11_EAC}else return null;if(n===hh||n===uh||n===dh||n===fh||n===ph||n===mh||n===gh||n===_h||n===xh||n===yh||n===vh||n===Sh||n===Mh||n===bh)if(r=t.get("WEBGL_compressed_texture_astc"),r!==null){if(n===hh)return o===Pe?r.COMPRESSED_SRGB8_ALPHA8_ASTC_4x4_KHR:r.COMPRESSED_RGBA_ASTC_4x4_KHR;if(n===uh)return o===Pe?r.COMPRESSED_SRGB8_ALPHA8_ASTC_5x4_KHR:r.COMPRESSED_RGBA_ASTC_5x4_KHR;if(n===dh)return o===Pe?r.COMPRESSED_SRGB8_ALPHA8_ASTC_5x5_KHR:r.COMPRESSED_RGBA_ASTC_5x5_KHR;if(n===fh)return o===Pe?r.COMPRESSED_SRGB8_ALPHA8_ASTC_6x5_KHR:r.COMPRESSED_RGBA_ASTC_6x5_KHR;if(n===ph)return o===Pe?r.COMPRESSED_SRGB8_ALPHA8_ASTC_6x6_KHR:r.COMPRESSED_RGBA_ASTC_6x6_KHR;if(n===mh)return o===Pe?r.COMPRESSED_SRGB8_ALPHA8_ASTC_8x5_KHR:r.COMPRESSED_RGBA_ASTC_8x5_KHR;if(n===gh)return o===Pe?r.COMPRESSED_SRGB8_ALPHA8_ASTC_8x6_KHR:r.COMPRESSED_RGBA_ASTC_8x6_KHR;if(n===_h)return o===Pe?r.COMPRESSED_SRGB8_ALPHA8_ASTC_8x8_KHR:r.COMPRESSED_RGBA_ASTC_8x8_KHR;if(n===xh)return o===Pe?r.COMPRESSED_SRGB8_ALPHA8_ASTC_10x5_KHR:r.COMPRESSED_RGBA_ASTC_10x5_KHR;if(n===yh)return o===Pe?r.COMPRESSED_SRGB8_ALPHA8_ASTC_10x6_KHR:r.COMPRESSED_RGBA_ASTC_10x6_KHR;if(n===vh)return o===Pe?r.COMPRESSED_SRGB8_ALPHA8_ASTC_10x8_KHR:r.COMPRESSED_RGBA_ASTC_10x8_KHR;if(n===Sh)return o===Pe?r.COMPRESSED_SRGB8_ALPHA8_ASTC_10x10_KHR:r.COMPRESSED_RGBA_ASTC_10x10_KHR;if(n===Mh)return o===Pe?r.COMPRESSED_SRGB8_ALPHA8_ASTC_12x10_KHR:r.COMPRESSED_RGBA_ASTC_12x10_KHR;if(n===bh)return o===Pe?r.COMPRESSED_SRGB8_ALPHA8_ASTC_12x12_KHR:r.COMPRESSED_RGBA_ASTC_12x12_KHR}else return null;if(n===wh||n===Th||n===Eh)if(r=t.get("EXT_texture_compression_bptc"),r!==null){if(n===wh)return o===Pe?r.COMPRESSED_SRGB_ALPHA_BPTC_UNORM_EXT:r.COMPRESSED_RGBA_BPTC_UNORM_EXT;if(n===Th)return r.COMPRESSED_RGB_BPTC_SIGNED_FLOAT_EXT;if(n===Eh)return r.COMPRESSED_RGB_BPTC_UNSIGNED_FLOAT_EXT}else return null;if(n===Ah||n===Ch||n===cl||n===Rh)if(r=t.get("EXT_texture_compression_rgtc"),r!==null){if(n===Ah)return r.COMPRESSED_RED_RGTC1_EXT;if(n===Ch)return r.COMPRESSED_SIGNED_RED_RGTC1_EXT;if(n===cl)return r.COMPRESSED_RED_GREEN_RGTC2_EXT;if(n===Rh)return r.COMPRESSED_SIGNED_RED_GREEN_RGTC2_EXT}else return null;return n===Nr?i.UNSIGNED_INT_24_8:i[n]!==void 0?i[n]:null}return{convert:e}}var yw=`
+void main() {
+
+	gl_Position = vec4( position, 1.0 );
+
+}`,vw=`
+uniform sampler2DArray depthColor;
+uniform float depthWidth;
+uniform float depthHeight;
+
+void main() {
+
+	vec2 coord = vec2( gl_FragCoord.x / depthWidth, gl_FragCoord.y / depthHeight );
+
+	if ( coord.x >= 1.0 ) {
+
+		gl_FragDepth = texture( depthColor, vec3( coord.x - 1.0, coord.y, 1 ) ).r;
+
+	} else {
+
+		gl_FragDepth = texture( depthColor, vec3( coord.x, coord.y, 0 ) ).r;
+
+	}
+
+}`,af=class{constructor(){this.texture=null,this.mesh=null,this.depthNear=0,this.depthFar=0}init(t,e){if(this.texture===null){let n=new Ga(t.texture);(t.depthNear!==e.depthNear||t.depthFar!==e.depthFar)&&(this.depthNear=t.depthNear,this.depthFar=t.depthFar),this.texture=n}}getMesh(t){if(this.texture!==null&&this.mesh===null){let e=t.cameras[0].viewport,n=new mi({vertexShader:yw,fragmentShader:vw,uniforms:{depthColor:{value:this.texture},depthWidth:{value:e.z},depthHeight:{value:e.w}}});this.mesh=new Mt(new Ui(20,20),n)}return this.mesh}reset(){this.texture=null,this.mesh=null}getDepthTexture(){return this.texture}},lf=class extends qi{constructor(t,e){super();let n=this,s=null,r=1,o=null,a="local-floor",c=1,l=null,u=null,h=null,d=null,f=null,p=null,_=typeof XRWebGLBinding<"u",m=new af,g={},x=e.getContextAttributes(),E=null,S=null,M=[],T=[],y=new kt,b=null,U=null,I=new An;I.viewport=new Le;let L=new An;L.viewport=new Le;let B=[I,L],W=new Gc,P=null,k=null;this.cameraAutoUpdate=!0,this.enabled=!1,this.isPresenting=!1,this.getController=function(tt){let mt=M[tt];return mt===void 0&&(mt=new Po,M[tt]=mt),mt.getTargetRaySpace()},this.getControllerGrip=function(tt){let mt=M[tt];return mt===void 0&&(mt=new Po,M[tt]=mt),mt.getGripSpace()},this.getHand=function(tt){let mt=M[tt];return mt===void 0&&(mt=new Po,M[tt]=mt),mt.getHandSpace()};function Y(tt){let mt=T.indexOf(tt.inputSource);if(mt===-1)return;let xt=M[mt];xt!==void 0&&(xt.update(tt.inputSource,tt.frame,l||o),xt.dispatchEvent({type:tt.type,data:tt.inputSource}))}function G(){s.removeEventListener("select",Y),s.removeEventListener("selectstart",Y),s.removeEventListener("selectend",Y),s.removeEventListener("squeeze",Y),s.removeEventListener("squeezestart",Y),s.removeEventListener("squeezeend",Y),s.removeEventListener("end",G),s.removeEventListener("inputsourceschange",at);for(let tt=0;tt<M.length;tt++){let mt=T[tt];mt!==null&&(T[tt]=null,M[tt].disconnect(mt))}P=null,k=null,m.reset();for(let tt in g)delete g[tt];if(t.setRenderTarget(E),f=null,d=null,h=null,s=null,S=null,dt.stop(),n.isPresenting=!1,t.setPixelRatio(b),t.setSize(y.width,y.height,!1),U!==null){let tt=U.camera;tt.fov=U.fov,tt.zoom=U.zoom,tt.updateProjectionMatrix(),U=null}n.dispatchEvent({type:"sessionend"})}this.setFramebufferScaleFactor=function(tt){r=tt,n.isPresenting===!0&&jt("WebXRManager: Cannot change framebuffer scale while presenting.")},this.setReferenceSpaceType=function(tt){a=tt,n.isPresenting===!0&&jt("WebXRManager: Cannot change reference space type while presenting.")},this.getReferenceSpace=function(){return l||o},this.setReferenceSpace=function(tt){l=tt},this.getBaseLayer=function(){return d!==null?d:f},this.getBinding=function(){return h===null&&_&&(h=new XRWebGLBinding(s,e)),h},this.getFrame=function(){return p},this.getSession=function(){return s},this.setSession=async function(tt){if(s=tt,s!==null){if(E=t.getRenderTarget(),s.addEventListener("select",Y),s.addEventListener("selectstart",Y),s.addEventListener("selectend",Y),s.addEventListener("squeeze",Y),s.addEventListener("squeezestart",Y),s.addEventListener("squeezeend",Y),s.addEventListener("end",G),s.addEventListener("inputsourceschange",at),x.xrCompatible!==!0&&await e.makeXRCompatible(),b=t.getPixelRatio(),t.getSize(y),_&&"createProjectionLayer"in XRWebGLBinding.prototype){let xt=null,Rt=null,bt=null;x.depth&&(bt=x.stencil?e.DEPTH24_STENCIL8:e.DEPTH_COMPONENT24,xt=x.stencil?Bs:Ps,Rt=x.stencil?Nr:$i);let $t={colorFormat:e.RGBA8,depthFormat:bt,scaleFactor:r};h=this.getBinding(),d=h.createProjectionLayer($t),s.updateRenderState({layers:[d]}),t.setPixelRatio(1),t.setSize(d.textureWidth,d.textureHeight,!1),S=new ci(d.textureWidth,d.textureHeight,{format:Ji,type:gi,depthTexture:new Us(d.textureWidth,d.textureHeight,Rt,void 0,void 0,void 0,void 0,void 0,void 0,xt),stencilBuffer:x.stencil,colorSpace:t.outputColorSpace,samples:x.antialias?4:0,resolveDepthBuffer:d.ignoreDepthValues===!1,resolveStencilBuffer:d.ignoreDepthValues===!1,storeMultisampledDepthBuffer:d.ignoreDepthValues===!1,storeMultisampledStencilBuffer:d.ignoreDepthValues===!1})}else{let xt={antialias:x.antialias,alpha:!0,depth:x.depth,stencil:x.stencil,framebufferScaleFactor:r};f=new XRWebGLLayer(s,e,xt),s.updateRenderState({baseLayer:f}),t.setPixelRatio(1),t.setSize(f.framebufferWidth,f.framebufferHeight,!1),S=new ci(f.framebufferWidth,f.framebufferHeight,{format:Ji,type:gi,colorSpace:t.outputColorSpace,stencilBuffer:x.stencil,resolveDepthBuffer:f.ignoreDepthValues===!1,resolveStencilBuffer:f.ignoreDepthValues===!1,storeMultisampledDepthBuffer:f.ignoreDepthValues===!1,storeMultisampledStencilBuffer:f.ignoreDepthValues===!1})}S.isXRRenderTarget=!0,this.setFoveation(c),l=null,o=await s.requestReferenceSpace(a),dt.setContext(s),dt.start(),n.isPresenting=!0,n.dispatchEvent({type:"sessionstart"})}},this.getEnvironmentBlendMode=function(){if(s!==null)return s.environmentBlendMode},this.getDepthTexture=function(){return m.getDepthTexture()};function at(tt){for(let mt=0;mt<tt.removed.length;mt++){let xt=tt.removed[mt],Rt=T.indexOf(xt);Rt>=0&&(T[Rt]=null,M[Rt].disconnect(xt))}for(let mt=0;mt<tt.added.length;mt++){let xt=tt.added[mt],Rt=T.indexOf(xt);if(Rt===-1){for(let $t=0;$t<M.length;$t++)if($t>=T.length){T.push(xt),Rt=$t;break}else if(T[$t]===null){T[$t]=xt,Rt=$t;break}if(Rt===-1)break}let bt=M[Rt];bt&&bt.connect(xt)}}function $(tt,mt){mt===null?tt.matrixWorld.copy(tt.matrix):tt.matrixWorld.multiplyMatrices(mt.matrixWorld,tt.matrix),tt.matrixWorldInverse.copy(tt.matrixWorld).invert()}this.updateCamera=function(tt){if(s===null)return;let mt=tt.near,xt=tt.far;m.texture!==null&&(m.depthNear>0&&(mt=m.depthNear),m.depthFar>0&&(xt=m.depthFar)),W.near=L.near=I.near=mt,W.far=L.far=I.far=xt,(P!==W.near||k!==W.far)&&(s.updateRenderState({depthNear:W.near,depthFar:W.far}),P=W.near,k=W.far),W.layers.mask=tt.layers.mask|6,I.layers.mask=W.layers.mask&-5,L.layers.mask=W.layers.mask&-3;let Rt=tt.parent,bt=W.cameras;$(W,Rt);for(let $t=0;$t<bt.length;$t++)$(bt[$t],Rt);W.projectionMatrix.copy(I.projectionMatrix),W.projectionMatrixInverse.copy(I.projectionMatrixInverse),U===null&&tt.isPerspectiveCamera&&(U={camera:tt,fov:tt.fov,zoom:tt.zoom}),Q(tt,W,Rt)};function Q(tt,mt,xt){xt===null?tt.matrix.copy(mt.matrixWorld):(tt.matrix.copy(xt.matrixWorld),tt.matrix.invert(),tt.matrix.multiply(mt.matrixWorld)),tt.matrix.decompose(tt.position,tt.quaternion,tt.scale),tt.updateMatrixWorld(!0),tt.projectionMatrix.copy(mt.projectionMatrix),tt.projectionMatrixInverse.copy(mt.projectionMatrixInverse),tt.isPerspectiveCamera&&(tt.fov=Tr*2*Math.atan(1/tt.projectionMatrix.elements[5]),tt.zoom=1)}this.getCamera=function(){return W},this.getFoveation=function(){if(!(d===null&&f===null))return c},this.setFoveation=function(tt){c=tt,d!==null&&(d.fixedFoveation=tt),f!==null&&f.fixedFoveation!==void 0&&(f.fixedFoveation=tt)},this.hasDepthSensing=function(){return m.texture!==null},this.getDepthSensingMesh=function(){return m.getMesh(W)},this.getCameraTexture=function(tt){return g[tt]};let it=null;function ut(tt,mt){if(u=mt.getViewerPose(l||o),p=mt,u!==null){let xt=u.views;f!==null&&(t.setRenderTargetFramebuffer(S,f.framebuffer),t.setRenderTarget(S));let Rt=!1;xt.length!==W.cameras.length&&(W.cameras.length=0,Rt=!0);for(let Xt=0;Xt<xt.length;Xt++){let ge=xt[Xt],de=null;if(f!==null)de=f.getViewport(ge);else{let Qe=h.getViewSubImage(d,ge);de=Qe.viewport,Xt===0&&(t.setRenderTargetTextures(S,Qe.colorTexture,Qe.depthStencilTexture),t.setRenderTarget(S))}let oe=B[Xt];oe===void 0&&(oe=new An,oe.layers.enable(Xt),oe.viewport=new Le,B[Xt]=oe),oe.matrix.fromArray(ge.transform.matrix),oe.matrix.decompose(oe.position,oe.quaternion,oe.scale),oe.projectionMatrix.fromArray(ge.projectionMatrix),oe.projectionMatrixInverse.copy(oe.projectionMatrix).invert(),oe.viewport.set(de.x,de.y,de.width,de.height),Xt===0&&(W.matrix.copy(oe.matrix),W.matrix.decompose(W.position,W.quaternion,W.scale)),Rt===!0&&W.cameras.push(oe)}let bt=s.enabledFeatures;if(bt&&bt.includes("depth-sensing")&&s.depthUsage=="gpu-optimized"&&_){h=n.getBinding();let Xt=h.getDepthInformation(xt[0]);Xt&&Xt.isValid&&Xt.texture&&m.init(Xt,s.renderState)}if(bt&&bt.includes("camera-access")&&_){t.state.unbindTexture(),h=n.getBinding();for(let Xt=0;Xt<xt.length;Xt++){let ge=xt[Xt].camera;if(ge){let de=g[ge];de||(de=new Ga,g[ge]=de);let oe=h.getCameraImage(ge);de.sourceTexture=oe}}}}for(let xt=0;xt<M.length;xt++){let Rt=T[xt],bt=M[xt];Rt!==null&&bt!==void 0&&bt.update(Rt,mt,l||o)}it&&it(tt,mt),mt.detectedPlanes&&n.dispatchEvent({type:"planesdetected",data:mt}),p=null}let dt=new Tg;dt.setAnimationLoop(ut),this.setAnimationLoop=function(tt){it=tt},this.dispose=function(){}}},Sw=new qt,Ug=new re;Ug.set(-1,0,0,0,1,0,0,0,1);function Mw(i,t){function e(m,g){m.matrixAutoUpdate===!0&&m.updateMatrix(),g.value.copy(m.matrix)}function n(m,g){g.color.getRGB(m.fogColor.value,$d(i)),g.isFog?(m.fogNear.value=g.near,m.fogFar.value=g.far):g.isFogExp2&&(m.fogDensity.value=g.density)}function s(m,g,x,E,S){g.isNodeMaterial?g.uniformsNeedUpdate=!1:g.isMeshBasicMaterial?r(m,g):g.isMeshLambertMaterial?(r(m,g),g.envMap&&(m.envMapIntensity.value=g.envMapIntensity)):g.isMeshToonMaterial?(r(m,g),h(m,g)):g.isMeshPhongMaterial?(r(m,g),u(m,g),g.envMap&&(m.envMapIntensity.value=g.envMapIntensity)):g.isMeshStandardMaterial?(r(m,g),d(m,g),g.isMeshPhysicalMaterial&&f(m,g,S)):g.isMeshMatcapMaterial?(r(m,g),p(m,g)):g.isMeshDepthMaterial?r(m,g):g.isMeshDistanceMaterial?(r(m,g),_(m,g)):g.isMeshNormalMaterial?r(m,g):g.isLineBasicMaterial?(o(m,g),g.isLineDashedMaterial&&a(m,g)):g.isPointsMaterial?c(m,g,x,E):g.isSpriteMaterial?l(m,g):g.isShadowMaterial?(m.color.value.copy(g.color),m.opacity.value=g.opacity):g.isShaderMaterial&&(g.uniformsNeedUpdate=!1)}function r(m,g){m.opacity.value=g.opacity,g.color&&m.diffuse.value.copy(g.color),g.emissive&&m.emissive.value.copy(g.emissive).multiplyScalar(g.emissiveIntensity),g.map&&(m.map.value=g.map,e(g.map,m.mapTransform)),g.alphaMap&&(m.alphaMap.value=g.alphaMap,e(g.alphaMap,m.alphaMapTransform)),g.bumpMap&&(m.bumpMap.value=g.bumpMap,e(g.bumpMap,m.bumpMapTransform),m.bumpScale.value=g.bumpScale,g.side===Xn&&(m.bumpScale.value*=-1)),g.normalMap&&(m.normalMap.value=g.normalMap,e(g.normalMap,m.normalMapTransform),m.normalScale.value.copy(g.normalScale),g.side===Xn&&m.normalScale.value.negate()),g.displacementMap&&(m.displacementMap.value=g.displacementMap,e(g.displacementMap,m.displacementMapTransform),m.displacementScale.value=g.displacementScale,m.displacementBias.value=g.displacementBias),g.emissiveMap&&(m.emissiveMap.value=g.emissiveMap,e(g.emissiveMap,m.emissiveMapTransform)),g.specularMap&&(m.specularMap.value=g.specularMap,e(g.specularMap,m.specularMapTransform)),g.alphaTest>0&&(m.alphaTest.value=g.alphaTest);let x=t.get(g),E=x.envMap,S=x.envMapRotation;E&&(m.envMap.value=E,m.envMapRotation.value.setFromMatrix4(Sw.makeRotationFromEuler(S)).transpose(),E.isCubeTexture&&E.isRenderTargetTexture===!1&&m.envMapRotation.value.premultiply(Ug),m.reflectivity.value=g.reflectivity,m.ior.value=g.ior,m.refractionRatio.value=g.refractionRatio),g.lightMap&&(m.lightMap.value=g.lightMap,m.lightMapIntensity.value=g.lightMapIntensity,e(g.lightMap,m.lightMapTransform)),g.aoMap&&(m.aoMap.value=g.aoMap,m.aoMapIntensity.value=g.aoMapIntensity,e(g.aoMap,m.aoMapTransform))}function o(m,g){m.diffuse.value.copy(g.color),m.opacity.value=g.opacity,g.map&&(m.map.value=g.map,e(g.map,m.mapTransform))}function a(m,g){m.dashSize.value=g.dashSize,m.totalSize.value=g.dashSize+g.gapSize,m.scale.value=g.scale}function c(m,g,x,E){m.diffuse.value.copy(g.color),m.opacity.value=g.opacity,m.size.value=g.size*x,m.scale.value=E*.5,g.map&&(m.map.value=g.map,e(g.map,m.uvTransform)),g.alphaMap&&(m.alphaMap.value=g.alphaMap,e(g.alphaMap,m.alphaMapTransform)),g.alphaTest>0&&(m.alphaTest.value=g.alphaTest)}function l(m,g){m.diffuse.value.copy(g.color),m.opacity.value=g.opacity,m.rotation.value=g.rotation,g.map&&(m.map.value=g.map,e(g.map,m.mapTransform)),g.alphaMap&&(m.alphaMap.value=g.alphaMap,e(g.alphaMap,m.alphaMapTransform)),g.alphaTest>0&&(m.alphaTest.value=g.alphaTest)}function u(m,g){m.specular.value.copy(g.specular),m.shininess.value=Math.max(g.shininess,1e-4)}function h(m,g){g.gradientMap&&(m.gradientMap.value=g.gradientMap)}function d(m,g){m.metalness.value=g.metalness,g.metalnessMap&&(m.metalnessMap.value=g.metalnessMap,e(g.metalnessMap,m.metalnessMapTransform)),m.roughness.value=g.roughness,g.roughnessMap&&(m.roughnessMap.value=g.roughnessMap,e(g.roughnessMap,m.roughnessMapTransform)),g.envMap&&(m.envMapIntensity.value=g.envMapIntensity)}function f(m,g,x){m.ior.value=g.ior,g.diffuseRoughness>0&&(m.diffuseRoughness.value=g.diffuseRoughness,g.diffuseRoughnessMap&&(m.diffuseRoughnessMap.value=g.diffuseRoughnessMap,e(g.diffuseRoughnessMap,m.diffuseRoughnessMapTransform))),g.sheen>0&&(m.sheenColor.value.copy(g.sheenColor).multiplyScalar(g.sheen),m.sheenRoughness.value=g.sheenRoughness,g.sheenColorMap&&(m.sheenColorMap.value=g.sheenColorMap,e(g.sheenColorMap,m.sheenColorMapTransform)),g.sheenRoughnessMap&&(m.sheenRoughnessMap.value=g.sheenRoughnessMap,e(g.sheenRoughnessMap,m.sheenRoughnessMapTransform))),g.clearcoat>0&&(m.clearcoat.value=g.clearcoat,m.clearcoatRoughness.value=g.clearcoatRoughness,g.clearcoatMap&&(m.clearcoatMap.value=g.clearcoatMap,e(g.clearcoatMap,m.clearcoatMapTransform)),g.clearcoatRoughnessMap&&(m.clearcoatRoughnessMap.value=g.clearcoatRoughnessMap,e(g.clearcoatRoughnessMap,m.clearcoatRoughnessMapTransform)),g.clearcoatNormalMap&&(m.clearcoatNormalMap.value=g.clearcoatNormalMap,e(g.clearcoatNormalMap,m.clearcoatNormalMapTransform),m.clearcoatNormalScale.value.copy(g.clearcoatNormalScale),g.side===Xn&&m.clearcoatNormalScale.value.negate())),g.dispersion>0&&(m.dispersion.value=g.dispersion),g.retroreflectivity>0&&(m.retroreflectivity.value=g.retroreflectivity),g.iridescence>0&&(m.iridescence.value=g.iridescence,m.iridescenceIOR.value=g.iridescenceIOR,m.iridescenceThicknessMinimum.value=g.iridescenceThicknessMinimum,m.iridescenceThicknessMaximum.value=g.iridescenceThicknessMaximum,g.iridescenceMap&&(m.iridescenceMap.value=g.iridescenceMap,e(g.iridescenceMap,m.iridescenceMapTransform)),g.iridescenceThicknessMap&&(m.iridescenceThicknessMap.value=g.iridescenceThicknessMap,e(g.iridescenceThicknessMap,m.iridescenceThicknessMapTransform))),g.transmission>0&&(m.transmission.value=g.transmission,m.transmissionSamplerMap.value=x.texture,m.transmissionSamplerSize.value.set(x.width,x.height),g.transmissionMap&&(m.transmissionMap.value=g.transmissionMap,e(g.transmissionMap,m.transmissionMapTransform)),m.thickness.value=g.thickness,g.thicknessMap&&(m.thicknessMap.value=g.thicknessMap,e(g.thicknessMap,m.thicknessMapTransform)),m.attenuationDistance.value=g.attenuationDistance,m.attenuationColor.value.copy(g.attenuationColor)),g.anisotropy>0&&(m.anisotropyVector.value.set(g.anisotropy*Math.cos(g.anisotropyRotation),g.anisotropy*Math.sin(g.anisotropyRotation)),g.anisotropyMap&&(m.anisotropyMap.value=g.anisotropyMap,e(g.anisotropyMap,m.anisotropyMapTransform))),m.specularIntensity.value=g.specularIntensity,m.specularColor.value.copy(g.specularColor),g.specularColorMap&&(m.specularColorMap.value=g.specularColorMap,e(g.specularColorMap,m.specularColorMapTransform)),g.specularIntensityMap&&(m.specularIntensityMap.value=g.specularIntensityMap,e(g.specularIntensityMap,m.specularIntensityMapTransform))}function p(m,g){g.matcap&&(m.matcap.value=g.matcap)}function _(m,g){let x=t.get(g).light;m.referencePosition.value.setFromMatrixPosition(x.matrixWorld),m.nearDistance.value=x.shadow.camera.near,m.farDistance.value=x.shadow.camera.far}return{refreshFogUniforms:n,refreshMaterialUniforms:s}}function bw(i,t,e,n){let s={},r={};function o(x,E){let S=E.program;n.uniformBlockBinding(x,S,s[x.id])}function a(x,E){let S=s[x.id];S===void 0&&(p(x),S=c(x),s[x.id]=S,x.addEventListener("dispose",m));let M=E.program;n.updateUBOMapping(x,M);let T=t.render.frame;r[x.id]!==T&&(l(x),r[x.id]=T)}function c(x){let E=i.createBuffer(),S=x.__size,M=x.usage;return i.bindBuffer(i.UNIFORM_BUFFER,E),i.bufferData(i.UNIFORM_BUFFER,S,M),i.bindBuffer(i.UNIFORM_BUFFER,null),E}function l(x){let E=s[x.id],S=x.uniforms,M=x.__cache;i.bindBuffer(i.UNIFORM_BUFFER,E);for(let T=0,y=S.length;T<y;T++){let b=S[T];if(Array.isArray(b))for(let U=0,I=b.length;U<I;U++)u(b[U],T,U,M);else u(b,T,0,M)}i.bindBuffer(i.UNIFORM_BUFFER,null)}function u(x,E,S,M){if(d(x,E,S,M)===!0){let T=x.__offset,y=x.value;if(Array.isArray(y)){let b=0;for(let U=0;U<y.length;U++){let I=y[U],L=_(I,!0);h(I,x.__data,b),b+=L.storage/Float32Array.BYTES_PER_ELEMENT}}else h(y,x.__data,0);i.bufferSubData(i.UNIFORM_BUFFER,T,x.__data)}}function h(x,E,S){typeof x=="number"||typeof x=="boolean"?E[S]=x:x.isMatrix3?(E[S]=x.elements[0],E[S+1]=x.elements[1],E[S+2]=x.elements[2],E[S+3]=0,E[S+4]=x.elements[3],E[S+5]=x.elements[4],E[S+6]=x.elements[5],E[S+7]=0,E[S+8]=x.elements[6],E[S+9]=x.elements[7],E[S+10]=x.elements[8],E[S+11]=0):ArrayBuffer.isView(x)?E.set(x.subarray(0,E.length-S),S):x.toArray(E,S)}function d(x,E,S,M){let T=x.value,y=E+"_"+S;if(Array.isArray(T)){M[y]===void 0&&(M[y]=[]);let b=M[y],U=!1;for(let I=0;I<T.length;I++)f(T[I],b,I)===!0&&(U=!0);return U}return f(T,M,y)}function f(x,E,S){if(E[S]===void 0)return typeof x=="number"||typeof x=="boolean"?E[S]=x:ArrayBuffer.isView(x)?E[S]=x.slice():E[S]=x.clone(),!0;{let M=E[S];if(typeof x=="number"||typeof x=="boolean"){if(M!==x)return E[S]=x,!0}else{if(ArrayBuffer.isView(x))return!0;if(M.equals(x)===!1)return M.copy(x),!0}}return!1}function p(x){let E=x.uniforms,S=0,M=16;for(let y=0,b=E.length;y<b;y++){let U=Array.isArray(E[y])?E[y]:[E[y]];for(let I=0,L=U.length;I<L;I++){let B=U[I],W=Array.isArray(B.value)?B.value:[B.value],P=Array.isArray(E[y])||Array.isArray(B.value),k=S;for(let G=0,at=W.length;G<at;G++){let $=W[G],Q=_($,P),it=S%M,ut=it%Q.boundary,dt=it+ut;S+=ut,dt!==0&&M-dt<Q.storage&&(S+=M-dt),G===0&&(k=S),S+=Q.storage}let Y=B.type==="int"?Int32Array:B.type==="uint"?Uint32Array:Float32Array;B.__data=new Y((S-k)/Float32Array.BYTES_PER_ELEMENT),B.__offset=k}}let T=S%M;return T>0&&(S+=M-T),x.__size=S,x.__cache={},this}function _(x,E){let S={boundary:0,storage:0};return typeof x=="number"||typeof x=="boolean"?(S.boundary=4,S.storage=4):x.isVector2?(S.boundary=8,S.storage=8):x.isVector3||x.isColor?(S.boundary=16,S.storage=12):x.isVector4?(S.boundary=16,S.storage=16):x.isMatrix3?(S.boundary=16,S.storage=48):x.isMatrix4?(S.boundary=16,S.storage=64):x.isTexture?jt("WebGLRenderer: Texture samplers can not be part of an uniforms group."):ArrayBuffer.isView(x)?(S.boundary=16,S.storage=x.byteLength):jt("WebGLRenderer: Unsupported uniform value type.",x),E===!0&&(S.boundary=16,S.storage=Math.ceil(S.storage/16)*16),S}function m(x){let E=x.target;E.removeEventListener("dispose",m),i.deleteBuffer(s[E.id]),delete s[E.id],delete r[E.id]}function g(){for(let x in s)i.deleteBuffer(s[x]);s={},r={}}return{bind:o,update:a,dispose:g}}var ww=new Uint16Array([12469,15057,12620,14925,13266,14620,13807,14376,14323,13990,14545,13625,14713,13328,14840,12882,14931,12528,14996,12233,15039,11829,15066,11525,15080,11295,15085,10976,15082,10705,15073,10495,13880,14564,13898,14542,13977,14430,14158,14124,14393,13732,14556,13410,14702,12996,14814,12596,14891,12291,14937,11834,14957,11489,14958,11194,14943,10803,14921,10506,14893,10278,14858,9960,14484,14039,14487,14025,14499,13941,14524,13740,14574,13468,14654,13106,14743,12678,14818,12344,14867,11893,14889,11509,14893,11180,14881,10751,14852,10428,14812,10128,14765,9754,14712,9466,14764,13480,14764,13475,14766,13440,14766,13347,14769,13070,14786,12713,14816,12387,14844,11957,14860,11549,14868,11215,14855,10751,14825,10403,14782,10044,14729,9651,14666,9352,14599,9029,14967,12835,14966,12831,14963,12804,14954,12723,14936,12564,14917,12347,14900,11958,14886,11569,14878,11247,14859,10765,14828,10401,14784,10011,14727,9600,14660,9289,14586,8893,14508,8533,15111,12234,15110,12234,15104,12216,15092,12156,15067,12010,15028,11776,14981,11500,14942,11205,14902,10752,14861,10393,14812,9991,14752,9570,14682,9252,14603,8808,14519,8445,14431,8145,15209,11449,15208,11451,15202,11451,15190,11438,15163,11384,15117,11274,15055,10979,14994,10648,14932,10343,14871,9936,14803,9532,14729,9218,14645,8742,14556,8381,14461,8020,14365,7603,15273,10603,15272,10607,15267,10619,15256,10631,15231,10614,15182,10535,15118,10389,15042,10167,14963,9787,14883,9447,14800,9115,14710,8665,14615,8318,14514,7911,14411,7507,14279,7198,15314,9675,15313,9683,15309,9712,15298,9759,15277,9797,15229,9773,15166,9668,15084,9487,14995,9274,14898,8910,14800,8539,14697,8234,14590,7790,14479,7409,14367,7067,14178,6621,15337,8619,15337,8631,15333,8677,15325,8769,15305,8871,15264,8940,15202,8909,15119,8775,15022,8565,14916,8328,14804,8009,14688,7614,14569,7287,14448,6888,14321,6483,14088,6171,15350,7402,15350,7419,15347,7480,15340,7613,15322,7804,15287,7973,15229,8057,15148,8012,15046,7846,14933,7611,14810,7357,14682,7069,14552,6656,14421,6316,14251,5948,14007,5528,15356,5942,15356,5977,15353,6119,15348,6294,15332,6551,15302,6824,15249,7044,15171,7122,15070,7050,14949,6861,14818,6611,14679,6349,14538,6067,14398,5651,14189,5311,13935,4958,15359,4123,15359,4153,15356,4296,15353,4646,15338,5160,15311,5508,15263,5829,15188,6042,15088,6094,14966,6001,14826,5796,14678,5543,14527,5287,14377,4985,14133,4586,13869,4257,15360,1563,15360,1642,15358,2076,15354,2636,15341,3350,15317,4019,15273,4429,15203,4732,15105,4911,14981,4932,14836,4818,14679,4621,14517,4386,14359,4156,14083,3795,13808,3437,15360,122,15360,137,15358,285,15355,636,15344,1274,15322,2177,15281,2765,15215,3223,15120,3451,14995,3569,14846,3567,14681,3466,14511,3305,14344,3121,14037,2800,13753,2467,15360,0,15360,1,15359,21,15355,89,15346,253,15325,479,15287,796,15225,1148,15133,1492,15008,1749,14856,1882,14685,1886,14506,1783,14324,1608,13996,1398,13702,1183]),us=null;function Tw(){return us===null&&(us=new Er(ww,16,16,dr,Zi),us.name="DFG_LUT",us.minFilter=li,us.magFilter=li,us.wrapS=cs,us.wrapT=cs,us.generateMipmaps=!1,us.needsUpdate=!0),us}var Nh=class{constructor(t={}){let{canvas:e=Jm(),context:n=null,depth:s=!0,stencil:r=!1,alpha:o=!1,antialias:a=!1,premultipliedAlpha:c=!0,preserveDrawingBuffer:l=!1,powerPreference:u="default",failIfMajorPerformanceCaveat:h=!1,reversedDepthBuffer:d=!1,outputBufferType:f=gi}=t;this.isWebGLRenderer=!0;let p;if(n!==null){if(typeof WebGLRenderingContext<"u"&&n instanceof WebGLRenderingContext)throw new Error("THREE.WebGLRenderer: WebGL 1 is not supported since r163.");p=n.getContextAttributes().alpha}else p=o;let _=f,m=new Set([Qc,Kc,jc]),g=new Set([gi,$i,Vo,Nr,$c,Zc]),x=new Uint32Array(4),E=new Int32Array(4),S={textures:[],min:[],max:[],resolution:[]},M=null,T=null,y=[],b=[],U=null;this.domElement=e,this.debug={checkShaderErrors:!0,diagnostics:{keywords:!1},onShaderError:null},this.autoClear=!0,this.autoClearColor=!0,this.autoClearDepth=!0,this.autoClearStencil=!0,this.sortObjects=!0,this.clippingPlanes=[],this.localClippingEnabled=!1,this.toneMapping=hs,this.toneMappingExposure=1,this.transmissionResolutionScale=1;let I=this,L=!1,B=null,W=null,P=null,k=null;this._outputColorSpace=Ae;let Y=0,G=0,at=null,$=-1,Q=null,it=new Le,ut=new Le,dt=null,tt=new Ht(0),mt=0,xt=e.width,Rt=e.height,bt=1,$t=null,le=null,Xt=new Le(0,0,xt,Rt),ge=new Le(0,0,xt,Rt),de=!1,oe=new er,Qe=new Tc,We=!1,pn=!1,Be=new qt,Nn=new R,be=new Le,wn={background:null,fog:null,environment:null,overrideMaterial:null,isScene:!0},on=!1;function mn(){return at===null?bt:1}let V=n;function It(C,H){return e.getContext(C,H)}let Kt,ce,wt,ze,Wt,Jt,D,w,q,ht,ot,_t,yt,et,st,pt,z,rt,nt,Tt,gt,St,Yt;try{let C={alpha:!0,depth:s,stencil:r,antialias:a,premultipliedAlpha:c,preserveDrawingBuffer:l,powerPreference:u,failIfMajorPerformanceCaveat:h};if("setAttribute"in e&&e.setAttribute("data-engine",`three.js r${"187"}`),e.addEventListener("webglcontextlost",zt,!1),e.addEventListener("webglcontextrestored",ne,!1),e.addEventListener("webglcontextcreationerror",Pt,!1),V===null){let H="webgl2";if(V=It(H,C),V===null)throw It(H)?new Error("THREE.WebGLRenderer: Error creating WebGL context with your selected attributes."):new Error("THREE.WebGLRenderer: Error creating WebGL context.")}ee()}catch(C){throw e.removeEventListener("webglcontextlost",zt,!1),e.removeEventListener("webglcontextrestored",ne,!1),e.removeEventListener("webglcontextcreationerror",Pt,!1),te("WebGLRenderer: "+C.message),C}function ee(){Kt=new OM(V),Kt.init(),gt=new xw(V,Kt),ce=new TM(V,Kt,t,gt),wt=new gw(V,Kt),ce.reversedDepthBuffer&&d&&wt.buffers.depth.setReversed(!0),W=V.createFramebuffer(),P=V.createFramebuffer(),k=V.createFramebuffer(),ze=new kM(V),Wt=new nw,Jt=new _w(V,Kt,wt,Wt,ce,gt,ze),D=new UM(I),w=new Vy(V),St=new bM(V,w),q=new FM(V,w,ze,St),ht=new VM(V,q,w,St,ze),rt=new zM(V,ce,Jt),st=new EM(Wt),ot=new ew(I,D,Kt,ce,St,st),_t=new Mw(I,Wt),yt=new sw,et=new hw(Kt),z=new MM(I,D,wt,ht,p,c),pt=new mw(I,ht,ce),Yt=new bw(V,ze,ce,wt),nt=new wM(V,Kt,ze),Tt=new BM(V,Kt,ze),ze.programs=ot.programs,I.capabilities=ce,I.extensions=Kt,I.properties=Wt,I.renderLists=yt,I.shadowMap=pt,I.state=wt,I.info=ze}_!==gi&&(U=new HM(_,e.width,e.height,a,s,r));let ct=new lf(I,V);this.xr=ct,this.getContext=function(){return V},this.getContextAttributes=function(){return V.getContextAttributes()},this.forceContextLoss=function(){let C=Kt.get("WEBGL_lose_context");C&&C.loseContext()},this.forceContextRestore=function(){let C=Kt.get("WEBGL_lose_context");C&&C.restoreContext()},this.getPixelRatio=function(){return bt},this.setPixelRatio=function(C){C!==void 0&&(bt=C,this.setSize(xt,Rt,!1))},this.getSize=function(C){return C.set(xt,Rt)},this.setSize=function(C,H,K=!0){if(ct.isPresenting){jt("WebGLRenderer: Can't change size while VR device is presenting.");return}xt=C,Rt=H,e.width=Math.floor(C*bt),e.height=Math.floor(H*bt),K===!0&&(e.style.width=C+"px",e.style.height=H+"px"),U!==null&&U.setSize(e.width,e.height),this.setViewport(0,0,C,H)},this.getDrawingBufferSize=function(C){return C.set(xt*bt,Rt*bt).floor()},this.setDrawingBufferSize=function(C,H,K){xt=C,Rt=H,bt=K,e.width=Math.floor(C*K),e.height=Math.floor(H*K),this.setViewport(0,0,C,H)},this.setEffects=function(C){if(_===gi){te("WebGLRenderer: setEffects() requires outputBufferType set to HalfFloatType or FloatType.");return}if(C){for(let H=0;H<C.length;H++)if(C[H].isOutputPass===!0){jt("WebGLRenderer: OutputPass is not needed in setEffects(). Tone mapping and color space conversion are applied automatically.");break}}U.setEffects(C||[])},this.getCurrentViewport=function(C){return C.copy(it)},this.getViewport=function(C){return C.copy(Xt)},this.setViewport=function(C,H,K,Z){C.isVector4?Xt.set(C.x,C.y,C.z,C.w):Xt.set(C,H,K,Z),wt.viewport(it.copy(Xt).multiplyScalar(mn()).round())},this.getScissor=function(C){return C.copy(ge)},this.setScissor=function(C,H,K,Z){C.isVector4?ge.set(C.x,C.y,C.z,C.w):ge.set(C,H,K,Z),wt.scissor(ut.copy(ge).multiplyScalar(mn()).round())},this.getScissorTest=function(){return de},this.setScissorTest=function(C){wt.setScissorTest(de=C)},this.setOpaqueSort=function(C){$t=C},this.setTransparentSort=function(C){le=C},this.getClearColor=function(C){return C.copy(z.getClearColor())},this.setClearColor=function(){z.setClearColor(...arguments)},this.getClearAlpha=function(){return z.getClearAlpha()},this.setClearAlpha=function(){z.setClearAlpha(...arguments)},this.clear=function(C=!0,H=!0,K=!0){let Z=0;if(C){let J=!1;if(at!==null){let Et=at.texture.format;J=m.has(Et)}if(J){let Et=at.texture.type,Dt=g.has(Et),At=z.getClearColor(),Nt=z.getClearAlpha(),Gt=At.r,ie=At.g,_e=At.b;Dt?(x[0]=Gt,x[1]=ie,x[2]=_e,x[3]=Nt,V.clearBufferuiv(V.COLOR,0,x)):(E[0]=Gt,E[1]=ie,E[2]=_e,E[3]=Nt,V.clearBufferiv(V.COLOR,0,E))}else Z|=V.COLOR_BUFFER_BIT}H&&(Z|=V.DEPTH_BUFFER_BIT,this.state.buffers.depth.setMask(!0)),K&&(Z|=V.STENCIL_BUFFER_BIT,this.state.buffers.stencil.setMask(4294967295)),Z!==0&&V.clear(Z)},this.clearColor=function(){this.clear(!0,!1,!1)},this.clearDepth=function(){this.clear(!1,!0,!1)},this.clearStencil=function(){this.clear(!1,!1,!0)},this.setNodesHandler=function(C){C.setRenderer(this),B=C},this.dispose=function(){e.removeEventListener("webglcontextlost",zt,!1),e.removeEventListener("webglcontextrestored",ne,!1),e.removeEventListener("webglcontextcreationerror",Pt,!1),z.dispose(),yt.dispose(),et.dispose(),Jt.dispose(),Wt.dispose(),D.dispose(),ht.dispose(),q.dispose(),St.dispose(),Yt.dispose(),ot.dispose(),ct.dispose(),ct.removeEventListener("sessionstart",Il),ct.removeEventListener("sessionend",es),xs.stop()};function zt(C){C.preventDefault(),Ia("WebGLRenderer: Context Lost."),L=!0}function ne(){Ia("WebGLRenderer: Context Restored."),L=!1;let C=ze.autoReset,H=pt.enabled,K=pt.autoUpdate,Z=pt.needsUpdate,J=pt.type;ee(),ze.autoReset=C,pt.enabled=H,pt.autoUpdate=K,pt.needsUpdate=Z,pt.type=J}function Pt(C){te("WebGLRenderer: A WebGL context could not be created. Reason: ",C.statusMessage)}function ue(C){let H=C.target;H.removeEventListener("dispose",ue),qe(H)}function qe(C){ni(C),Wt.remove(C)}function ni(C){let H=Wt.get(C).programs;H!==void 0&&(H.forEach(function(K){ot.releaseProgram(K)}),C.isShaderMaterial&&ot.releaseShaderCache(C))}this.renderBufferDirect=function(C,H,K,Z,J,Et){H===null&&(H=wn);let Dt=J.isMesh&&J.matrixWorld.determinantAffine()<0,At=ca(C,H,K,Z,J);wt.setMaterial(Z,Dt);let Nt=K.index,Gt=1;if(Z.wireframe===!0){if(Nt=q.getWireframeAttribute(K),Nt===void 0)return;Gt=2}let ie=K.drawRange,_e=K.attributes.position,Vt=ie.start*Gt,xe=(ie.start+ie.count)*Gt;Et!==null&&(Vt=Math.max(Vt,Et.start*Gt),xe=Math.min(xe,(Et.start+Et.count)*Gt)),Nt!==null?(Vt=Math.max(Vt,0),xe=Math.min(xe,Nt.count)):_e!=null&&(Vt=Math.max(Vt,0),xe=Math.min(xe,_e.count));let nn=xe-Vt;if(nn<0||nn===1/0)return;St.setup(J,Z,At,K,Nt);let Ue,Oe=nt;if(Nt!==null&&(Ue=w.get(Nt),Oe=Tt,Oe.setIndex(Ue)),J.isMesh)Z.wireframe===!0?(wt.setLineWidth(Z.wireframeLinewidth*mn()),Oe.setMode(V.LINES)):Oe.setMode(V.TRIANGLES);else if(J.isLine){let Tn=Z.linewidth;Tn===void 0&&(Tn=1),wt.setLineWidth(Tn*mn()),J.isLineSegments?Oe.setMode(V.LINES):J.isLineLoop?Oe.setMode(V.LINE_LOOP):Oe.setMode(V.LINE_STRIP)}else J.isPoints?Oe.setMode(V.POINTS):J.isSprite&&Oe.setMode(V.TRIANGLES);if(J.isBatchedMesh)if(Kt.get("WEBGL_multi_draw"))Oe.renderMultiDraw(J._multiDrawStarts,J._multiDrawCounts,J._multiDrawCount);else{let Tn=J._multiDrawStarts,Ft=J._multiDrawCounts,gn=J._multiDrawCount,ve=Nt?w.get(Nt).bytesPerElement:1,vs=Wt.get(Z).currentProgram.getUniforms();for(let _n=0;_n<gn;_n++)vs.setValue(V,"_gl_DrawID",_n),Oe.render(Tn[_n]/ve,Ft[_n])}else if(J.isInstancedMesh)Oe.renderInstances(Vt,nn,J.count);else if(K.isInstancedBufferGeometry){let Tn=K._maxInstanceCount!==void 0?K._maxInstanceCount:1/0,Ft=Math.min(K.instanceCount,Tn);Oe.renderInstances(Vt,nn,Ft)}else Oe.render(Vt,nn)};function oa(C,H,K,Z){B!==null&&C.isNodeMaterial&&B.setObject(Z,C),We===!0&&st.setState(C,K,!1),C.transparent===!0&&C.side===Sn&&C.forceSinglePass===!1?(C.side=Xn,C.needsUpdate=!0,ns(C,H,Z),C.side=ur,C.needsUpdate=!0,ns(C,H,Z),C.side=Sn):ns(C,H,Z)}this.compile=function(C,H,K=null){K===null&&(K=C),B!==null&&B.renderStart(C,H,K),T=et.get(K),T.init(H),b.push(T),K.traverseVisible(function(J){J.isLight&&J.layers.test(H.layers)&&(T.pushLight(J),J.castShadow&&T.pushShadow(J))}),C!==K&&C.traverseVisible(function(J){J.isLight&&J.layers.test(H.layers)&&(T.pushLight(J),J.castShadow&&T.pushShadow(J))}),T.setupLights(),B!==null&&B.updateLights(T.state.lightsArray),pn=this.localClippingEnabled,We=st.init(this.clippingPlanes,pn),We===!0&&st.setGlobalState(this.clippingPlanes,H),B!==null&&pt.render(T.state.shadowsArray,K,H);let Z=new Set;return C.traverse(function(J){if(!(J.isMesh||J.isPoints||J.isLine||J.isSprite))return;let Et=J.material;if(Et)if(Array.isArray(Et))for(let Dt=0;Dt<Et.length;Dt++){let At=Et[Dt];oa(At,K,H,J),Z.add(At)}else oa(Et,K,H,J),Z.add(Et)}),T=b.pop(),B!==null&&B.renderEnd(),Z},this.compileAsync=function(C,H,K=null){let Z=this.compile(C,H,K);return new Promise(J=>{function Et(){if(Z.forEach(function(Dt){let Nt=Wt.get(Dt).currentProgram;(Nt===void 0||Nt.isReady())&&Z.delete(Dt)}),Z.size===0){J(C);return}setTimeout(Et,10)}Kt.get("KHR_parallel_shader_compile")!==null?Et():setTimeout(Et,10)})};let Xr=null;function Cu(C){Xr&&Xr(C)}function Il(){xs.stop()}function es(){xs.start()}let xs=new Tg;xs.setAnimationLoop(Cu),typeof self<"u"&&xs.setContext(self),this.setAnimationLoop=function(C){Xr=C,ct.setAnimationLoop(C),C===null?xs.stop():xs.start()},ct.addEventListener("sessionstart",Il),ct.addEventListener("sessionend",es),this.render=function(C,H){if(H!==void 0&&H.isCamera!==!0){te("WebGLRenderer.render: camera is not an instance of THREE.Camera.");return}if(L===!0)return;B!==null&&B.renderStart(C,H);let K=ct.enabled===!0&&ct.isPresenting===!0,Z=U!==null&&(at===null||K)&&U.begin(I,at);if(C.matrixWorldAutoUpdate===!0&&C.updateMatrixWorld(),H.parent===null&&H.matrixWorldAutoUpdate===!0&&H.updateMatrixWorld(),ct.enabled===!0&&ct.isPresenting===!0&&(U===null||U.isCompositing()===!1)&&(ct.cameraAutoUpdate===!0&&ct.updateCamera(H),H=ct.getCamera()),C.isScene===!0&&C.onBeforeRender(I,C,H,at),T=et.get(C,b.length),T.init(H),T.state.textureUnits=Jt.getTextureUnits(),b.push(T),Be.multiplyMatrices(H.projectionMatrix,H.matrixWorldInverse),H.isArrayCamera?Qe.setFromArrayCamera(H):oe.setFromProjectionMatrix(Be,Di,H.reversedDepth),pn=this.localClippingEnabled,We=st.init(this.clippingPlanes,pn),M=yt.get(C,y.length),M.init(),y.push(M),this.info.render.frame++,ct.enabled===!0&&ct.isPresenting===!0){let Dt=I.xr.getDepthSensingMesh();Dt!==null&&ys(Dt,H,-1/0,I.sortObjects)}ys(C,H,0,I.sortObjects),M.finish(),B!==null&&B.updateLights(T.state.lightsArray),I.sortObjects===!0&&M.sort($t,le),on=ct.enabled===!1||ct.isPresenting===!1||ct.hasDepthSensing()===!1,on&&z.addToRenderList(M,C),this.info.autoReset===!0&&this.info.reset(),We===!0&&st.beginShadows();let J=T.state.shadowsArray;if(pt.render(J,C,H),We===!0&&st.endShadows(),(Z&&U.hasRenderPass())===!1){let Dt=M.opaque,At=M.transmissive;if(T.setupLights(),H.isArrayCamera){let Nt=H.cameras;if(At.length>0)for(let Gt=0,ie=Nt.length;Gt<ie;Gt++){let _e=Nt[Gt];Vi(Dt,At,C,_e)}on&&z.render(C);for(let Gt=0,ie=Nt.length;Gt<ie;Gt++){let _e=Nt[Gt];aa(M,C,_e,_e.viewport)}}else At.length>0&&Vi(Dt,At,C,H),on&&z.render(C),aa(M,C,H)}at!==null&&G===0&&(Jt.updateMultisampleRenderTarget(at),Jt.updateRenderTargetMipmap(at)),Z&&U.end(I),C.isScene===!0&&C.onAfterRender(I,C,H),St.resetDefaultState(),$=-1,Q=null,b.pop(),b.length>0?(T=b[b.length-1],Jt.setTextureUnits(T.state.textureUnits),We===!0&&st.setGlobalState(I.clippingPlanes,T.state.camera)):T=null,y.pop(),y.length>0?M=y[y.length-1]:M=null,B!==null&&B.renderEnd()};function ys(C,H,K,Z){if(C.visible===!1)return;if(C.layers.test(H.layers)){if(C.isGroup)K=C.renderOrder;else if(C.isLOD)C.autoUpdate===!0&&C.update(H);else if(C.isLight)T.pushLight(C),C.castShadow&&T.pushShadow(C);else if(C.isSprite){let Dt=H.isArrayCamera?Qe:oe;if(!C.frustumCulled||C.intersectsFrustum(Dt)){Z&&be.setFromMatrixPosition(C.matrixWorld).applyMatrix4(Be);let At=ht.update(C),Nt=C.material;Nt.visible&&M.push(C,At,Nt,K,be.z,null,H)}}else if(C.isMesh||C.isLine||C.isPoints){let Dt=H.isArrayCamera?Qe:oe;if(!C.frustumCulled||C.intersectsFrustum(Dt)){let At=ht.update(C),Nt=C.material;if(Z&&(C.boundingSphere!==void 0?(C.boundingSphere===null&&C.computeBoundingSphere(),be.copy(C.boundingSphere.center)):(At.boundingSphere===null&&At.computeBoundingSphere(),be.copy(At.boundingSphere.center)),be.applyMatrix4(C.matrixWorld).applyMatrix4(Be)),Array.isArray(Nt)){let Gt=At.groups;for(let ie=0,_e=Gt.length;ie<_e;ie++){let Vt=Gt[ie],xe=Nt[Vt.materialIndex];xe&&xe.visible&&M.push(C,At,xe,K,be.z,Vt,H)}}else Nt.visible&&M.push(C,At,Nt,K,be.z,null,H)}}}let Et=C.children;for(let Dt=0,At=Et.length;Dt<At;Dt++)ys(Et[Dt],H,K,Z)}function aa(C,H,K,Z){let{opaque:J,transmissive:Et,transparent:Dt}=C;T.setupLightsView(K),We===!0&&st.setGlobalState(I.clippingPlanes,K),Z&&wt.viewport(it.copy(Z)),J.length>0&&an(J,H,K),Et.length>0&&an(Et,H,K),Dt.length>0&&an(Dt,H,K),wt.buffers.depth.setTest(!0),wt.buffers.depth.setMask(!0),wt.buffers.color.setMask(!0),wt.setPolygonOffset(!1)}function Vi(C,H,K,Z){if((K.isScene===!0?K.overrideMaterial:null)!==null)return;if(T.state.transmissionRenderTarget[Z.id]===void 0){let Vt=Kt.has("EXT_color_buffer_half_float")||Kt.has("EXT_color_buffer_float");T.state.transmissionRenderTarget[Z.id]=new ci(1,1,{generateMipmaps:!0,type:Vt?Zi:gi,minFilter:Fs,samples:Math.max(4,ce.samples),stencilBuffer:r,resolveDepthBuffer:!1,resolveStencilBuffer:!1,storeMultisampledDepthBuffer:!1,storeMultisampledStencilBuffer:!1,colorSpace:Se.workingColorSpace})}let Et=T.state.transmissionRenderTarget[Z.id],Dt=Z.viewport||it;Et.setSize(Dt.z*I.transmissionResolutionScale,Dt.w*I.transmissionResolutionScale);let At=I.getRenderTarget(),Nt=I.getActiveCubeFace(),Gt=I.getActiveMipmapLevel();I.setRenderTarget(Et),I.getClearColor(tt),mt=I.getClearAlpha(),mt<1&&I.setClearColor(16777215,.5),I.clear(),on&&z.render(K);let ie=I.toneMapping;I.toneMapping=hs;let _e=Z.viewport;if(Z.viewport!==void 0&&(Z.viewport=void 0),T.setupLightsView(Z),We===!0&&st.setGlobalState(I.clippingPlanes,Z),an(C,K,Z),Jt.updateMultisampleRenderTarget(Et),Jt.updateRenderTargetMipmap(Et),Kt.has("WEBGL_multisampled_render_to_texture")===!1){let Vt=!1;for(let xe=0,nn=H.length;xe<nn;xe++){let Ue=H[xe],{object:Oe,geometry:Tn,material:Ft,group:gn}=Ue;if(Ft.side===Sn&&Oe.layers.test(Z.layers)){let ve=Ft.side;Ft.side=Xn,Ft.needsUpdate=!0,dn(Oe,K,Z,Tn,Ft,gn),Ft.side=ve,Ft.needsUpdate=!0,Vt=!0}}Vt===!0&&(Jt.updateMultisampleRenderTarget(Et),Jt.updateRenderTargetMipmap(Et))}I.setRenderTarget(At,Nt,Gt),I.setClearColor(tt,mt),_e!==void 0&&(Z.viewport=_e),I.toneMapping=ie}function an(C,H,K){let Z=H.isScene===!0?H.overrideMaterial:null;for(let J=0,Et=C.length;J<Et;J++){let Dt=C[J],{object:At,geometry:Nt,group:Gt}=Dt,ie=Dt.material;ie.allowOverride===!0&&Z!==null&&(ie=Z),At.layers.test(K.layers)&&dn(At,H,K,Nt,ie,Gt)}}function dn(C,H,K,Z,J,Et){B!==null&&J.isNodeMaterial&&B.setObject(C,J),C.onBeforeRender(I,H,K,Z,J,Et),C.modelViewMatrix.multiplyMatrices(K.matrixWorldInverse,C.matrixWorld),C.normalMatrix.getNormalMatrix(C.modelViewMatrix),J.onBeforeRender(I,H,K,Z,C,Et),J.transparent===!0&&J.side===Sn&&J.forceSinglePass===!1?(J.side=Xn,J.needsUpdate=!0,I.renderBufferDirect(K,H,Z,J,C,Et),J.side=ur,J.needsUpdate=!0,I.renderBufferDirect(K,H,Z,J,C,Et),J.side=Sn):I.renderBufferDirect(K,H,Z,J,C,Et),C.onAfterRender(I,H,K,Z,J,Et)}function fn(C){let H=0;for(let K of C)K.texture!==null&&H++;return H}function ns(C,H,K){H.isScene!==!0&&(H=wn);let Z=Wt.get(C),J=T.state.lights,Et=T.state.shadowsArray,Dt=J.state.version,At=ot.getParameters(C,J.state,Et,H,K,T.state.lightProbeGridArray),Nt=ot.getProgramCacheKey(At),Gt=Z.programs;Z.environment=C.isMeshStandardMaterial||C.isMeshLambertMaterial||C.isMeshPhongMaterial?H.environment:null,Z.fog=H.fog;let ie=C.isMeshStandardMaterial||C.isMeshLambertMaterial&&!C.envMap||C.isMeshPhongMaterial&&!C.envMap;Z.envMap=D.get(C.envMap||Z.environment,ie),Z.envMapRotation=Z.environment!==null&&C.envMap===null?H.environmentRotation:C.envMapRotation,Gt===void 0&&(C.addEventListener("dispose",ue),Gt=new Map,Z.programs=Gt,Z.programVariants=new Map);let _e=Gt.get(Nt);if(_e!==void 0){if(Z.currentProgram===_e&&Z.lightsStateVersion===Dt)return la(C,At),_e}else At.uniforms=ot.getUniforms(C),B!==null&&C.isNodeMaterial&&B.build(C,K,At),C.onBeforeCompile(At,I),_e=ot.acquireProgram(At,Nt),Gt.set(Nt,_e),Z.uniforms=At.uniforms;let Vt=Z.uniforms;return(!C.isShaderMaterial&&!C.isRawShaderMaterial||C.clipping===!0)&&(Vt.clippingPlanes=st.uniform),la(C,At),Z.needsLights=Xs(C),Z.lightsStateVersion=Dt,Z.needsLights&&(Vt.ambientLightColor.value=J.state.ambient,Vt.lightProbe.value=J.state.probe,Vt.sunLights.value=J.state.sun,Vt.sunLightShadows.value=J.state.sunShadow,Vt.directionalLights.value=J.state.directional,Vt.directionalLightShadows.value=J.state.directionalShadow,Vt.spotLights.value=J.state.spot,Vt.spotLightShadows.value=J.state.spotShadow,Vt.rectAreaLights.value=J.state.rectArea,Vt.ltc_1.value=J.state.rectAreaLTC1,Vt.ltc_2.value=J.state.rectAreaLTC2,Vt.pointLights.value=J.state.point,Vt.pointLightShadows.value=J.state.pointShadow,Vt.hemisphereLights.value=J.state.hemi,Vt.sunShadowMatrix.value=J.state.sunShadowMatrix,Vt.sunShadowCascade.value=J.state.sunShadowCascade,Vt.directionalShadowMatrix.value=J.state.directionalShadowMatrix,Vt.spotLightMatrix.value=J.state.spotLightMatrix,Vt.spotLightMap.value=J.state.spotLightMap,Vt.pointShadowMatrix.value=J.state.pointShadowMatrix),Z.numLightProbeGrids=fn(T.state.lightProbeGridArray),Z.currentProgram=_e,Z.uniformsList=null,_e}function xi(C,H,K,Z,J){let Et=Wt.get(C),Dt=Et.currentProgram.id+","+Z+","+J,At=Et.programVariants.get(Dt);return At===void 0?(At=ns(C,H,K),Et.programVariants.set(Dt,At)):(Et.currentProgram=At,Et.uniformsList=null,Et.outputColorSpace=Z,Et.toneMapping=J),At}function Ws(C){if(C.uniformsList===null){let H=C.currentProgram.getUniforms();C.uniformsList=Go.seqWithValue(H.seq,C.uniforms)}return C.uniformsList}function la(C,H){let K=Wt.get(C);K.outputColorSpace=H.outputColorSpace,K.batching=H.batching,K.batchingColor=H.batchingColor,K.instancing=H.instancing,K.instancingColor=H.instancingColor,K.instancingMorph=H.instancingMorph,K.skinning=H.skinning,K.morphTargets=H.morphTargets,K.morphNormals=H.morphNormals,K.morphColors=H.morphColors,K.morphTargetsCount=H.morphTargetsCount,K.numClippingPlanes=H.numClippingPlanes,K.numIntersection=H.numClipIntersection,K.vertexAlphas=H.vertexAlphas,K.vertexTangents=H.vertexTangents,K.toneMapping=H.toneMapping}function ca(C,H,K,Z,J){H.isScene!==!0&&(H=wn),Jt.resetTextureUnits();let Et=H.fog,Dt=Z.isMeshStandardMaterial||Z.isMeshLambertMaterial||Z.isMeshPhongMaterial?H.environment:null,At=at===null?I.outputColorSpace:at.isXRRenderTarget===!0?at.texture.colorSpace:Se.workingColorSpace,Nt=Z.isMeshStandardMaterial||Z.isMeshLambertMaterial&&!Z.envMap||Z.isMeshPhongMaterial&&!Z.envMap,Gt=D.get(Z.envMap||Dt,Nt),ie=Z.vertexColors===!0&&!!K.attributes.color&&K.attributes.color.itemSize===4,_e=!!K.attributes.tangent&&(!!Z.normalMap||Z.anisotropy>0),Vt=!!K.morphAttributes.position,xe=!!K.morphAttributes.normal,nn=!!K.morphAttributes.color,Ue=hs;Z.toneMapped&&(at===null||at.isXRRenderTarget===!0)&&(Ue=I.toneMapping);let Oe=K.morphAttributes.position||K.morphAttributes.normal||K.morphAttributes.color,Tn=Oe!==void 0?Oe.length:0,Ft=Wt.get(Z),gn=T.state.lights;if(We===!0&&(pn===!0||C!==Q)){let Fe=C===Q&&Z.id===$;st.setState(Z,C,Fe)}let ve=!1,vs=!1;Z.version===Ft.__version?Ft.needsLights&&Ft.lightsStateVersion!==gn.state.version||J.isBatchedMesh&&Ft.batching===!1||!J.isBatchedMesh&&Ft.batching===!0||J.isBatchedMesh&&Ft.batchingColor===!0&&J._colorsTexture===null||J.isBatchedMesh&&Ft.batchingColor===!1&&J._colorsTexture!==null||J.isInstancedMesh&&Ft.instancing===!1||!J.isInstancedMesh&&Ft.instancing===!0||J.isSkinnedMesh&&Ft.skinning===!1||!J.isSkinnedMesh&&Ft.skinning===!0||J.isInstancedMesh&&Ft.instancingColor===!0&&J.instanceColor===null||J.isInstancedMesh&&Ft.instancingColor===!1&&J.instanceColor!==null||J.isInstancedMesh&&Ft.instancingMorph===!0&&J.morphTexture===null||J.isInstancedMesh&&Ft.instancingMorph===!1&&J.morphTexture!==null||Ft.envMap!==Gt||Z.fog===!0&&Ft.fog!==Et||Ft.numClippingPlanes!==void 0&&(Ft.numClippingPlanes!==st.numPlanes||Ft.numIntersection!==st.numIntersection)||Ft.vertexAlphas!==ie||Ft.vertexTangents!==_e||Ft.morphTargets!==Vt||Ft.morphNormals!==xe||Ft.morphColors!==nn||Ft.morphTargetsCount!==Tn||Ft.numLightProbeGrids!==fn(T.state.lightProbeGridArray)?ve=!0:(Ft.outputColorSpace!==At||Ft.toneMapping!==Ue)&&(vs=!0):(ve=!0,Ft.__version=Z.version);let _n=Ft.currentProgram;(ve===!0||vs===!0)&&(_n=vs===!0?xi(Z,H,J,At,Ue):ns(Z,H,J),B&&Z.isNodeMaterial&&B.onUpdateProgram(Z,_n,Ft));let $r=!1,is=!1,Ss=!1,fe=_n.getUniforms(),ln=Ft.uniforms;if(wt.useProgram(_n.program)&&($r=!0,is=!0,Ss=!0),Z.id!==$&&($=Z.id,is=!0),$r||Q!==C){wt.buffers.depth.getReversed()&&C.reversedDepth!==!0&&(C._reversedDepth=!0,C.updateProjectionMatrix()),fe.setValue(V,"projectionMatrix",C.projectionMatrix),fe.setValue(V,"viewMatrix",C.matrixWorldInverse);let xn=fe.map.cameraPosition;xn!==void 0&&xn.setValue(V,Nn.setFromMatrixPosition(C.matrixWorld)),ce.logarithmicDepthBuffer&&fe.setValue(V,"logDepthBufFC",2/(Math.log(C.far+1)/Math.LN2)),(Z.isMeshPhongMaterial||Z.isMeshToonMaterial||Z.isMeshLambertMaterial||Z.isMeshBasicMaterial||Z.isMeshStandardMaterial||Z.isShaderMaterial)&&fe.setValue(V,"isOrthographic",C.isOrthographicCamera===!0),Q!==C&&(Q=C,is=!0,Ss=!0)}if(Ft.needsLights&&(gn.state.sunShadowMap.length>0&&fe.setValue(V,"sunShadowMap",gn.state.sunShadowMap,Jt),gn.state.directionalShadowMap.length>0&&fe.setValue(V,"directionalShadowMap",gn.state.directionalShadowMap,Jt),gn.state.spotShadowMap.length>0&&fe.setValue(V,"spotShadowMap",gn.state.spotShadowMap,Jt),gn.state.pointShadowMap.length>0&&fe.setValue(V,"pointShadowMap",gn.state.pointShadowMap,Jt)),J.isSkinnedMesh){fe.setOptional(V,J,"bindMatrix"),fe.setOptional(V,J,"bindMatrixInverse");let Fe=J.skeleton;Fe&&(Fe.boneTexture===null&&Fe.computeBoneTexture(),fe.setValue(V,"boneTexture",Fe.boneTexture,Jt))}J.isBatchedMesh&&(fe.setOptional(V,J,"batchingTexture"),fe.setValue(V,"batchingTexture",J._matricesTexture,Jt),fe.setOptional(V,J,"batchingIdTexture"),fe.setValue(V,"batchingIdTexture",J._indirectTexture,Jt),fe.setOptional(V,J,"batchingColorTexture"),J._colorsTexture!==null&&fe.setValue(V,"batchingColorTexture",J._colorsTexture,Jt));let ii=K.morphAttributes;if((ii.position!==void 0||ii.normal!==void 0||ii.color!==void 0)&&rt.update(J,K,_n),(is||Ft.receiveShadow!==J.receiveShadow)&&(Ft.receiveShadow=J.receiveShadow,fe.setValue(V,"receiveShadow",J.receiveShadow)),(Z.isMeshStandardMaterial||Z.isMeshLambertMaterial||Z.isMeshPhongMaterial)&&Z.envMap===null&&H.environment!==null&&(ln.envMapIntensity.value=H.environmentIntensity),ln.dfgLUT!==void 0&&(ln.dfgLUT.value=Tw()),is){if(fe.setValue(V,"toneMappingExposure",I.toneMappingExposure),Ft.needsLights&&Yr(ln,Ss),Et&&Z.fog===!0&&_t.refreshFogUniforms(ln,Et),_t.refreshMaterialUniforms(ln,Z,bt,Rt,T.state.transmissionRenderTarget[C.id]),Ft.needsLights&&Ft.numLightProbeGrids>0){let Fe=S,xn=0;for(let Zn of T.state.lightProbeGridArray)Zn.texture!==null&&(Fe.textures[xn]=Zn.texture,Fe.min[xn]=Zn.boundingBox.min,Fe.max[xn]=Zn.boundingBox.max,Fe.resolution[xn]=Zn.resolution,xn++);for(let Zn in Fe)Fe[Zn].length=xn;ln.probesSH.value=Fe.textures,ln.probesMin.value=Fe.min,ln.probesMax.value=Fe.max,ln.probesResolution.value=Fe.resolution}Go.upload(V,Ws(Ft),ln,Jt)}if(Z.isShaderMaterial&&Z.uniformsNeedUpdate===!0&&(Go.upload(V,Ws(Ft),ln,Jt),Z.uniformsNeedUpdate=!1),Z.isSpriteMaterial&&fe.setValue(V,"center",J.center),fe.setValue(V,"modelViewMatrix",J.modelViewMatrix),fe.setValue(V,"normalMatrix",J.normalMatrix),fe.setValue(V,"modelMatrix",J.matrixWorld),Z.uniformsGroups!==void 0){let Fe=Z.uniformsGroups;for(let xn=0,Zn=Fe.length;xn<Zn;xn++){let Ll=Fe[xn];Yt.update(Ll,_n),Yt.bind(Ll,_n)}}return _n}function Yr(C,H){C.ambientLightColor.needsUpdate=H,C.lightProbe.needsUpdate=H,C.sunLights.needsUpdate=H,C.sunLightShadows.needsUpdate=H,C.directionalLights.needsUpdate=H,C.directionalLightShadows.needsUpdate=H,C.pointLights.needsUpdate=H,C.pointLightShadows.needsUpdate=H,C.spotLights.needsUpdate=H,C.spotLightShadows.needsUpdate=H,C.rectAreaLights.needsUpdate=H,C.hemisphereLights.needsUpdate=H}function Xs(C){return C.isMeshLambertMaterial||C.isMeshToonMaterial||C.isMeshPhongMaterial||C.isMeshStandardMaterial||C.isShadowMaterial||C.isShaderMaterial&&C.lights===!0}this.getActiveCubeFace=function(){return Y},this.getActiveMipmapLevel=function(){return G},this.getRenderTarget=function(){return at},this.setRenderTargetTextures=function(C,H,K){let Z=Wt.get(C);Z.__autoAllocateDepthBuffer=C.resolveDepthBuffer===!1,Z.__autoAllocateDepthBuffer===!1&&(Z.__useRenderToTexture=!1),Wt.get(C.texture).__webglTexture=H,Wt.get(C.depthTexture).__webglTexture=Z.__autoAllocateDepthBuffer?void 0:K,Z.__hasExternalTextures=!0},this.setRenderTargetFramebuffer=function(C,H){let K=Wt.get(C);K.__webglFramebuffer=H,K.__useDefaultFramebuffer=H===void 0},this.setRenderTarget=function(C,H=0,K=0){at=C,Y=H,G=K;let Z=null,J=!1,Et=!1;if(C){let At=Wt.get(C);if(At.__useDefaultFramebuffer!==void 0){wt.bindFramebuffer(V.FRAMEBUFFER,At.__webglFramebuffer),it.copy(C.viewport),ut.copy(C.scissor),dt=C.scissorTest,wt.viewport(it),wt.scissor(ut),wt.setScissorTest(dt),$=-1;return}else if(At.__webglFramebuffer===void 0)Jt.setupRenderTarget(C);else if(At.__hasExternalTextures)Jt.rebindTextures(C,Wt.get(C.texture).__webglTexture,Wt.get(C.depthTexture).__webglTexture);else if(C.depthBuffer){let ie=C.depthTexture;if(At.__boundDepthTexture!==ie){if(ie!==null&&Wt.has(ie)&&(C.width!==ie.image.width||C.height!==ie.image.height))throw new Error("THREE.WebGLRenderer: Attached DepthTexture is initialized to the incorrect size.");Jt.setupDepthRenderbuffer(C)}}let Nt=C.texture;(Nt.isData3DTexture||Nt.isDataArrayTexture||Nt.isCompressedArrayTexture)&&(Et=!0);let Gt=Wt.get(C).__webglFramebuffer;C.isWebGLCubeRenderTarget?(Array.isArray(Gt[H])?Z=Gt[H][K]:Z=Gt[H],J=!0):C.samples>0&&Jt.useMultisampledRTT(C)===!1?Z=Wt.get(C).__webglMultisampledFramebuffer:Array.isArray(Gt)?Z=Gt[K]:Z=Gt,it.copy(C.viewport),ut.copy(C.scissor),dt=C.scissorTest}else it.copy(Xt).multiplyScalar(bt).floor(),ut.copy(ge).multiplyScalar(bt).floor(),dt=de;if(K!==0&&(Z=W),wt.bindFramebuffer(V.FRAMEBUFFER,Z)&&wt.drawBuffers(C,Z),wt.viewport(it),wt.scissor(ut),wt.setScissorTest(dt),J){let At=Wt.get(C.texture);V.framebufferTexture2D(V.FRAMEBUFFER,V.COLOR_ATTACHMENT0,V.TEXTURE_CUBE_MAP_POSITIVE_X+H,At.__webglTexture,K)}else if(Et){let At=H;for(let Nt=0;Nt<C.textures.length;Nt++){let Gt=Wt.get(C.textures[Nt]);V.framebufferTextureLayer(V.FRAMEBUFFER,V.COLOR_ATTACHMENT0+Nt,Gt.__webglTexture,K,At)}}else if(C!==null&&K!==0){let At=Wt.get(C.texture);V.framebufferTexture2D(V.FRAMEBUFFER,V.COLOR_ATTACHMENT0,V.TEXTURE_2D,At.__webglTexture,K)}$=-1};function qr(C){let H=Wt.get(C);return(H.__readFormat!==C.format||H.__readType!==C.type)&&(H.__readFormat=C.format,H.__readType=C.type,H.__formatReadable=ce.textureFormatReadable(C.format),H.__typeReadable=ce.textureTypeReadable(C.type)),H}this.readRenderTargetPixels=function(C,H,K,Z,J,Et,Dt,At=0){if(!(C&&C.isWebGLRenderTarget)){te("WebGLRenderer.readRenderTargetPixels: renderTarget is not THREE.WebGLRenderTarget.");return}let Nt=Wt.get(C).__webglFramebuffer;if(C.isWebGLCubeRenderTarget&&Dt!==void 0&&(Nt=Nt[Dt],Array.isArray(Nt)&&(Nt=Nt[0])),Nt){wt.bindFramebuffer(V.FRAMEBUFFER,Nt);try{let Gt=C.textures[At],ie=Gt.format,_e=Gt.type;C.textures.length>1&&V.readBuffer(V.COLOR_ATTACHMENT0+At);let Vt=qr(Gt);if(Vt.__formatReadable===!1){te("WebGLRenderer.readRenderTargetPixels: renderTarget is not in RGBA or implementation defined format.");return}if(Vt.__typeReadable===!1){te("WebGLRenderer.readRenderTargetPixels: renderTarget is not in UnsignedByteType or implementation defined type.");return}H>=0&&H<=C.width-Z&&K>=0&&K<=C.height-J&&V.readPixels(H,K,Z,J,gt.convert(ie),gt.convert(_e),Et)}finally{let Gt=at!==null?Wt.get(at).__webglFramebuffer:null;wt.bindFramebuffer(V.FRAMEBUFFER,Gt)}}},this.readRenderTargetPixelsAsync=async function(C,H,K,Z,J,Et,Dt,At=0){if(!(C&&C.isWebGLRenderTarget))throw new Error("THREE.WebGLRenderer.readRenderTargetPixels: renderTarget is not THREE.WebGLRenderTarget.");let Nt=Wt.get(C).__webglFramebuffer;if(C.isWebGLCubeRenderTarget&&Dt!==void 0&&(Nt=Nt[Dt],Array.isArray(Nt)&&(Nt=Nt[0])),Nt)if(H>=0&&H<=C.width-Z&&K>=0&&K<=C.height-J){wt.bindFramebuffer(V.FRAMEBUFFER,Nt);let Gt=C.textures[At],ie=Gt.format,_e=Gt.type;C.textures.length>1&&V.readBuffer(V.COLOR_ATTACHMENT0+At);let Vt=qr(Gt);if(Vt.__formatReadable===!1)throw new Error("THREE.WebGLRenderer.readRenderTargetPixelsAsync: renderTarget is not in RGBA or implementation defined format.");if(Vt.__typeReadable===!1)throw new Error("THREE.WebGLRenderer.readRenderTargetPixelsAsync: renderTarget is not in UnsignedByteType or implementation defined type.");let xe=V.createBuffer();V.bindBuffer(V.PIXEL_PACK_BUFFER,xe),V.bufferData(V.PIXEL_PACK_BUFFER,Et.byteLength,V.STREAM_READ),V.readPixels(H,K,Z,J,gt.convert(ie),gt.convert(_e),0),V.bindBuffer(V.PIXEL_PACK_BUFFER,null);let nn=at!==null?Wt.get(at).__webglFramebuffer:null;wt.bindFramebuffer(V.FRAMEBUFFER,nn);let Ue=V.fenceSync(V.SYNC_GPU_COMMANDS_COMPLETE,0);return V.flush(),await Km(V,Ue,4),V.bindBuffer(V.PIXEL_PACK_BUFFER,xe),V.getBufferSubData(V.PIXEL_PACK_BUFFER,0,Et),V.bindBuffer(V.PIXEL_PACK_BUFFER,null),V.deleteBuffer(xe),V.deleteSync(Ue),Et}else throw new Error("THREE.WebGLRenderer.readRenderTargetPixelsAsync: requested read bounds are out of range.")},this.copyFramebufferToTexture=function(C,H=null,K=0){let Z=Math.pow(2,-K),J=Math.floor(C.image.width*Z),Et=Math.floor(C.image.height*Z),Dt=H!==null?H.x:0,At=H!==null?H.y:0;Jt.setTexture2D(C,0),V.copyTexSubImage2D(V.TEXTURE_2D,K,0,0,Dt,At,J,Et),wt.unbindTexture()},this.copyTextureToTexture=function(C,H,K=null,Z=null,J=0,Et=0){let Dt,At,Nt,Gt,ie,_e,Vt,xe,nn,Ue=C.isCompressedTexture?C.mipmaps[Et]:C.image;if(K!==null)Dt=K.max.x-K.min.x,At=K.max.y-K.min.y,Nt=K.isBox3?K.max.z-K.min.z:1,Gt=K.min.x,ie=K.min.y,_e=K.isBox3?K.min.z:0;else{let fe=Math.pow(2,-J);Dt=Math.floor(Ue.width*fe),At=Math.floor(Ue.height*fe),C.isDataArrayTexture?Nt=Ue.depth:C.isData3DTexture?Nt=Math.floor(Ue.depth*fe):Nt=1,Gt=0,ie=0,_e=0}Z!==null?(Vt=Z.x,xe=Z.y,nn=Z.z):(Vt=0,xe=0,nn=0);let Oe=gt.convert(H.format),Tn=gt.convert(H.type),Ft;H.isData3DTexture?(Jt.setTexture3D(H,0),Ft=V.TEXTURE_3D):H.isDataArrayTexture||H.isCompressedArrayTexture?(Jt.setTexture2DArray(H,0),Ft=V.TEXTURE_2D_ARRAY):(Jt.setTexture2D(H,0),Ft=V.TEXTURE_2D),wt.activeTexture(V.TEXTURE0),wt.pixelStorei(V.UNPACK_FLIP_Y_WEBGL,H.flipY),wt.pixelStorei(V.UNPACK_PREMULTIPLY_ALPHA_WEBGL,H.premultiplyAlpha),wt.pixelStorei(V.UNPACK_ALIGNMENT,H.unpackAlignment);let gn=wt.getParameter(V.UNPACK_ROW_LENGTH),ve=wt.getParameter(V.UNPACK_IMAGE_HEIGHT),vs=wt.getParameter(V.UNPACK_SKIP_PIXELS),_n=wt.getParameter(V.UNPACK_SKIP_ROWS),$r=wt.getParameter(V.UNPACK_SKIP_IMAGES);wt.pixelStorei(V.UNPACK_ROW_LENGTH,Ue.width),wt.pixelStorei(V.UNPACK_IMAGE_HEIGHT,Ue.height),wt.pixelStorei(V.UNPACK_SKIP_PIXELS,Gt),wt.pixelStorei(V.UNPACK_SKIP_ROWS,ie),wt.pixelStorei(V.UNPACK_SKIP_IMAGES,_e);let is=C.isDataArrayTexture||C.isData3DTexture,Ss=H.isDataArrayTexture||H.isData3DTexture;if(C.isDepthTexture){let fe=Wt.get(C),ln=Wt.get(H),ii=Wt.get(fe.__renderTarget),Fe=Wt.get(ln.__renderTarget);wt.bindFramebuffer(V.READ_FRAMEBUFFER,ii.__webglFramebuffer),wt.bindFramebuffer(V.DRAW_FRAMEBUFFER,Fe.__webglFramebuffer);for(let xn=0;xn<Nt;xn++)is&&(V.framebufferTextureLayer(V.READ_FRAMEBUFFER,V.COLOR_ATTACHMENT0,Wt.get(C).__webglTexture,J,_e+xn),V.framebufferTextureLayer(V.DRAW_FRAMEBUFFER,V.COLOR_ATTACHMENT0,Wt.get(H).__webglTexture,Et,nn+xn)),V.blitFramebuffer(Gt,ie,Gt+Dt,ie+At,Vt,xe,Vt+Dt,xe+At,V.DEPTH_BUFFER_BIT,V.NEAREST);wt.bindFramebuffer(V.READ_FRAMEBUFFER,null),wt.bindFramebuffer(V.DRAW_FRAMEBUFFER,null)}else if(J!==0||C.isRenderTargetTexture||Wt.has(C)){let fe=Wt.get(C),ln=Wt.get(H);wt.bindFramebuffer(V.READ_FRAMEBUFFER,P),wt.bindFramebuffer(V.DRAW_FRAMEBUFFER,k);for(let ii=0;ii<Nt;ii++)is?V.framebufferTextureLayer(V.READ_FRAMEBUFFER,V.COLOR_ATTACHMENT0,fe.__webglTexture,J,_e+ii):V.framebufferTexture2D(V.READ_FRAMEBUFFER,V.COLOR_ATTACHMENT0,V.TEXTURE_2D,fe.__webglTexture,J),Ss?V.framebufferTextureLayer(V.DRAW_FRAMEBUFFER,V.COLOR_ATTACHMENT0,ln.__webglTexture,Et,nn+ii):V.framebufferTexture2D(V.DRAW_FRAMEBUFFER,V.COLOR_ATTACHMENT0,V.TEXTURE_2D,ln.__webglTexture,Et),J!==0?V.blitFramebuffer(Gt,ie,Gt+Dt,ie+At,Vt,xe,Vt+Dt,xe+At,V.COLOR_BUFFER_BIT,V.NEAREST):Ss?V.copyTexSubImage3D(Ft,Et,Vt,xe,nn+ii,Gt,ie,Dt,At):V.copyTexSubImage2D(Ft,Et,Vt,xe,Gt,ie,Dt,At);wt.bindFramebuffer(V.READ_FRAMEBUFFER,null),wt.bindFramebuffer(V.DRAW_FRAMEBUFFER,null)}else Ss?C.isDataTexture||C.isData3DTexture?V.texSubImage3D(Ft,Et,Vt,xe,nn,Dt,At,Nt,Oe,Tn,Ue.data):H.isCompressedArrayTexture?V.compressedTexSubImage3D(Ft,Et,Vt,xe,nn,Dt,At,Nt,Oe,Ue.data):V.texSubImage3D(Ft,Et,Vt,xe,nn,Dt,At,Nt,Oe,Tn,Ue):C.isDataTexture?V.texSubImage2D(V.TEXTURE_2D,Et,Vt,xe,Dt,At,Oe,Tn,Ue.data):C.isCompressedTexture?V.compressedTexSubImage2D(V.TEXTURE_2D,Et,Vt,xe,Ue.width,Ue.height,Oe,Ue.data):V.texSubImage2D(V.TEXTURE_2D,Et,Vt,xe,Dt,At,Oe,Tn,Ue);wt.pixelStorei(V.UNPACK_ROW_LENGTH,gn),wt.pixelStorei(V.UNPACK_IMAGE_HEIGHT,ve),wt.pixelStorei(V.UNPACK_SKIP_PIXELS,vs),wt.pixelStorei(V.UNPACK_SKIP_ROWS,_n),wt.pixelStorei(V.UNPACK_SKIP_IMAGES,$r),Et===0&&H.generateMipmaps===!0&&H.mipmapsAutoUpdate===!0&&V.generateMipmap(Ft),wt.unbindTexture()},this.initRenderTarget=function(C){Wt.get(C).__webglFramebuffer===void 0&&Jt.setupRenderTarget(C)},this.initTexture=function(C){C.isCubeTexture?Jt.setTextureCube(C,0):C.isData3DTexture?Jt.setTexture3D(C,0):C.isDataArrayTexture||C.isCompressedArrayTexture?Jt.setTexture2DArray(C,0):Jt.setTexture2D(C,0),wt.unbindTexture()},this.resetState=function(){Y=0,G=0,at=null,wt.reset(),St.reset()},typeof __THREE_DEVTOOLS__<"u"&&__THREE_DEVTOOLS__.dispatchEvent(new CustomEvent("observe",{detail:this}))}get coordinateSystem(){return Di}get outputColorSpace(){return this._outputColorSpace}set outputColorSpace(t){this._outputColorSpace=t;let e=this.getContext();e.drawingBufferColorSpace=Se._getDrawingBufferColorSpace(t),e.unpackColorSpace=Se._getUnpackColorSpace()}};var Ew={"<f4":Float32Array,"<i4":Int32Array,"<u2":Uint16Array,"|u1":Uint8Array};function ji(i){let t=new DataView(i).getUint32(0,!0),e=JSON.parse(new TextDecoder().decode(new Uint8Array(i,4,t))),n={};for(let[s,[r,o,a]]of Object.entries(e.arrays)){let c=a.reduce((l,u)=>l*u,1);n[s]=new Ew[r](i,4+t+o,c)}return e.arrays=n,e}var Og=new URLSearchParams(location.search).get("token")??"",Aw=new Set(["log"]),Fh=class{constructor(t,e,n){Object.assign(this,{receive:t,report:e,onLink:n}),this.wants={},this.pending=new Map,this.number=0,this.delay=500,this.bytes=this.packets=0,document.addEventListener("visibilitychange",()=>document.hidden?this.close():this.open())}open(){if(this.socket||document.hidden||window.simkitFile)return;let t=new WebSocket(`${location.protocol==="https:"?"wss":"ws"}://${location.host}/ws?token=${encodeURIComponent(Og)}`);this.socket=t,t.binaryType="arraybuffer",t.onopen=()=>{this.delay=500,this.sendWants(),this.onLink(!0)},t.onmessage=e=>this.take(e.data),t.onclose=()=>{if(this.socket===t){this.socket=null;for(let{reject:e}of this.pending.values())e(new Error("the connection has ended"));this.pending.clear(),this.onLink(!1),document.hidden||setTimeout(()=>this.open(),this.delay=Math.min(2*this.delay,5e3))}}}close(){let t=this.socket;this.socket=null,t?.close(),t&&this.onLink(!1)}take(t){if(typeof t!="string"){this.bytes+=t.byteLength,this.packets+=1,this.receive(ji(t));return}let e=JSON.parse(t),n=this.pending.get(e.id);this.pending.delete(e.id),n&&"ok"in e?n.resolve(e.ok):n?n.reject(new Error(e.error)):e.error&&this.report(e.error)}ask(t,e={}){if(this.player&&!Aw.has(t))return this.player.ask(t,e);if(this.socket?.readyState!==WebSocket.OPEN)return Promise.reject(new Error("there is no connection"));let n=++this.number;return this.socket.send(JSON.stringify({...e,do:t,id:n})),new Promise((s,r)=>this.pending.set(n,{resolve:s,reject:r}))}send(t,e={}){return this.ask(t,e).catch(n=>this.report(n.message))}want(t,e){JSON.stringify(this.wants[t]??null)!==JSON.stringify(e)&&(e===null?delete this.wants[t]:this.wants[t]=e,this.sendWants())}sendWants(){this.socket?.readyState===WebSocket.OPEN&&this.socket.send(JSON.stringify({do:"want",streams:this.wants}))}async loadScene(){return window.simkitFile?ji(window.simkitFile.scene):ji(await(await this.fetch("scene")).arrayBuffer())}async fetch(t){let e=await fetch(`${t}?token=${encodeURIComponent(Og)}`);if(!e.ok)throw new Error(await e.text());return e}};var Fg=new sn,Bh=new R,Wo=class extends Ka{constructor(){super(),this.isLineSegmentsGeometry=!0,this.type="LineSegmentsGeometry";let t=[-1,2,0,1,2,0,-1,1,0,1,1,0,-1,0,0,1,0,0,-1,-1,0,1,-1,0],e=[-1,2,1,2,-1,1,1,1,-1,-1,1,-1,-1,-2,1,-2],n=[0,2,1,2,3,1,2,4,3,4,5,3,4,6,5,6,7,5];this.setIndex(n),this.setAttribute("position",new se(t,3)),this.setAttribute("uv",new se(e,2))}applyMatrix4(t){let e=this.attributes.instanceStart,n=this.attributes.instanceEnd;return e!==void 0&&(e.applyMatrix4(t),n.applyMatrix4(t),e.needsUpdate=!0),this.boundingBox!==null&&this.computeBoundingBox(),this.boundingSphere!==null&&this.computeBoundingSphere(),this}setPositions(t){let e;t instanceof Float32Array?e=t:Array.isArray(t)&&(e=new Float32Array(t));let n=new lr(e,6,1);return this.setAttribute("instanceStart",new wi(n,3,0)),this.setAttribute("instanceEnd",new wi(n,3,3)),this.instanceCount=this.attributes.instanceStart.count,this.computeBoundingBox(),this.computeBoundingSphere(),this}setColors(t){let e;t instanceof Float32Array?e=t:Array.isArray(t)&&(e=new Float32Array(t));let n=new lr(e,6,1);return this.setAttribute("instanceColorStart",new wi(n,3,0)),this.setAttribute("instanceColorEnd",new wi(n,3,3)),this}fromWireframeGeometry(t){return this.setPositions(t.attributes.position.array),this}fromEdgesGeometry(t){return this.setPositions(t.attributes.position.array),this}fromMesh(t){return this.fromWireframeGeometry(new Wa(t.geometry)),this}fromLineSegments(t){let e=t.geometry;return this.setPositions(e.attributes.position.array),this}computeBoundingBox(){this.boundingBox===null&&(this.boundingBox=new sn);let t=this.attributes.instanceStart,e=this.attributes.instanceEnd;t!==void 0&&e!==void 0&&(this.boundingBox.setFromBufferAttribute(t),Fg.setFromBufferAttribute(e),this.boundingBox.union(Fg))}computeBoundingSphere(){this.boundingSphere===null&&(this.boundingSphere=new fi),this.boundingBox===null&&this.computeBoundingBox();let t=this.attributes.instanceStart,e=this.attributes.instanceEnd;if(t!==void 0&&e!==void 0){let n=this.boundingSphere.center;this.boundingBox.getCenter(n);let s=0;for(let r=0,o=t.count;r<o;r++)Bh.fromBufferAttribute(t,r),s=Math.max(s,n.distanceToSquared(Bh)),Bh.fromBufferAttribute(e,r),s=Math.max(s,n.distanceToSquared(Bh));this.boundingSphere.radius=Math.sqrt(s),isNaN(this.boundingSphere.radius)&&console.error("THREE.LineSegmentsGeometry.computeBoundingSphere(): Computed radius is NaN. The instanced position data is likely to have NaN values.",this)}}toJSON(){}};Lt.line={worldUnits:{value:1},linewidth:{value:1},resolution:{value:new kt},dashOffset:{value:0},dashScale:{value:1},dashSize:{value:1},gapSize:{value:1}};ui.line={uniforms:dl.merge([Lt.common,Lt.fog,Lt.line]),vertexShader:`
+		#include <common>
+		#include <color_pars_vertex>
+		#include <fog_pars_vertex>
+		#include <logdepthbuf_pars_vertex>
+		#include <clipping_planes_pars_vertex>
+
+		uniform float linewidth;
+		uniform vec2 resolution;
+
+		attribute vec3 instanceStart;
+		attribute vec3 instanceEnd;
+
+		attribute vec3 instanceColorStart;
+		attribute vec3 instanceColorEnd;
+
+		#ifdef WORLD_UNITS
+
+			varying vec4 worldPos;
+			varying vec3 worldStart;
+			varying vec3 worldEnd;
+
+			#ifdef USE_DASH
+
+				varying vec2 vUv;
+
+			#endif
+
+		#else
+
+			varying vec2 vUv;
+
+		#endif
+
+		#ifdef USE_DASH
+
+			uniform float dashScale;
+			attribute float instanceDistanceStart;
+			attribute float instanceDistanceEnd;
+			varying float vLineDistance;
+
+		#endif
+
+		float trimSegmentAlpha( const in vec4 start, const in vec4 end ) {
+
+			// compute the interpolation factor needed to trim the segment so it terminates
+			// between the camera plane and the near plane
+
+			// conservative estimate of the near plane
+			float a = projectionMatrix[ 2 ][ 2 ]; // 3nd entry in 3th column
+			float b = projectionMatrix[ 3 ][ 2 ]; // 3nd entry in 4th column
+
+			// we need different nearEstimate formula for reversed and default depth buffer
+			// a is positive with a reversed depth buffer so it can be used for controlling the code flow
+			float nearEstimate = ( a > 0.0 ) ? ( - b / ( a + 1.0 ) ) : ( - 0.5 * b / a );
+
+			return ( nearEstimate - start.z ) / ( end.z - start.z );
+
+		}
+
+		void main() {
+
+			#ifdef USE_COLOR
+
+				vColor.xyz = ( position.y < 0.5 ) ? instanceColorStart : instanceColorEnd;
+
+			#endif
+
+			float aspect = resolution.x / resolution.y;
+
+			// camera space
+			vec4 start = modelViewMatrix * vec4( instanceStart, 1.0 );
+			vec4 end = modelViewMatrix * vec4( instanceEnd, 1.0 );
+
+			#ifdef USE_DASH
+
+				float lineDistanceStart = dashScale * instanceDistanceStart;
+				float lineDistanceEnd = dashScale * instanceDistanceEnd;
+
+			#endif
+
+			#ifdef WORLD_UNITS
+
+				worldStart = start.xyz;
+				worldEnd = end.xyz;
+
+			#else
+
+				vUv = uv;
+
+			#endif
+
+			// special case for perspective projection, and segments that terminate either in, or behind, the camera plane
+			// clearly the gpu firmware has a way of addressing this issue when projecting into ndc space
+			// but we need to perform ndc-space calculations in the shader, so we must address this issue directly
+			// perhaps there is a more elegant solution -- WestLangley
+
+			bool perspective = ( projectionMatrix[ 2 ][ 3 ] == - 1.0 ); // 4th entry in the 3rd column
+
+			if ( perspective ) {
+
+				if ( start.z < 0.0 && end.z >= 0.0 ) {
+
+					float alpha = trimSegmentAlpha( start, end );
+					end.xyz = mix( start.xyz, end.xyz, alpha );
+
+					#ifdef USE_DASH
+
+						lineDistanceEnd = mix( lineDistanceStart, lineDistanceEnd, alpha );
+
+					#endif
+
+				} else if ( end.z < 0.0 && start.z >= 0.0 ) {
+
+					float alpha = trimSegmentAlpha( end, start );
+					start.xyz = mix( end.xyz, start.xyz, alpha );
+
+					#ifdef USE_DASH
+
+						lineDistanceStart = mix( lineDistanceEnd, lineDistanceStart, alpha );
+
+					#endif
+
+				}
+
+			}
+
+			#ifdef USE_DASH
+
+				vLineDistance = ( position.y < 0.5 ) ? lineDistanceStart : lineDistanceEnd;
+				vUv = uv;
+
+			#endif
+
+			// clip space
+			vec4 clipStart = projectionMatrix * start;
+			vec4 clipEnd = projectionMatrix * end;
+
+			// ndc space
+			vec3 ndcStart = clipStart.xyz / clipStart.w;
+			vec3 ndcEnd = clipEnd.xyz / clipEnd.w;
+
+			// direction
+			vec2 dir = ndcEnd.xy - ndcStart.xy;
+
+			// account for clip-space aspect ratio
+			dir.x *= aspect;
+			dir = normalize( dir );
+
+			#ifdef WORLD_UNITS
+
+				vec3 worldDir = normalize( end.xyz - start.xyz );
+				vec3 tmpFwd = perspective ? normalize( mix( start.xyz, end.xyz, 0.5 ) ) : vec3( 0.0, 0.0, - 1.0 );
+				vec3 worldUp = normalize( cross( worldDir, tmpFwd ) );
+				vec3 worldFwd = cross( worldDir, worldUp );
+				worldPos = position.y < 0.5 ? start: end;
+
+				// height offset
+				float hw = linewidth * 0.5;
+				worldPos.xyz += position.x < 0.0 ? hw * worldUp : - hw * worldUp;
+
+				// don't extend the line if we're rendering dashes because we
+				// won't be rendering the endcaps
+				#ifndef USE_DASH
+
+					// cap extension
+					worldPos.xyz += position.y < 0.5 ? - hw * worldDir : hw * worldDir;
+
+					// add width to the box
+					worldPos.xyz += worldFwd * hw;
+
+					// endcaps
+					if ( position.y > 1.0 || position.y < 0.0 ) {
+
+						worldPos.xyz -= worldFwd * 2.0 * hw;
+
+					}
+
+				#endif
+
+				// project the worldpos
+				vec4 clip = projectionMatrix * worldPos;
+
+				// shift the depth of the projected points so the line
+				// segments overlap neatly
+				vec3 clipPose = ( position.y < 0.5 ) ? ndcStart : ndcEnd;
+
+				// only shift the depth of vertices in front of the camera (#35137)
+				if ( clip.w > 0.0 ) clip.z = clipPose.z * clip.w;
+
+			#else
+
+				vec2 offset = vec2( dir.y, - dir.x );
+				// undo aspect ratio adjustment
+				dir.x /= aspect;
+				offset.x /= aspect;
+
+				// sign flip
+				if ( position.x < 0.0 ) offset *= - 1.0;
+
+				// endcaps
+				if ( position.y < 0.0 ) {
+
+					offset += - dir;
+
+				} else if ( position.y > 1.0 ) {
+
+					offset += dir;
+
+				}
+
+				// adjust for linewidth
+				offset *= linewidth;
+
+				// adjust for clip-space to screen-space conversion // maybe resolution should be based on viewport ...
+				offset /= resolution.y;
+
+				// select end
+				vec4 clip = ( position.y < 0.5 ) ? clipStart : clipEnd;
+
+				// back to clip space
+				offset *= clip.w;
+
+				clip.xy += offset;
+
+			#endif
+
+			gl_Position = clip;
+
+			vec4 mvPosition = ( position.y < 0.5 ) ? start : end; // this is an approximation
+
+			#include <logdepthbuf_vertex>
+			#include <clipping_planes_vertex>
+			#include <fog_vertex>
+
+		}
+		`,fragmentShader:`
+		uniform vec3 diffuse;
+		uniform float opacity;
+		uniform float linewidth;
+
+		#ifdef USE_DASH
+
+			uniform float dashOffset;
+			uniform float dashSize;
+			uniform float gapSize;
+
+		#endif
+
+		varying float vLineDistance;
+
+		#ifdef WORLD_UNITS
+
+			varying vec4 worldPos;
+			varying vec3 worldStart;
+			varying vec3 worldEnd;
+
+			#ifdef USE_DASH
+
+				varying vec2 vUv;
+
+			#endif
+
+		#else
+
+			varying vec2 vUv;
+
+		#endif
+
+		#include <common>
+		#include <color_pars_fragment>
+		#include <fog_pars_fragment>
+		#include <logdepthbuf_pars_fragment>
+		#include <clipping_planes_pars_fragment>
+
+		vec2 closestLineToLine(vec3 p1, vec3 p2, vec3 p3, vec3 p4) {
+
+			float mua;
+			float mub;
+
+			vec3 p13 = p1 - p3;
+			vec3 p43 = p4 - p3;
+
+			vec3 p21 = p2 - p1;
+
+			float d1343 = dot( p13, p43 );
+			float d4321 = dot( p43, p21 );
+			float d1321 = dot( p13, p21 );
+			float d4343 = dot( p43, p43 );
+			float d2121 = dot( p21, p21 );
+
+			float denom = d2121 * d4343 - d4321 * d4321;
+
+			float numer = d1343 * d4321 - d1321 * d4343;
+
+			mua = numer / denom;
+			mua = clamp( mua, 0.0, 1.0 );
+			mub = ( d1343 + d4321 * ( mua ) ) / d4343;
+			mub = clamp( mub, 0.0, 1.0 );
+
+			return vec2( mua, mub );
+
+		}
+
+		void main() {
+
+			float alpha = opacity;
+			vec4 diffuseColor = vec4( diffuse, alpha );
+
+			#include <clipping_planes_fragment>
+
+			#ifdef USE_DASH
+
+				if ( vUv.y < - 1.0 || vUv.y > 1.0 ) discard; // discard endcaps
+
+				if ( mod( vLineDistance + dashOffset, dashSize + gapSize ) > dashSize ) discard; // todo - FIX
+
+			#endif
+
+			#ifdef WORLD_UNITS
+
+				float len;
+
+				if ( isOrthographic ) {
+
+					// View rays are parallel to the z axis so the distance reduces to camera-space XY
+					vec2 lineDir = worldEnd.xy - worldStart.xy;
+					float t = clamp( dot( worldPos.xy - worldStart.xy, lineDir ) / dot( lineDir, lineDir ), 0.0, 1.0 );
+					len = length( worldStart.xy + lineDir * t - worldPos.xy );
+
+				} else {
+
+					// Find the closest points on the view ray and the line segment
+					vec3 rayEnd = normalize( worldPos.xyz ) * 1e5;
+					vec3 lineDir = worldEnd - worldStart;
+					vec2 params = closestLineToLine( worldStart, worldEnd, vec3( 0.0, 0.0, 0.0 ), rayEnd );
+
+					vec3 p1 = worldStart + lineDir * params.x;
+					vec3 p2 = rayEnd * params.y;
+					vec3 delta = p1 - p2;
+					len = length( delta );
+
+				}
+
+				float norm = len / linewidth;
+
+				#ifndef USE_DASH
+
+					#ifdef USE_ALPHA_TO_COVERAGE
+
+						float dnorm = fwidth( norm );
+						alpha = 1.0 - smoothstep( 0.5 - dnorm, 0.5 + dnorm, norm );
+
+					#else
+
+						if ( norm > 0.5 ) {
+
+							discard;
+
+						}
+
+					#endif
+
+				#endif
+
+			#else
+
+				#ifdef USE_ALPHA_TO_COVERAGE
+
+					// artifacts appear on some hardware if a derivative is taken within a conditional
+					float a = vUv.x;
+					float b = ( vUv.y > 0.0 ) ? vUv.y - 1.0 : vUv.y + 1.0;
+					float len2 = a * a + b * b;
+					float dlen = fwidth( len2 );
+
+					if ( abs( vUv.y ) > 1.0 ) {
+
+						alpha = 1.0 - smoothstep( 1.0 - dlen, 1.0 + dlen, len2 );
+
+					}
+
+				#else
+
+					if ( abs( vUv.y ) > 1.0 ) {
+
+						float a = vUv.x;
+						float b = ( vUv.y > 0.0 ) ? vUv.y - 1.0 : vUv.y + 1.0;
+						float len2 = a * a + b * b;
+
+						if ( len2 > 1.0 ) discard;
+
+					}
+
+				#endif
+
+			#endif
+
+			#include <logdepthbuf_fragment>
+			#include <color_fragment>
+
+			gl_FragColor = vec4( diffuseColor.rgb, alpha );
+
+			#include <tonemapping_fragment>
+			#include <colorspace_fragment>
+			#include <fog_fragment>
+			#include <premultiplied_alpha_fragment>
+
+		}
+		`};var Xo=class extends mi{constructor(t){super({type:"LineMaterial",uniforms:dl.clone(ui.line.uniforms),vertexShader:ui.line.vertexShader,fragmentShader:ui.line.fragmentShader,clipping:!0}),this.isLineMaterial=!0,this.setValues(t)}get color(){return this.uniforms.diffuse.value}set color(t){this.uniforms.diffuse.value=t}get worldUnits(){return"WORLD_UNITS"in this.defines}set worldUnits(t){t===!0!==this.worldUnits&&(this.needsUpdate=!0),t===!0?this.defines.WORLD_UNITS="":delete this.defines.WORLD_UNITS}get linewidth(){return this.uniforms.linewidth.value}set linewidth(t){this.uniforms.linewidth&&(this.uniforms.linewidth.value=t)}get dashed(){return"USE_DASH"in this.defines}set dashed(t){t===!0!==this.dashed&&(this.needsUpdate=!0),t===!0?this.defines.USE_DASH="":delete this.defines.USE_DASH}get dashScale(){return this.uniforms.dashScale.value}set dashScale(t){this.uniforms.dashScale.value=t}get dashSize(){return this.uniforms.dashSize.value}set dashSize(t){this.uniforms.dashSize.value=t}get dashOffset(){return this.uniforms.dashOffset.value}set dashOffset(t){this.uniforms.dashOffset.value=t}get gapSize(){return this.uniforms.gapSize.value}set gapSize(t){this.uniforms.gapSize.value=t}get opacity(){return this.uniforms.opacity.value}set opacity(t){this.uniforms&&(this.uniforms.opacity.value=t)}get resolution(){return this.uniforms.resolution.value}set resolution(t){this.uniforms.resolution.value.copy(t)}get alphaToCoverage(){return"USE_ALPHA_TO_COVERAGE"in this.defines}set alphaToCoverage(t){this.defines&&(t===!0!==this.alphaToCoverage&&(this.needsUpdate=!0),t===!0?this.defines.USE_ALPHA_TO_COVERAGE="":delete this.defines.USE_ALPHA_TO_COVERAGE)}};var cf=new Le,Bg=new R,kg=new R,Yn=new Le,qn=new Le,ds=new Le,hf=new R,uf=new qt,$n=new Qa,zg=new R,kh=new sn,zh=new fi,fs=new Le,ps,Or;function Vg(i,t,e){return fs.set(0,0,-t,1).applyMatrix4(i.projectionMatrix),fs.multiplyScalar(1/fs.w),fs.x=Or/e.width,fs.y=Or/e.height,fs.applyMatrix4(i.projectionMatrixInverse),fs.multiplyScalar(1/fs.w),Math.abs(Math.max(fs.x,fs.y))}function Cw(i,t){let e=i.matrixWorld,n=i.geometry,s=n.attributes.instanceStart,r=n.attributes.instanceEnd,o=Math.min(n.instanceCount,s.count);for(let a=0,c=o;a<c;a++){$n.start.fromBufferAttribute(s,a),$n.end.fromBufferAttribute(r,a),$n.applyMatrix4(e);let l=new R,u=new R;ps.distanceSqToSegment($n.start,$n.end,u,l),u.distanceTo(l)<Or*.5&&t.push({point:u,pointOnLine:l,distance:ps.origin.distanceTo(u),object:i,face:null,faceIndex:a,uv:null,uv1:null})}}function Rw(i,t,e){let n=t.projectionMatrix,r=i.material.resolution,o=i.matrixWorld,a=i.geometry,c=a.attributes.instanceStart,l=a.attributes.instanceEnd,u=Math.min(a.instanceCount,c.count),h=-t.near;ps.at(1,ds),ds.w=1,ds.applyMatrix4(t.matrixWorldInverse),ds.applyMatrix4(n),ds.multiplyScalar(1/ds.w),ds.x*=r.x/2,ds.y*=r.y/2,ds.z=0,hf.copy(ds),uf.multiplyMatrices(t.matrixWorldInverse,o);for(let d=0,f=u;d<f;d++){if(Yn.fromBufferAttribute(c,d),qn.fromBufferAttribute(l,d),Yn.w=1,qn.w=1,Yn.applyMatrix4(uf),qn.applyMatrix4(uf),Yn.z>h&&qn.z>h)continue;if(Yn.z>h){let E=Yn.z-qn.z,S=(Yn.z-h)/E;Yn.lerp(qn,S)}else if(qn.z>h){let E=qn.z-Yn.z,S=(qn.z-h)/E;qn.lerp(Yn,S)}Yn.applyMatrix4(n),qn.applyMatrix4(n),Yn.multiplyScalar(1/Yn.w),qn.multiplyScalar(1/qn.w),Yn.x*=r.x/2,Yn.y*=r.y/2,qn.x*=r.x/2,qn.y*=r.y/2,$n.start.copy(Yn),$n.start.z=0,$n.end.copy(qn),$n.end.z=0;let _=$n.closestPointToPointParameter(hf,!0);$n.at(_,zg);let m=ul.lerp(Yn.z,qn.z,_),g=m>=-1&&m<=1,x=hf.distanceTo(zg)<Or*.5;if(g&&x){$n.start.fromBufferAttribute(c,d),$n.end.fromBufferAttribute(l,d),$n.start.applyMatrix4(o),$n.end.applyMatrix4(o);let E=new R,S=new R;ps.distanceSqToSegment($n.start,$n.end,S,E),e.push({point:S,pointOnLine:E,distance:ps.origin.distanceTo(S),object:i,face:null,faceIndex:d,uv:null,uv1:null})}}}var Vh=class extends Mt{constructor(t=new Wo,e=new Xo({color:Math.random()*16777215})){super(t,e),this.isLineSegments2=!0,this.type="LineSegments2"}computeLineDistances(){let t=this.geometry,e=t.attributes.instanceStart,n=t.attributes.instanceEnd,s=new Float32Array(2*e.count);for(let o=0,a=0,c=e.count;o<c;o++,a+=2)Bg.fromBufferAttribute(e,o),kg.fromBufferAttribute(n,o),s[a]=a===0?0:s[a-1],s[a+1]=s[a]+Bg.distanceTo(kg);let r=new lr(s,2,1);return t.setAttribute("instanceDistanceStart",new wi(r,1,0)),t.setAttribute("instanceDistanceEnd",new wi(r,1,1)),this}raycast(t,e){let n=this.material.worldUnits,s=t.camera;if(s===null&&!n&&console.error('LineSegments2: "Raycaster.camera" needs to be set in order to raycast against LineSegments2 while worldUnits is set to false.'),n===!1&&(this.material.resolution.x===0||this.material.resolution.y===0))return;let r=t.params.Line2!==void 0&&t.params.Line2.threshold||0;ps=t.ray;let o=this.matrixWorld,a=this.geometry,c=this.material;Or=c.linewidth+r,a.boundingSphere===null&&a.computeBoundingSphere(),zh.copy(a.boundingSphere).applyMatrix4(o);let l;if(n)l=Or*.5;else{let h=Math.max(s.near,zh.distanceToPoint(ps.origin));l=Vg(s,h,c.resolution)}if(zh.radius+=l,ps.intersectsSphere(zh)===!1)return;a.boundingBox===null&&a.computeBoundingBox(),kh.copy(a.boundingBox).applyMatrix4(o);let u;if(n)u=Or*.5;else{let h=Math.max(s.near,kh.distanceToPoint(ps.origin));u=Vg(s,h,c.resolution)}kh.expandByScalar(u),ps.intersectsBox(kh)!==!1&&(n?Cw(this,e):Rw(this,s,e))}onBeforeRender(t){let e=this.material.uniforms;e&&e.resolution&&(t.getViewport(cf),this.material.uniforms.resolution.value.set(cf.z,cf.w))}};var Yo=0,Gg=1,Hg=2,Wg=3,Xg=4,Yg=5,qg=6,$g=7,Pw=1,Zg=2,Jg=new R(1,1,1),Gh=250,zs={m:new qt,b:new qt,p:new R,q:new Xe};function Mn(i,t,e){return zs.p.fromArray(i,t),zs.q.set(i[t+4],i[t+5],i[t+6],i[t+3]),e.compose(zs.p,zs.q,Jg)}var jg=[];for(let i of[-1,0,1])for(let t of[-1,0,1])for(let e of[-1,0,1])(i||t||e)&&jg.push([i,t,e]);function Iw(i){if(i.userData.outermost)return i.userData.outermost;let{array:t}=i.attributes.position,e=new Set;for(let[n,s,r]of jg){let o=0,a=-1/0;for(let c=0;c<t.length;c+=3){let l=n*t[c]+s*t[c+1]+r*t[c+2];l>a&&(a=l,o=c)}e.add(o)}return i.userData.outermost=[...e].flatMap(n=>[t[n],t[n+1],t[n+2]])}var Hh=class{constructor(t){this.stage=t,this.root=new Cn,this.visuals=new Cn,this.collisions=new Cn,this.root.add(this.visuals),t.helpers.add(this.collisions),this.collisions.visible=!1,t.scene.add(this.root),this.unit={[Hg]:new hi(1,32,20),[Xg]:new hi(1,32,20),[Yg]:new rn(1,1,2,40).rotateX(Math.PI/2),[qg]:new Ye(2,2,2),[Yo]:new Ui(2,2)},this.bodies=[]}async load(t){this.scene=t,this.arrays={...t.arrays};let{body_pose:e,moving:n}=t.arrays;this.bodies=t.bodies.map((o,a)=>Mn(e,7*a,new qt)),this.moving=n,this.isMoving=new Uint8Array(t.bodies.length);for(let o of n)this.isMoving[o]=1;let s=await this.loadTextures(t);for(let o of this.textures??[])o?.dispose();let r=new Set(Object.values(this.unit));for(let o of this.geometries?.values()??[])o&&!r.has(o)&&o.dispose();this.textures=s,this.geometries=new Map,this.rebuild()}rebuild(){for(let t of[this.visuals,this.collisions])for(let e of[...t.children])t.remove(e),e.material.dispose(),e.dispose?.();this.shapes=[],this.groupGeoms(),this.makeSkins(),this.place(!0),this.stage.extent=this.stage.around.extent}groupGeoms(){let{scene:t,arrays:e}=this,n=new Set(t.undrawn),s=new Map;for(let r=0;r<e.geom_type.length;r++){if(!e.geom_shown[r])continue;let o=e.geom_group[r],a=t.owners[e.geom_owner[r]];(o===Pw||o===Zg||n.has(a[0].split("::",1)[0])||n.has(a[0]))&&this.addTo(s,r,!0),o!==Zg&&this.addTo(s,r,!1)}for(let{geoms:r,isVisual:o,geometry:a}of s.values())this.makeInstances(r,o,a)}addTo(t,e,n){let{arrays:s}=this,r=s.geom_rgba[4*e+3];if(n&&r<=.003)return;let[o,a]=this.geometryOf(e);if(!a)return;let c=n?[o,"v",s.geom_material[e],r.toFixed(2)].join():[o,"c"].join();t.has(c)||t.set(c,{geoms:[],isVisual:n,geometry:a}),t.get(c).geoms.push(e)}geometryOf(t){let{arrays:e}=this,n=e.geom_type[t],s=e.geom_data[t],r=e.geom_size,o=`${n}`;n===$g?o+=`:${s}`:n===Gg?o+=`:${s}`:n===Wg&&(o+=`:${r[3*t].toFixed(4)},${r[3*t+1].toFixed(4)}`);let a=this.scene.materials[e.geom_material[t]];return n===Yo&&a?.texture>=0&&(o+=`:${r[3*t]},${r[3*t+1]}`),this.geometries.has(o)||this.geometries.set(o,this.makeGeometry(t,n,s,a)),[o,this.geometries.get(o)]}makeGeometry(t,e,n,s){let{arrays:r}=this,o=r.geom_size.subarray(3*t,3*t+3);if(e===Wg)return new Ha(o[0],2*o[1],8,24).rotateX(Math.PI/2);if(e===Gg)return this.heightGeometry(n,s);if(e===$g){if(!r[`mesh${n}.position`])return null;let a=new pe;return a.setAttribute("position",new Ie(r[`mesh${n}.position`],3)),a.setAttribute("normal",new Ie(r[`mesh${n}.normal`],3)),r[`mesh${n}.uv`]&&a.setAttribute("uv",new Ie(r[`mesh${n}.uv`],2)),a.setIndex(new Ie(new Uint32Array(r[`mesh${n}.index`]),1)),a}if(e===Yo&&s?.texture>=0){let a=this.unit[Yo].clone(),c=a.attributes.uv,l=s.uniform?o[0]||Gh:1,u=s.uniform?o[1]||Gh:1;for(let h=0;h<c.count;h++)c.setXY(h,c.getX(h)*l*s.repeat[0],(1-c.getY(h))*u*s.repeat[1]);return a}return this.unit[e]??null}heightGeometry(t,e){let{arrays:n,scene:s}=this,r=n[`heights${t}`];if(!r)return null;let[o,a,c]=n[`heights${t}.size`],[l,u]=s.heightShapes[t],h=new Ui(2*o,2*a,u-1,l-1),d=h.attributes.position;for(let p=0;p<l;p++)for(let _=0;_<u;_++)d.setZ((l-1-p)*u+_,c*r[p*u+_]);let{uv:f}=h.attributes;for(let p=0;e&&p<f.count;p++)f.setXY(p,f.getX(p)*e.repeat[0],f.getY(p)*e.repeat[1]);return h.computeVertexNormals(),h}scaleOf(t){let{arrays:e}=this,[n,s,r]=e.geom_size.subarray(3*t,3*t+3);switch(e.geom_type[t]){case qg:case Xg:return new R(n,s,r);case Yg:return new R(n,n,s);case Hg:return new R(n,n,n);case Yo:return new R(n||Gh,s||Gh,1);default:return Jg.clone()}}makeInstances(t,e,n){let{arrays:s}=this,r=t[0],o=e?this.materialOf(s.geom_material[r],s.geom_rgba[4*r+3],!!n.attributes.uv):new Vn({color:16747039,wireframe:!0,transparent:!0,opacity:.55}),a=new Ls(n,o,t.length);a.frustumCulled=!1;let c=s.geom_type[r]===Yo;a.castShadow=e&&!c&&s.geom_rgba[4*r+3]>.5,a.receiveShadow=e,a.userData={geoms:t,isFloor:c},c&&(o.polygonOffset=!0,o.polygonOffsetFactor=o.polygonOffsetUnits=1);let l=new Ht;t.forEach((h,d)=>{e&&a.setColorAt(d,l.setRGB(s.geom_rgba[4*h],s.geom_rgba[4*h+1],s.geom_rgba[4*h+2],Ae))});let u=t.map(h=>Mn([...s.geom_pos.subarray(3*h,3*h+3),...s.geom_quat.subarray(4*h,4*h+4)],0,new qt).scale(this.scaleOf(h)));(e?this.visuals:this.collisions).add(a),this.shapes.push({mesh:a,geoms:t,local:u,isVisual:e,isFloor:c,moves:t.some(h=>this.isMoving[s.geom_body[h]])})}materialOf(t,e,n){let s=this.scene.materials[t],r={color:16777215,transparent:e<.995,opacity:e,depthWrite:e>.6},o=s&&this.textures[s.texture];if(o&&n&&(r.map=o),s?.emission>0&&(r.emissive=new Ht(16777215),r.emissiveIntensity=.5*s.emission,r.map&&(r.emissiveMap=r.map)),this.stage.lite)return new sr(r);let a=s?s.shininess:.3,c=s?s.specular:.3;return r.roughness=s?.roughness>=0?s.roughness:Math.min(.95,.9-.5*a*c),r.metalness=s?.metallic>=0?s.metallic:.02,new Xa(r)}async loadTextures(t){let e=async(n,s)=>{let r=await createImageBitmap(new Blob([t.arrays[`texture${s}`]]));if(n.kind!=="2d")return null;let o=new Wn(r);return o.flipY=!1,o.colorSpace=Ae,o.wrapS=o.wrapT=To,o.anisotropy=this.stage.lite?1:8,o.needsUpdate=!0,o};return Promise.all(t.textures.map((n,s)=>e(n,s).catch(()=>null)))}makeSkins(){let{scene:t,arrays:e}=this;this.skins=t.skins.map((n,s)=>{let r=new pe,o=e[`skin${s}.position`];r.setAttribute("position",new Ie(new Float32Array(o.length),3)),r.setIndex(new Ie(new Uint32Array(e[`skin${s}.index`]),1)),e[`skin${s}.uv`]&&r.setAttribute("uv",new Ie(e[`skin${s}.uv`],2));let a=this.materialOf(n.material,n.rgba[3],!!e[`skin${s}.uv`]);a.color.setRGB(...n.rgba.slice(0,3),Ae);let c=new Mt(r,a);c.frustumCulled=!1,c.castShadow=c.receiveShadow=!0,this.visuals.add(c);let l=[...e[`skin${s}.bone_body`]].map((u,h)=>{let d=Mn([...e[`skin${s}.bone_pos`].subarray(3*h,3*h+3),...e[`skin${s}.bone_quat`].subarray(4*h,4*h+4)],0,new qt);return{body:u,inverse:d.invert(),count:e[`skin${s}.bone_count`][h]}});return{mesh:c,rest:o,bones:l,vertex:e[`skin${s}.vertex`],weight:e[`skin${s}.weight`]}})}bendSkins(){let t=new R;for(let{mesh:e,rest:n,bones:s,vertex:r,weight:o}of this.skins){let a=e.geometry.attributes.position.array.fill(0),c=0;for(let{body:l,inverse:u,count:h}of s){zs.m.multiplyMatrices(this.bodies[l],u);for(let d=0;d<h;d++,c++){let f=3*r[c];t.fromArray(n,f).applyMatrix4(zs.m).multiplyScalar(o[c]),a[f]+=t.x,a[f+1]+=t.y,a[f+2]+=t.z}}e.geometry.attributes.position.needsUpdate=!0,e.geometry.computeVertexNormals()}}setPoses(t){t.length===7*this.moving.length&&(this.moving.forEach((e,n)=>Mn(t,7*n,this.bodies[e])),this.isOld=!0,this.stage.invalidate())}place(t=!1){if(!t&&!this.isOld)return;this.isOld=!1;let{geom_body:e}=this.arrays;for(let n of this.shapes)!t&&(!n.moves||!n.mesh.parent.visible)||(n.geoms.forEach((s,r)=>n.mesh.setMatrixAt(r,zs.m.multiplyMatrices(this.bodies[e[s]],n.local[r]))),n.mesh.instanceMatrix.needsUpdate=!0,n.mesh.boundingSphere=n.mesh.boundingBox=null);this.skins.length&&this.bendSkins()}setAppearance(t){if(t.geom_rgba.length!==this.arrays.geom_rgba.length)return;let e=s=>this.arrays[s].every((r,o)=>r===t[s][o]),n=!["geom_rgba","geom_pos","geom_quat"].every(e);Object.assign(this.arrays,t),this.stage.lightArrays=this.arrays,this.stage.makeLights(),n&&this.rebuild(),this.stage.invalidate()}boxOf(t){let e=new sn;for(let n of this.boxesBy((s,r)=>t(s,r)?0:null).values())e.union(n);return e}boxesByModel(){return this.boxesBy((t,e)=>e?null:this.linkOf(t).split("::",1)[0])}boxesBy(t){let e=new Map,n=new R;this.place();for(let{mesh:s,geoms:r,isVisual:o,isFloor:a}of this.shapes){if(!o)continue;let c=Iw(s.geometry);r.forEach((l,u)=>{let h=t(l,a);if(h!==null){e.has(h)||e.set(h,new sn),s.getMatrixAt(u,zs.m);for(let d=0;d<c.length;d+=3)e.get(h).expandByPoint(n.fromArray(c,d).applyMatrix4(zs.m))}})}return e}linkOf(t){return this.scene.owners[this.arrays.geom_owner[t]]?.[0]??""}pick(t){this.place();let e=t.intersectObjects(this.visuals.children.filter(s=>s.userData.geoms),!1)[0];if(!e)return null;let n=e.object.userData.geoms[e.instanceId];return{geom:n,link:this.linkOf(n),owner:this.scene.owners[this.arrays.geom_owner[n]]?.[1],point:e.point,isFloor:e.object.userData.isFloor}}};var Lw=14,Wh=48,Dw=.72,Nw=new qt,_l=new Ht,Qg=new R,Kg={cube:()=>new Ye(1,1,1),sphere:()=>new hi(.5,20,14),cylinder:()=>new rn(.5,.5,1,20).rotateX(Math.PI/2),cone:()=>new Do(.5,1,20).rotateX(Math.PI/2)},df=i=>({transparent:i<.995,opacity:i,depthWrite:i>.995}),Xh=class{constructor(t){this.app=t,this.topics=[],this.shown=new Map,this.wanted=new Set,this.unit=Object.fromEntries(Object.entries(Kg).map(([e,n])=>[e,n()])),t.on("packet:displays",e=>{this.topics=e.topics,t.emit("displays")}),t.on("packet:display",e=>this.show(e)),t.stage.before.push(()=>this.place())}set(t,e){e?this.wanted.add(t):this.wanted.delete(t),this.app.player?this.app.player.showDisplays(!0):this.app.connection.want(`display:${t}`,e?{}:null),e||this.remove(t),this.app.emit("displays")}problems(t){return this.shown.get(t)?.problems??[]}show(t){let e=t.kind.slice(8);if(!this.wanted.has(e))return;this.remove(e);let n=new Cn;this.shown.set(e,{root:n,problems:t.error?[t.error]:t.problems}),(t.groups??[]).forEach((s,r)=>n.add(this.makeGroup(t,s,`g${r}`))),this.app.stage.helpers.add(n),this.app.emit("displays"),this.app.stage.invalidate()}remove(t){let e=this.shown.get(t);if(!e)return;this.shown.delete(t),this.app.stage.helpers.remove(e.root);let n=new Set(Object.values(this.unit));e.root.traverse(s=>{s.geometry&&!n.has(s.geometry)&&s.geometry.dispose(),s.material?.map?.dispose(),s.material?.dispose(),s.isInstancedMesh&&s.dispose()}),this.app.stage.invalidate()}place(){for(let{root:t}of this.shown.values())for(let e of t.children){let n=this.app.world.bodies[e.userData.body];n&&(e.matrix.multiplyMatrices(n,e.userData.offset),e.matrixWorldNeedsUpdate=!0)}}makeGroup(t,e,n){let{arrays:s}=t,r=new Cn;r.matrixAutoUpdate=!1,r.userData={body:e.body,offset:Mn(e.pose,0,new qt)};for(let o of Object.keys(Kg)){let a=s[`${n}.${o}`];a&&r.add(...this.makeShapes(this.unit[o],a))}for(let[o,a]of[["lines",Uw],["points",Ow],["triangles",n0]])e[o].forEach((c,l)=>r.add(a(s[`${n}.${o}${l}`],s[`${n}.${o}${l}.colours`],c)));for(let o of e.texts)r.add(Bw(o));for(let[o,a]of e.meshes)r.add(Fw(s[`mesh${o}.corners`],s[`mesh${o}.colours`],a));return e.grids.forEach((o,a)=>r.add(zw(o,s[`${n}.grid${a}`]))),r.traverse(o=>{o.frustumCulled=!1}),r}makeShapes(t,e){let n=new Map;for(let s=0;s<e.length;s+=Lw){let r=e[s+13].toFixed(2);n.has(r)||n.set(r,[]),n.get(r).push(s)}return[...n].map(([s,r])=>{let o=new Ls(t,new sr({fog:!1,...df(+s)}),r.length);return r.forEach((a,c)=>{o.setMatrixAt(c,Mn(e,a,Nw).scale(Qg.set(e[a+7],e[a+8],e[a+9]))),o.setColorAt(c,_l.setRGB(e[a+10],e[a+11],e[a+12],Ae))}),o})}};function t0(i,t){let e=new Float32Array(i.length/4*t);for(let n=0,s=0;n<i.length;n+=4,s+=t)_l.setRGB(i[n]/255,i[n+1]/255,i[n+2]/255,Ae),e[s]=_l.r,e[s+1]=_l.g,e[s+2]=_l.b,t===4&&(e[s+3]=i[n+3]/255);return e}function Uw(i,t,e){let n=new Wo;return n.setPositions(i),n.setColors(t0(t,3)),new Vh(n,new Xo({linewidth:e||.01,worldUnits:!0,vertexColors:!0,fog:!1,...df(t[3]/255)}))}function e0(i,t){let e=new pe;return e.setAttribute("position",new Ie(i,3)),e.setAttribute("color",new Ie(t0(t,4),4)),e}function Ow(i,t,e){let n=new Ns({size:e/Math.tan(22.5*Math.PI/180),vertexColors:!0,transparent:!0,fog:!1});return new nr(e0(i,t),n)}function n0(i,t){let e=!0;for(let s=3;s<t.length;s+=4)e&&=t[s]>253;let n=e0(i,t);return n.computeVertexNormals(),new Mt(n,new sr({vertexColors:!0,side:Sn,transparent:!e,depthWrite:e,fog:!1}))}function Fw(i,t,e){let n=n0(i,t);return n.matrixAutoUpdate=!1,Mn(e,0,n.matrix).scale(Qg.set(e[7],e[8],e[9])),n.material.color.setRGB(e[10],e[11],e[12],Ae),e[13]<.995&&Object.assign(n.material,df(e[13])),n}function Bw([i,t,e,n,s,r,o,a,c]){let l=document.createElement("canvas"),u=l.getContext("2d"),h=i.split(`
+`),d=`${Wh}px system-ui, sans-serif`;u.font=d,l.width=Math.min(2048,Math.ceil(Math.max(...h.map(m=>u.measureText(m).width),1))+8),l.height=Math.min(2048,Math.ceil(1.2*Wh*h.length)),u.font=d,u.textBaseline="middle",u.textAlign="center",u.fillStyle=`rgb(${255*r} ${255*o} ${255*a})`,h.forEach((m,g)=>u.fillText(m,l.width/2,1.2*Wh*(g+.5)));let f=new za(l);f.colorSpace=Ae;let p=new Ba(new Lo({map:f,transparent:!0,opacity:c,depthWrite:!1,fog:!1})),_=s/(Dw*Wh);return p.position.set(t,e,n),p.scale.set(l.width*_,l.height*_,1),p.renderOrder=6,p.raycast=()=>{},p}function kw(i){let t=new Uint8Array(1024);for(let e=0;e<256;e++){let n;e===255?n=[112,137,134,255]:e>127?n=[255,Math.round(255*(e-128)/126),0,255]:e>100?n=[0,255,0,255]:i!=="costmap"?n=[0,1,2].map(()=>255-Math.round(255*e/100)).concat(255):e===0?n=[0,0,0,0]:e===100?n=[255,0,255,255]:e===99?n=[0,255,255,255]:n=[Math.round(255*e/100),0,255-Math.round(255*e/100),255],t.set(n,4*e)}return t}function zw({rows:i,columns:t,resolution:e,colours:n,pose:s},r){let o=kw(n),a=new Uint8Array(4*i*t);for(let f=0;f<r.length;f++)a.set(o.subarray(4*r[f],4*r[f]+4),4*f);let c=new Er(a,t,i);c.colorSpace=Ae,c.needsUpdate=!0;let l=t*e,u=i*e,h=new Ui(l,u).translate(l/2,u/2,0),d=new Mt(h,new Vn({map:c,transparent:!0,opacity:.7,depthWrite:!1,side:Sn,fog:!1,polygonOffset:!0,polygonOffsetFactor:-1,polygonOffsetUnits:-2}));return d.matrixAutoUpdate=!1,Mn(s,0,d.matrix),d.renderOrder=n==="costmap"?1:0,d}function F(i,t={},...e){let n=document.createElement(i);for(let[s,r]of Object.entries(t))s==="class"?n.className=r:s.startsWith("on")?n.addEventListener(s.slice(2),r):s.includes("-")?n.setAttribute(s,r):n[s]=r;return n.append(...e.filter(s=>s!==null)),n}function ei(i,t,...e){let n=F("details",{class:"panel",id:i,open:!0},F("summary",{},t),...e),s=`simkit-panel-${i}`;try{localStorage.getItem(s)==="closed"&&(n.open=!1),n.addEventListener("toggle",()=>localStorage.setItem(s,n.open?"open":"closed"))}catch{}return n}function qo(i,t,e,n){let s=F("input",{type:"checkbox",id:i,checked:e,onchange:()=>n(s.checked)});return F("label",{class:"check"},s,t)}var i0=[15026253,4630360,4094970],pr=new qt,ff=[["visuals","Visuals",!0],["collisions","Collisions",!1],["lidar","Lidar",!0],["path","Path driven",!0],["frusta","Sensor views",!1],["clouds","Point clouds",!1],["contacts","Contacts",!1],["frames","Frames (TF)",!1],["joints","Joint axes",!1],["inertia","Inertias",!1],["mass","Centres of mass",!1],["grid","Grid",!0],["shadows","Shadows",!0],["transparent","Transparent",!1]],Vw=[[0,1,2],[1,2,0],[2,0,1]].flatMap(([i,t,e])=>[[-1,-1],[-1,1],[1,-1],[1,1]].map(([n,s])=>{let r=[0,0,0];return r[t]=n/2,r[e]=s/2,[-.5,.5].map(o=>{let a=[...r];return a[i]=o,a})})),$o=class{constructor(t,e=!1){this.geometry=new pe;let n=new pi({vertexColors:!0,depthTest:e,transparent:!0,fog:!1});this.object=new Ds(this.geometry,n),this.object.frustumCulled=!1,this.object.renderOrder=5,t.add(this.object),this.clear()}clear(){this.points=[],this.colours=[]}add(t,e,n){this.points.push(t.x,t.y,t.z,e.x,e.y,e.z);let s=Gw.set(n);this.colours.push(s.r,s.g,s.b,s.r,s.g,s.b)}show(){this.geometry.dispose(),this.geometry.setAttribute("position",new se(this.points,3)),this.geometry.setAttribute("color",new se(this.colours,3))}},Gw=new Ht,Yh=class{constructor(t){this.app=t,this.on=Object.fromEntries(ff.map(([n,,s])=>[n,s]));let{stage:e}=t;this.frames=new $o(e.helpers),this.joints=new $o(e.helpers),this.contactLines=new $o(e.helpers),this.inertia=new $o(e.helpers),this.mass=this.instances(new hi(.018,16,12),16762173,.95),this.contactPoints=this.instances(new hi(.012,10,8),16726925,.95),this.makeGrid(),this.paths=new Map,e.before.push(()=>this.update()),t.on("packet:contacts",n=>{this.contacts=n,this.drawContacts(),e.invalidate()})}instances(t,e,n){let s=new Vn({color:e,transparent:!0,opacity:n,depthTest:!1,fog:!1}),r=new Ls(t,s,1);return r.frustumCulled=!1,r.renderOrder=4,r.count=0,this.app.stage.helpers.add(r),{mesh:r,resize:o=>{o>r.instanceMatrix.count&&(r.instanceMatrix=new Ar(new Float32Array(32*o),16)),r.count=o}}}makeGrid(){let t=new tl(60,60,6976640,9937066).rotateX(Math.PI/2);Object.assign(t.material,{transparent:!0,opacity:.32,depthWrite:!1}),t.position.z=.003,this.grid=t;let e=new Cn;i0.forEach((n,s)=>{let r=[0,0,.004];r[s]+=.5,e.add(new Qn(new pe().setFromPoints([new R(0,0,.004),new R(...r)]),new pi({color:n})))}),this.origin=e,this.app.stage.helpers.add(t,e)}set(t,e){let{stage:n,world:s}=this.app;this.on[t]=e,t==="visuals"&&(s.visuals.visible=e),t==="collisions"&&(s.collisions.visible=e,s.place(!0)),t==="grid"&&(this.grid.visible=this.origin.visible=e),t==="shadows"&&(n.shadows=e,n.makeLights()),t==="transparent"&&this.setTransparent(e),t==="contacts"&&this.app.connection.want("contacts",e?{}:null);for(let[r,o]of[["contacts",[this.contactLines.object,this.contactPoints.mesh]],["frames",[this.frames.object]],["joints",[this.joints.object]],["inertia",[this.inertia.object]],["mass",[this.mass.mesh]]])for(let a of o)a.visible=this.on[r];for(let{mesh:r}of this.paths.values())r.visible=this.on.path;this.app.emit("layers"),n.invalidate()}setTransparent(t){for(let{mesh:e,isVisual:n,isFloor:s,geoms:r}of this.app.world.shapes){if(!n||s)continue;let o=this.app.world.arrays.geom_rgba[4*r[0]+3]*(t?.4:1);Object.assign(e.material,{transparent:o<.995,opacity:o,depthWrite:o>.6}),e.material.needsUpdate=!0}}load(){for(let t of Object.keys(this.on))["transparent","collisions","visuals"].includes(t)&&this.set(t,this.on[t]);this.set("contacts",this.on.contacts)}update(){let{world:t,scene:e}=this.app;if(!e)return;t.place();let n=Math.min(.25,Math.max(.06,.03*this.app.stage.extent));this.on.frames&&this.drawFrames(n),this.on.joints&&this.drawJoints(1.2*n),this.on.inertia&&this.drawInertias(),this.on.mass&&this.drawMasses()}drawFrames(t){this.frames.clear();let e=new R,n=new R,s=new qt;for(let[r,o,a]of this.app.scene.frames)!this.app.world.isMoving[o]&&this.app.models.get(r.split("::",1)[0])?.static||(pr.multiplyMatrices(this.app.world.bodies[o],Mn(a,0,s)),e.setFromMatrixPosition(pr),i0.forEach((c,l)=>this.frames.add(e,n.setFromMatrixColumn(pr,l).normalize().multiplyScalar(t).add(e),c)));this.frames.show()}drawJoints(t){this.joints.clear();for(let e of this.app.scene.joints)for(let[n,s,r]of e.axes){let o=new R(...s).applyMatrix4(this.app.world.bodies[n]),a=new R(...r).transformDirection(this.app.world.bodies[n]);this.joints.add(o.clone().addScaledVector(a,-t),o.clone().addScaledVector(a,t),e.type==="prismatic"?1222036:16098596)}this.joints.show()}massiveBodies(){let{arrays:t}=this.app.scene;return[...this.app.scene.arrays.moving].filter(e=>t.body_mass[e]>1e-6)}drawInertias(){let{arrays:t}=this.app.scene,e=new qt,n=new R,s=new R,r=new R;this.inertia.clear();for(let o of this.massiveBodies()){let a=t.body_mass[o],[c,l,u]=t.body_inertia.subarray(3*o,3*o+3),h=d=>Math.sqrt(Math.max(6*d/a,1e-8));Mn([...t.body_ipos.subarray(3*o,3*o+3),...t.body_iquat.subarray(4*o,4*o+4)],0,e),e.scale(n.set(h(l+u-c),h(c+u-l),h(c+l-u))),pr.multiplyMatrices(this.app.world.bodies[o],e);for(let[d,f]of Vw)this.inertia.add(s.fromArray(d).applyMatrix4(pr),r.fromArray(f).applyMatrix4(pr),11819990)}this.inertia.show()}drawMasses(){let{arrays:t}=this.app.scene,e=this.massiveBodies(),{mesh:n,resize:s}=this.mass;s(e.length);let r=new R,o=Math.max(...e.map(a=>t.body_mass[a]),1e-6);e.forEach((a,c)=>{r.fromArray(t.body_ipos,3*a).applyMatrix4(this.app.world.bodies[a]);let l=.5+1.5*Math.cbrt(t.body_mass[a]/o);n.setMatrixAt(c,pr.makeScale(l,l,l).setPosition(r))}),n.instanceMatrix.needsUpdate=!0}drawContacts(){let{position:t,force:e}=this.contacts.arrays,n=t.length/3,{mesh:s,resize:r}=this.contactPoints;r(n),this.contactLines.clear();let o=new R,a=new R,c=new R;for(let l=0;l<n;l++){o.fromArray(t,3*l),s.setMatrixAt(l,pr.makeTranslation(o)),c.fromArray(e,3*l);let u=c.length();u>1e-4&&(a.copy(o).addScaledVector(c,.1*Math.log10(10*(1+u))/u),this.contactLines.add(o,a,16726925))}s.instanceMatrix.needsUpdate=!0,this.contactLines.show()}setPaths(t){for(let{mesh:e}of this.paths.values())this.app.stage.helpers.remove(e),e.geometry.dispose();this.paths.clear();for(let[e,n]of Object.entries(t))this.pathOf(e).points=n;for(let e of this.paths.keys())this.drawPath(e)}pathOf(t){if(!this.paths.has(t)){let e=new Mt(new pe,new Vn({color:2068479,side:Sn,polygonOffset:!0,polygonOffsetFactor:-2,polygonOffsetUnits:-2}));e.frustumCulled=!1,e.visible=this.on.path,this.app.stage.helpers.add(e),this.paths.set(t,{points:[],mesh:e})}return this.paths.get(t)}extendPaths(t){for(let[e,n]of t){let s=this.pathOf(e),{points:r}=s,o=r.at(-1),[a,c,l]=this.app.world.bodies[n].elements.slice(12,15);o&&Math.hypot(a-o[0],c-o[1],l-o[2])<.015||(r.push([a,c,l]),r.length>8e3&&(s.points=r.filter((u,h)=>h%2===0)),this.on.path&&r.length>1&&this.drawPath(e))}}drawPath(t){let{points:e,mesh:n}=this.paths.get(t),s=e.length;if(s<2)return;let r=Math.min(.03,Math.max(.008,.0022*this.app.stage.extent)),o=e[0][2]<.6?.012-e[0][2]:0,a=new Float32Array(6*s),c=new Uint32Array(6*(s-1));for(let l=0;l<s;l++){let u=e[Math.max(0,l-1)],h=e[Math.min(s-1,l+1)],d=h[0]-u[0],f=h[1]-u[1],p=Math.hypot(d,f)||1,[_,m,g]=e[l],x=-f/p*r,E=d/p*r;a.set([_+x,m+E,g+o,_-x,m-E,g+o],6*l),l<s-1&&c.set([2*l,2*l+1,2*l+2,2*l+1,2*l+3,2*l+2],6*l)}n.geometry.dispose(),n.geometry=new pe,n.geometry.setAttribute("position",new Ie(a,3)),n.geometry.setIndex(new Ie(c,1))}};var Hw=4,s0=8,Ww=/camera|depth|rgbd/,Zo=new qt,Xw=new qt;function xl(i,t=Mt){let e=new t(new pe,i);return e.frustumCulled=!1,e}var yl=i=>Ww.test(i.kind)&&!!i.camera,qh=class{constructor(t){this.app=t;let{helpers:e}=t.stage;this.points=xl(new Ns({color:16723231,size:t.stage.lite?3:3.5*Math.min(devicePixelRatio,2),sizeAttenuation:!1,fog:!1}),nr),this.fan=xl(new Vn({color:3832831,transparent:!0,opacity:.16,side:Sn,depthWrite:!1,fog:!1})),this.frusta=xl(new pi({color:16098596,transparent:!0,opacity:.9,fog:!1}),Ds),this.cones=xl(new Vn({color:1222036,transparent:!0,opacity:.3,side:Sn,depthWrite:!1,fog:!1})),this.fan.renderOrder=this.cones.renderOrder=2,this.points.renderOrder=3,e.add(this.points,this.fan,this.frusta,this.cones),this.clouds=new Map,this.ranges={},t.on("packet:lidar",n=>this.drawLidars(n)),t.on("packet:ranges",n=>{this.ranges=n.ranges,t.stage.invalidate()}),t.on("packet:cloud",n=>this.drawCloud(n)),t.on("layers",()=>this.want()),t.on("select",()=>this.want()),t.on("scene",()=>this.load()),t.stage.before.push(()=>this.update())}load(){let{sensors:t}=this.app.scene;this.lidars=t.filter(e=>e.lidar),this.sonars=t.filter(e=>e.sonar),this.cameras=t.filter(yl),this.want()}want(){if(!this.lidars)return;let{layers:t,connection:e,selected:n,robots:s}=this.app,r=this.lidars;if(r.length>s0){let a=(n??s[0]?.name??"").split("::",1)[0];r=r.filter(c=>c.name.startsWith(`${a}::`)).slice(0,s0)}this.fan.visible=this.points.visible=t.on.lidar,this.cones.visible=t.on.frusta||t.on.lidar,this.frusta.visible=t.on.frusta,e.want("lidar",t.on.lidar&&r.length?r.map(a=>a.name):null),e.want("ranges",this.cones.visible&&this.sonars.length?this.sonars.map(a=>a.name):null);let o=t.on.clouds?this.app.scene.clouds.slice(0,Hw):[];for(let a of o)e.want(`cloud:${a}`,{});for(let[a,c]of this.clouds)o.includes(a)||(this.app.stage.helpers.remove(c),this.clouds.delete(a));for(let a of Object.keys(e.wants))a.startsWith("cloud:")&&!o.includes(a.slice(6))&&e.want(a,null)}drawLidars({lidars:t,arrays:{points:e,origins:n}}){let s=[],r=[],o=[],a=0;t.forEach(([c,l],u)=>{let h=this.lidars?.find(_=>_.name===c)?.lidar,d=!h||h.v_samples===1,f=r.length/3;d&&r.push(...n.slice(3*u,3*u+3));let p=-2;for(let _=a;_<a+l;_++){let m=e[3*_],g=e[3*_+1],x=e[3*_+2];Number.isNaN(m)||(s.push(m,g,x),d&&(r.push(m,g,x),p===_-1&&o.push(f,r.length/3-2,r.length/3-1),p=_))}a+=l});for(let[c,l]of[[this.points,s],[this.fan,r]])c.geometry.dispose(),c.geometry=new pe,c.geometry.setAttribute("position",new se(l,3));this.fan.geometry.setIndex(o),this.app.stage.invalidate()}drawCloud({kind:t,error:e,arrays:{points:n,colours:s}}){if(e){this.app.report(`${t.slice(6)}: ${e}`);return}let r=t.slice(6);if(!this.clouds.has(r)){let l=xl(new Ns({size:2.5,sizeAttenuation:!1,vertexColors:!0,fog:!1}),nr);this.app.stage.helpers.add(l),this.clouds.set(r,l)}let o=this.clouds.get(r),a=new Float32Array(n.length),c=new Ht;for(let l=0;l<n.length;l+=3)s?c.setRGB(s[l]/255,s[l+1]/255,s[l+2]/255,Ae):c.setHSL(.66-.66*Math.min(Math.max(n[l+2]/2,0),1),.9,.5),a.set([c.r,c.g,c.b],l);o.geometry.dispose(),o.geometry=new pe,o.geometry.setAttribute("position",new Ie(n.slice(),3)),o.geometry.setAttribute("color",new Ie(a,3)),this.app.stage.invalidate()}poseOf(t,e=new qt){return e.multiplyMatrices(this.app.world.bodies[t.body],Mn(t.pose,0,Xw))}update(){!this.app.scene||!this.lidars||(this.frusta.visible&&this.drawFrusta(),this.cones.visible&&this.sonars.length&&this.drawCones())}drawFrusta(){let t=[],e=new R,n=new R;for(let s of this.cameras){let{width:r,height:o,hfov:a,far:c}=s.camera,l=Math.min(c||1,.6),u=Math.tan(Math.min(a,2.6)/2)*l,h=u*o/r;this.poseOf(s,Zo),n.setFromMatrixPosition(Zo);let d=[[-1,-1],[1,-1],[1,1],[-1,1]].map(([f,p])=>e.set(l,f*u,p*h).applyMatrix4(Zo).toArray());d.forEach((f,p)=>t.push(...n,...f,...f,...d[(p+1)%4]))}this.frusta.geometry.dispose(),this.frusta.geometry=new pe,this.frusta.geometry.setAttribute("position",new se(t,3))}drawCones(){let t=[],e=new R,n=new R,s=24;for(let r of this.sonars){let{field_of_view:o,axis:a,range_max:c}=r.sonar,l=this.ranges[r.name]>0?this.ranges[r.name]:c,u=new R(...a),h=new R(0,1,0).cross(u);h.lengthSq()<1e-6&&h.set(1,0,0),h.normalize();let d=u.clone().cross(h),f=Math.tan(Math.min(o/2,1.4))*l;this.poseOf(r,Zo),n.setFromMatrixPosition(Zo);let p=_=>{let m=2*Math.PI*_/s;return e.copy(u).multiplyScalar(l).addScaledVector(h,f*Math.cos(m)).addScaledVector(d,f*Math.sin(m)).applyMatrix4(Zo).toArray()};for(let _=0;_<s;_++)t.push(...n,...p(_),...p(_+1))}this.cones.geometry.dispose(),this.cones.geometry=new pe,this.cones.geometry.setAttribute("position",new se(t,3))}};var r0=290;function o0(i){let t=F("select",{id:"camera",title:"Camera",onchange:()=>m()}),e=F("canvas",{id:"picture",width:r0,height:180}),n=e.getContext("2d"),s=F("div",{class:"dim"}),r=qo("own-picture","as the sensor sees it",!1,()=>m()),o=ei("camera-panel","Camera",t,e,s,r),a=new An(60,1.6,.02,300),c=null,l=null,u=[],h=-1e4,d=null,f=null,p=()=>u[t.selectedIndex],_=()=>!r.hidden&&r.querySelector("input").checked,m=()=>{d&&i.connection.want(d,null),d=null,p()&&(e.height=Math.round(r0*Math.min(1.2,p().camera.height/p().camera.width)),c?.dispose(),c=new ci(e.width,e.height,{colorSpace:Ae,samples:i.stage.lite?0:4}),l=new Uint8Array(4*e.width*e.height),s.textContent=_()?p().topic:"drawn by the browser",_()&&o.open&&i.connection.want(d=`image:${p().name}`,{}),h=-1e4,i.stage.invalidate())},g=()=>{let x=performance.now();if(!p()||_()||!o.open||o.hidden)return;let E=h+(i.stage.isSoftware?700:80)-x;if(E>0){f??=setTimeout(()=>{f=null,g()},E);return}h=x;let{stage:S}=i,{gl:M,scene:T,helpers:y,sky:b}=S;i.views.aim(a,p(),e.width/e.height),a.near=Math.max(.01,p().camera.near||.02),a.updateProjectionMatrix(),y.visible=!1,b.position.copy(a.position),M.setRenderTarget(c),M.render(T,a),M.readRenderTargetPixels(c,0,0,e.width,e.height,l),M.setRenderTarget(null),y.visible=!0;let U=n.createImageData(e.width,e.height),I=4*e.width;for(let L=0;L<e.height;L++)U.data.set(l.subarray((e.height-1-L)*I,(e.height-L)*I),L*I);for(let L=3;L<U.data.length;L+=4)U.data[L]=255;n.putImageData(U,0,0)};return i.on("packet:image",async x=>{if(x.kind!==d)return;if(x.error){s.textContent=x.error;return}let E=await createImageBitmap(new Blob([x.arrays.jpeg],{type:"image/jpeg"}));n.drawImage(E,0,0,e.width,e.height)}),i.on("scene",x=>{let E=p()?.name;u=x.sensors.filter(yl),o.hidden=u.length===0,t.hidden=u.length<2,r.hidden=!!x.recording,t.replaceChildren(...u.map(S=>F("option",{},S.name))),t.selectedIndex=Math.max(0,u.findIndex(S=>S.name===E)),m()}),o.addEventListener("toggle",m),i.stage.after.push(g),o.hidden=!0,o}function $h(i){let t=F("div",{class:"calls"}),e=new Map,n=s=>{let r=F("span",{class:"status"}),o=F("pre",{}),a=F("button",{onclick:()=>i.send("cancel",{goal:s.id})},"Cancel"),c=F("div",{class:"call","data-call":s.id},F("div",{class:"call-head"},F("span",{class:"name",title:s.name},F("bdi",{},s.name)),r,a),o);return t.prepend(c),{box:c,status:r,text:o,cancel:a}};return i.on("packet:calls",({calls:s})=>{for(let r of s){e.has(r.id)||e.set(r.id,n(r));let{box:o,status:a,text:c,cancel:l}=e.get(r.id);a.textContent=r.status.toLowerCase(),o.className=`call ${r.status.toLowerCase()}`,l.hidden=r.done||r.kind!=="goal";let u=[r.reason,r.text&&`${r.kind==="goal"?r.is_result?"result":"feedback":"response"}:
+${r.text}`].filter(Boolean).join(`
+`);c.textContent!==u&&(c.textContent=u),c.hidden=!u}for(let[r,{box:o}]of e)s.some(a=>a.id===r)||(o.remove(),e.delete(r))}),t}var a0=2,Zh=class{constructor({type:t,types:e}){this.types=e,this.root=this.message(t,e[t].default,0),this.element=F("div",{class:"form"},this.root.element),e[t].fields.length||this.element.append(F("p",{class:"dim"},"no fields"))}read(){let t=[],e=this.root.read(t,"");if(t.length)throw new Error(t.join("; "));return e}message(t,e,n){let s=this.types[t],r=s.fields.map(o=>[o,this.field(o,e?.[o.name]??s.default[o.name],n)]);return{element:F("div",{class:"fields"},...r.map(([,o])=>o.element)),read:(o,a)=>Object.fromEntries(r.map(([c,l])=>[c.name,l.read(o,a?`${a}.${c.name}`:c.name)]))}}field(t,e,n){let s=`${t.name}: ${t.type}${t.array?`[${t.array.length||""}]`:""}${Yw(t)}`;if(t.array)return this.array(t,e??[],n,s);if(t.kind==="message"){let o=this.message(t.type,e,n+1);return{element:F("details",{class:"nested",open:n<a0},F("summary",{title:s},t.name,F("span",{class:"type"},t.type.replace("/msg/","/"))),o.element),read:o.read}}let r=l0(t,e);return{element:F("label",{class:"field-row",title:s},F("span",{},t.name),r.element),read:r.read}}array(t,e,n,s){if(t.kind==="number"||t.kind==="integer")return this.numbers(t,e,s);let r=F("div",{class:"items"}),o=[],a=t.array.length||t.array.most||1e3,c=f=>{if(o.length>=a)return;let p=t.kind==="message"?this.message(t.type,f,n+1):l0(t,f??(t.kind==="bool"?!1:"")),_=F("button",{class:"drop",title:"Remove",hidden:t.array.length>0,onclick:()=>{o.splice(o.indexOf(p),1),m.remove(),h()}},"\u2715"),m=F("div",{class:"item"},p.element,_);o.push(p),r.append(m),h()},l=F("span",{class:"dim"}),u=F("button",{class:"more",hidden:t.array.length>0,onclick:()=>c(null)},"+"),h=()=>{l.textContent=`${o.length} item${o.length===1?"":"s"}`},d=F("details",{class:"nested",open:n<a0},F("summary",{title:s},t.name,F("span",{class:"type"},`${t.type.replace("/msg/","/")}[]`),l),r,u);h();for(let f of e)c(f);return{element:d,read:(f,p)=>o.map((_,m)=>_.read(f,`${p}[${m}]`))}}numbers(t,e,n){let s=F("input",{value:e.join(", "),placeholder:"numbers, with commas between them",spellcheck:!1}),r=(o,a)=>{let c=s.value.split(/[\s,;]+/).filter(Boolean),{length:l,most:u}=t.array,h=c.map((d,f)=>c0(t,d,o,`${a}[${f}]`));return l&&h.length!==l&&o.push(`${a}: ${l} numbers are needed, found ${h.length}`),u&&h.length>u&&o.push(`${a}: at most ${u} numbers, found ${h.length}`),s.classList.toggle("wrong",o.some(d=>d.startsWith(a))),h};return{element:F("label",{class:"field-row",title:n},F("span",{},t.name),s),read:r}}};function Yw(i){return i.kind==="integer"?`, ${i.low} to ${i.high}`:i.kind==="text"&&i.most?`, at most ${i.most} characters`:""}function c0(i,t,e,n){if(i.kind==="number"&&/^[+-]?nan$/i.test(t))return null;let s=t.trim()===""?NaN:Number(t);return!Number.isFinite(s)||i.kind==="integer"&&!Number.isInteger(s)?e.push(`${n}: found ${JSON.stringify(t)}, expected a ${i.kind==="integer"?"whole ":""}number`):(s<i.low||s>i.high)&&e.push(`${n}: ${s} is outside ${i.low} to ${i.high}`),s}function l0(i,t){if(i.kind==="bool"){let a=F("input",{type:"checkbox",checked:!!t,name:i.name});return{element:a,read:()=>a.checked}}let e=F("input",{value:t??(i.kind==="number"?"nan":""),name:i.name,spellcheck:!1});i.kind==="text"?i.most&&(e.maxLength=i.most):e.inputMode="decimal";let n=(a,c)=>{let l=a.length,u=i.kind==="text"?e.value:c0(i,e.value,a,c);return e.classList.toggle("wrong",a.length>l),u};if(!i.constants?.length)return{element:e,read:n};let s=F("select",{name:i.name,onchange:()=>r()},...i.constants.map(([a,c])=>F("option",{value:c},`${a} = ${c}`)),F("option",{value:""},"other \u2026")),r=()=>{let a=i.constants[s.selectedIndex];e.hidden=!!a,a&&(e.value=a[1])},o=i.constants.findIndex(([,a])=>a===t);return s.selectedIndex=o<0?i.constants.length:o,e.hidden=o>=0,{element:F("span",{class:"choice"},s,e),read:n}}function h0(i){let t={},e={},n=null,s=null,r=F("input",{id:"call-search",type:"search",placeholder:"Find a service or action",oninput:()=>m()}),o=F("div",{class:"call-names"}),a=F("div",{class:"call-title"}),c=F("div",{class:"call-form"}),l=F("button",{id:"call-send",onclick:()=>x()},"Call"),u=F("p",{id:"call-problem",class:"wrong",hidden:!0}),h=F("pre",{id:"call-response",hidden:!0}),d=$h(i),f=F("p",{class:"dim hint"},"Choose a service or an action"),p=F("div",{class:"call-middle"},f,a,u,h,c),_=M=>{u.textContent=M,u.hidden=!M},m=()=>{let M=r.value.trim().toLowerCase(),T=(b,U,I)=>{let L=Object.keys(U).filter(B=>!M||B.toLowerCase().includes(M)||U[B].toLowerCase().includes(M)).sort();return L.length?[F("h4",{},b),...L.map(B=>F("button",{class:`leaf ${n?.name===B?"selected":""}`,title:`${B}
+${U[B]}`,"data-call-name":B,onclick:()=>g(I,B,U[B])},B))]:[]},y=[...T("Actions",e,"action"),...T("Services",t,"service")];o.replaceChildren(...y.length?y:[F("p",{class:"dim"},"nothing found")])},g=async(M,T,y)=>{n={kind:M,name:T,type:y},s=null,l.disabled=!0,m(),_(""),h.hidden=!0;try{let b=new Zh(await i.ask("describe",{kind:M,name:T}));if(n?.name!==T)return;s=b,l.disabled=!1,f.hidden=!0,a.replaceChildren(F("strong",{},T),F("span",{class:"type"},y),l),c.replaceChildren(s.element),l.textContent=M==="action"?"Send goal":"Call"}catch(b){n?.name===T&&_(b.message)}},x=async()=>{if(s){_(""),h.hidden=!0,l.disabled=!0;try{let M=s.read(),T=await i.ask(n.kind==="action"?"goal":"call",{name:n.name,values:M});T.text!==void 0&&(h.textContent=T.text||"done",h.hidden=!1)}catch(M){_(M.message)}l.disabled=!s}},E=()=>i.ask("interfaces").then(M=>{({services:t,actions:e}=M),m()}).catch(()=>{}),S=!1;for(let M of["scene","link"])i.on(M,()=>{S&&E()});return{element:F("div",{class:"call-tab"},F("div",{class:"side"},r,o),p,F("div",{class:"call-side"},F("h4",{},"Goals"),d)),show(M){S=M,i.connection.want("calls",M?{}:null),M&&E()}}}var ms="truth",u0=2e4,Jh=(i,t)=>`${i} ${t}`,jh=(i,t)=>i===t||i.startsWith(`${t}.`)||i.startsWith(`${t}[`);function mf(){if(!window.simkitFile)return null;let{series:i}=window.simkitFile;return new Map(Object.entries(i?.byteLength?ji(i).arrays:{}).map(([t,e])=>[t,ji(e.slice().buffer)]))}var Qh=class{constructor(t){this.app=t,this.curves=new Map,this.fields=new Map,this.places=new Map,this.errors=new Map,this.listeners=[],this.isShown=!1,t.on("packet:series",e=>this.take(e,e.kind.slice(7))),t.on("packet:truth",e=>this.take(e,ms)),t.on("recording",()=>this.want()),this.file=mf()}use(t,e,n){let s=this.fields.get(t)??new Map;this.fields.set(t,s);let r=(s.get(e)??0)+(n?1:-1);if(r>0?s.set(e,r):s.delete(e),!n)for(let[o,a]of this.curves)a.topic===t&&![...s.keys()].some(c=>jh(a.path,c))&&this.curves.delete(o);this.want(t)}show(t){this.isShown=t,this.want()}want(t=null){for(let[e,n]of this.fields){if(t!==null&&e!==t)continue;let s=[...n.keys()];if(e===ms&&this.app.player){this.takeTruth(s);continue}if(this.file){this.takeFile(e,s);continue}this.app.connection.want(e===ms?ms:`series:${e}`,this.isShown&&s.length?{fields:s}:null)}}of(t,e){return[...this.curves.values()].filter(n=>n.topic===t&&jh(n.path,e))}clear(t,e){for(let n of this.of(t,e))n.t=[],n.s=[],n.v=[]}announce(){for(let t of this.listeners)t()}take(t,e){let n=t.error?Object.fromEntries([...this.fields.get(e)?.keys()??[]].map(h=>[h,t.error])):t.errors??{};for(let[h,d]of Object.entries(n))this.errors.set(Jh(e,h),d);let{times:s,stamps:r,values:o}=t.arrays,a=t.curves?.length??0,c=this.places.get(e),l=t.first??0,u=!t.recorded&&c?.source===t.source?Math.max(0,c.next-l):0;t.recorded||this.places.set(e,{source:t.source,next:l+(s?.length??0)});for(let h=0;h<a;h++){let d=this.curve(e,t.curves[h]);if(d){t.recorded&&(d.t=[],d.s=[],d.v=[]);for(let f=u;f<s.length;f++)this.push(d,t.begin+s[f],t.begin+r[f],t.curves[h].base+o[f*a+h])}}this.announce()}curve(t,{path:e,unit:n,is_angle:s}){if(![...this.fields.get(t)?.keys()??[]].some(c=>jh(e,c)))return null;let o=Jh(t,e),a=t===ms?`${e} (truth)`:`${t}${e.startsWith("[")?"":"."}${e}`;return this.curves.has(o)||this.curves.set(o,{key:o,topic:t,path:e,label:a,unit:n,isAngle:s,t:[],s:[],v:[]}),this.curves.get(o)}push(t,e,n,s){let{t:r,s:o,v:a}=t;if(r.length&&e<r[r.length-1]-1e-9&&(r.length=o.length=a.length=0),r.push(e),o.push(n),a.push(s),r.length>u0)for(let c of[r,o,a])c.splice(0,u0/10)}takeFile(t,e){let n=this.file.get(t)??{curves:[],arrays:{}};this.take(n,t);for(let s of e)n.curves.some(r=>jh(r.path,s))||this.errors.set(Jh(t,s),"this file does not contain the field")}takeTruth(t){let{recording:e,times:n,size:s}=this.app.player,r=[...this.app.scene.arrays.moving];for(let o of t){let a=o.lastIndexOf("."),c=o.slice(0,a),l=o.slice(a+1),u=this.app.bodyOf.get(c),h=gf[l];if(u===void 0||!h){this.errors.set(Jh(ms,o),`there is no ${o}`);continue}let d=this.curve(ms,{path:o,unit:h.unit,is_angle:h.isAngle});if(!d||d.t.length)continue;let f=7*r.indexOf(u),p=_=>qw(e.arrays.poses,_*s+f);for(let _=0;_<n.length;_++){let m=Math.max(_-1,0),g=Math.min(_+1,n.length-1);this.push(d,e.begin+n[_],NaN,h(p(_),p(m),p(g),n[g]-n[m]||1))}}this.announce()}},d0=new qt,Kh=new Kn;function qw(i,t){return Mn(i,t,d0),Kh.setFromRotationMatrix(d0,"ZYX"),{x:i[t],y:i[t+1],z:i[t+2],roll:Kh.x,pitch:Kh.y,yaw:Kh.z}}var Bi=(i,t,e=!1)=>Object.assign(t,{unit:i,isAngle:e}),pf=i=>(t,e,n,s)=>(n[i]-e[i])/s,f0=(i,t,e,n,s)=>(Math.cos(s)*(e.x-t.x)+Math.sin(s)*(e.y-t.y))/n,gf={x:Bi("m",i=>i.x),y:Bi("m",i=>i.y),z:Bi("m",i=>i.z),roll:Bi("rad",i=>i.roll,!0),pitch:Bi("rad",i=>i.pitch),yaw:Bi("rad",i=>i.yaw,!0),vx:Bi("m/s",pf("x")),vy:Bi("m/s",pf("y")),vz:Bi("m/s",pf("z")),forward:Bi("m/s",(i,t,e,n)=>f0(i,t,e,n,i.yaw)),left:Bi("m/s",(i,t,e,n)=>f0(i,t,e,n,i.yaw+Math.PI/2)),yaw_rate:Bi("rad/s",(i,t,e,n)=>Math.atan2(Math.sin(e.yaw-t.yaw),Math.cos(e.yaw-t.yaw))/n)};var _f=[["debug",10],["info",20],["warn",30],["error",40],["fatal",50]],p0=2e3,m0=500;function g0(i){let t=[],e=null,n=0,s=!1,r=!1,o=0,a=F("select",{id:"log-level",title:"Lowest level",onchange:()=>g()},..._f.map(([M])=>F("option",{value:M},M)));a.selectedIndex=1;let c=F("input",{id:"log-node",type:"search",placeholder:"Node",oninput:()=>g()}),l=F("input",{id:"log-text",type:"search",placeholder:"Text",oninput:()=>g()}),u=F("span",{id:"log-count",class:"dim"}),h=F("input",{type:"checkbox",id:"log-follow",checked:!0,onchange:()=>g()}),d=F("div",{id:"log-rows",role:"log"}),f=F("div",{class:"tab-tools"},a,c,l,F("label",{class:"check"},h,"Follow"),F("button",{id:"log-clear",onclick:()=>{t=[],g()}},"Clear"),u),p=M=>M.level>=_f[a.selectedIndex][1]&&M.node.toLowerCase().includes(c.value.trim().toLowerCase())&&M.text.toLowerCase().includes(l.value.trim().toLowerCase()),_=M=>{let T=_f.findLast(([,y])=>M.level>=y)?.[0]??"debug";return F("div",{class:`log ${T}`,title:M.place},F("span",{class:"time"},M.time.toFixed(3)),F("span",{class:"level"},T),F("span",{class:"node"},M.node),F("span",{class:"text"},M.text))},m=M=>{u.textContent=`${M.length} of ${t.length} messages`},g=()=>{let M=t.filter(p);d.replaceChildren(...M.slice(-m0).map(_)),m(M),h.checked&&(d.scrollTop=d.scrollHeight)},x=M=>{for(t.push(...M),t.length>p0&&t.splice(0,t.length-p0),d.append(...M.filter(p).map(_));d.childElementCount>m0;)d.firstChild.remove();m(t.filter(p)),h.checked&&(d.scrollTop=d.scrollHeight)},E=async()=>{if(!s){s=!0;try{for(;r&&n<o;){let M=await i.ask("log",{after:n});if(!M.length)break;n=M.at(-1).number,x(M)}}catch{}s=!1}};i.on("packet:log",M=>{M.source!==e&&(t=[],n=0,e=M.source,g()),o=M.last,E()}),i.console={get entries(){return t}};let S=mf();return S&&x(S.get("log")?.entries??[]),{element:F("div",{class:"console-tab"},f,d),show(M){r=M,i.connection.want("log",M?{}:null)}}}var $w="http://www.w3.org/2000/svg",Zw=16,_0=1.35,xf=44;function Vs(i,t,...e){let n=document.createElementNS($w,i);for(let[s,r]of Object.entries(t))n.setAttribute(s,r);return n.append(...e),n}var Jw=i=>i.length<=xf?i:`${i.slice(0,xf-1>>1)}\u2026${i.slice(-(xf-1>>1))}`;function jw(i){let t=`M${i[0][0]} ${i[0][1]}`;for(let e=1;e<i.length;e++){let[n,s]=i[e-1],[r,o]=i[e],a=(r-n)/2;t+=e%2?`C${n+a} ${s} ${r-a} ${o} ${r} ${o}`:`L${r} ${o}`}return t}var yf=class{constructor(t){this.svg=Vs("svg",{class:"graph",id:t,tabindex:0}),this.shown="",this.view=null,this.svg.addEventListener("wheel",e=>{e.preventDefault(),this.zoom(Math.exp(e.deltaY*.0015),e.offsetX,e.offsetY)},{passive:!1}),this.svg.addEventListener("dblclick",()=>this.fit()),this.svg.addEventListener("pointerdown",e=>{this.svg.setPointerCapture(e.pointerId);let[n,s]=[e.clientX,e.clientY],r=o=>{let a=this.view[2]/this.svg.clientWidth;this.view[0]-=(o.clientX-n)*a,this.view[1]-=(o.clientY-s)*a,[n,s]=[o.clientX,o.clientY],this.apply()};this.svg.addEventListener("pointermove",r),this.svg.addEventListener("lostpointercapture",()=>this.svg.removeEventListener("pointermove",r),{once:!0})}),new ResizeObserver(()=>{!this.view||this.isFitted?this.begin():this.keepShape()}).observe(this.svg)}zoom(t,e,n){if(!this.view)return;let[s,r,o,a]=this.view,c=Math.min(Math.max(o*t,80),4e4)/o,l=s+o*e/this.svg.clientWidth,u=r+a*n/this.svg.clientHeight;this.view=[l-(l-s)*c,u-(u-r)*c,o*c,a*c],this.isFitted=!1,this.apply()}keepShape(){this.view[3]=this.view[2]*this.svg.clientHeight/Math.max(this.svg.clientWidth,1),this.apply()}fit(){let{clientWidth:t,clientHeight:e}=this.svg;if(!this.size||!t||!e)return;let n=Math.max((this.size[0]+32)/t,(this.size[1]+32)/e,1);this.view=[this.size[0]/2-t*n/2,this.size[1]/2-e*n/2,t*n,e*n],this.isFitted=!0,this.apply()}begin(){if(this.fit(),!this.size||!this.view||this.view[2]/this.svg.clientWidth<_0)return;let{clientWidth:t,clientHeight:e}=this.svg,n=Math.min(Math.max((this.size[0]+32)/t,1),_0),s=this.size[0]>t*n?-16:(this.size[0]-t*n)/2;this.view=[s,this.root===null?-12:this.root-e*n/2,t*n,e*n],this.isFitted=!1,this.apply()}apply(){this.svg.setAttribute("viewBox",this.view.join(" "))}draw({boxes:t,edges:e,size:n}){let s=JSON.stringify([t,e]);if(s===this.shown)return;this.shown=s;let r=!this.size||this.isFitted||String(n)!==String(this.size);this.size=n,this.rates=new Map;let o=Vs("marker",{id:`${this.svg.id}-tip`,viewBox:"0 0 8 8",refX:7,refY:4,markerWidth:7,markerHeight:7,orient:"auto"},Vs("path",{class:"tip",d:"M0 0L8 4L0 8z"})),a=e.map(l=>{let u=Vs("path",{class:`edge${l.dashed?" dashed":""}`,d:jw(l.points),"marker-end":`url(#${this.svg.id}-tip)`});return u.ends=l.ends,u});this.svg.replaceChildren(Vs("defs",{},o),...a,...t.map(l=>this.box(l,a)));let c=t.filter(l=>l.place[0]<100&&t.every(u=>u.place[0]>=l.place[0]));this.root=c.length===1?c[0].place[1]+c[0].place[3]/2:null,r&&this.begin()}box({name:t,kind:e,head:n,above:s,lines:r,place:[o,a,c,l]},u){let d=[...s?[[s,"small"]]:[],[n,"head"],...r.map(_=>[_,"small"])].map(([_,m],g)=>Vs("text",{class:m,x:o+c/2,y:a+18+g*Zw,"text-anchor":"middle"},Jw(_)));r.at(-1)===""&&this.rates.set(t,d.at(-1));let f=Vs("g",{class:`box ${e}`,"data-box":t},Vs("title",{},t),Vs("rect",{x:o,y:a,width:c,height:l,rx:e==="node"?6:Math.min(l/2,16)}),...d),p=_=>{for(let m of u)m.ends.includes(t)&&m.classList.toggle("marked",_)};return f.addEventListener("pointerenter",()=>p(!0)),f.addEventListener("pointerleave",()=>p(!1)),f}showRates(t){for(let[e,n]of this.rates??[])n.textContent=t(e)}},x0=i=>i===void 0?"":`${i>=10?i.toFixed(1):i.toFixed(2)} Hz`;function y0(i,t,e,n,s){let r=new yf(t),o=F("p",{class:"dim hint",hidden:!0}),a=F("div",{class:"tab-tools"},...n,F("button",{onclick:()=>r.zoom(1/1.3,r.svg.clientWidth/2,r.svg.clientHeight/2),title:"Zoom in"},"+"),F("button",{onclick:()=>r.zoom(1.3,r.svg.clientWidth/2,r.svg.clientHeight/2),title:"Zoom out"},"\u2212"),F("button",{id:`${t}-fit`,onclick:()=>r.fit(),title:"Show everything"},"Fit"),F("span",{class:"dim legend-text"},"drag: move, wheel: zoom"));return i.on(`packet:${e}`,c=>{r.draw(c),o.hidden=c.boxes.length>0,o.textContent=c.count>c.most?`${c.count} boxes are too many to draw; use simkit graph`:s}),{view:r,element:F("div",{class:"graph-tab"},a,F("div",{class:"graph-area"},r.svg,o))}}function v0(i){let t=!1,e={},n=F("input",{type:"checkbox",id:"graph-all",onchange:()=>o()}),{view:s,element:r}=y0(i,"node-graph","graph",[F("label",{class:"check"},n,"All names")],"There are no nodes with topics."),o=()=>i.connection.want("graph",t?{all:n.checked}:null),a=()=>s.showRates(c=>x0(e[c.slice(6)]));return i.on("packet:rates",c=>{e=c.rates,a()}),i.on("packet:graph",a),{element:r,show(c){t=c,o(),i.connection.want("rates",c?{}:null)}}}function S0(i){let{view:t,element:e}=y0(i,"frame-graph","frames",[],"No transforms have come yet.");return i.on("packet:frames",({rates:n,ages:s})=>t.showRates(r=>r in s?`silent for ${s[r]} s`:x0(n[r]))),{element:e,show(n){i.connection.want("frames",n?{}:null)}}}var Kw="play_motion2_msgs/action/PlayMotion2",Qw="control_msgs/action/FollowJointTrajectory";function M0(i){let t=F("div",{class:"motions"}),e=F("div",{class:"controllers"}),n=$h(i),s=F("p",{class:"dim hint",hidden:!0},"No controller of this world takes motions or trajectories."),r=!1,o=[],a=async f=>{let p=[];for(let _ of Object.keys(f).filter(m=>f[m]===Kw)){let m=await i.ask("call",{name:`${_}/list_motions`}).catch(()=>null);for(let g of m?.values?.motion_keys??[])p.push(F("button",{"data-motion":g,title:`${_}: ${g}`,onclick:()=>i.send("goal",{name:_,values:{motion_name:g}})},g))}t.replaceChildren(...p),t.parentElement.hidden=!p.length},c=async({actions:f,services:p})=>{let _=new Map;for(let g of Object.keys(p).filter(x=>x.endsWith("/list_controllers"))){let x=await i.ask("call",{name:g}).catch(()=>null),E=g.split("/").slice(0,-2).join("/");for(let S of x?.values?.controller??[])_.set(`${E}/${S.name}`,S)}let m=Object.keys(f).filter(g=>f[g]===Qw).map((g,x)=>l(g,_.get(g.slice(0,g.lastIndexOf("/"))),x===0)).filter(Boolean);e.replaceChildren(...m),e.parentElement.hidden=!m.length},l=(f,p,_)=>{let m=[...new Set((p?.claimed_interfaces??[]).map(M=>M.slice(0,M.lastIndexOf("/"))))];if(!m.length)return null;let g=m.map(M=>{let T=i.scene.joints.findIndex(W=>W.name.split("::").at(-1)===M),y=i.scene.joints[T],b=y?.lower??-Math.PI,U=y?.upper??Math.PI,I=F("output",{class:"dim"}),L=F("input",{type:"range",min:b,max:U,step:(U-b)/500,"aria-label":M,"data-target":M,oninput:()=>{B.isMoved=!0,I.textContent=(+L.value).toFixed(3)}}),B={name:M,index:T,slider:L,value:I,isMoved:!1,element:F("label",{},F("span",{},M),I,L)};return B}),x=F("input",{type:"number",min:.1,step:.1,value:2,title:"Duration [s]"}),E=F("button",{"data-move":f,onclick:()=>{let M=Math.max(.05,+x.value||2),T={positions:g.map(y=>+y.slider.value),time_from_start:{sec:Math.floor(M),nanosec:Math.round(M%1*1e9)}};i.send("goal",{name:f,values:{trajectory:{joint_names:m,points:[T]}}});for(let y of g)y.isMoved=!1}},"Move"),S=F("details",{open:_},F("summary",{title:f},f.split("/").slice(1,-1).join("/")),F("div",{class:"joints"},...g.map(M=>M.element)),F("div",{class:"row-left"},x,"s",E));return S.rows=g,S},u=()=>{for(let f of e.children)for(let p of f.rows){let _=o[p.index];p.isMoved||!Number.isFinite(_)||(p.slider.value=_,p.value.textContent=_.toFixed(3))}};i.on("packet:joints",({arrays:f})=>{o=f.position,r&&u()});let h=async()=>{let f=await i.ask("interfaces").catch(()=>null);f&&(await a(f.actions),await c(f),s.hidden=!(t.parentElement.hidden&&e.parentElement.hidden),u())};for(let f of["scene","link"])i.on(f,()=>{r&&h()});let d=(f,...p)=>F("div",{class:"side"},F("h4",{},f),...p);return{element:F("div",{class:"motion-tab"},s,d("Motions",t),d("Trajectories",e),d("Goals",n)),show(f){r=f,i.connection.want("calls",f?{}:null),i.wantJoints("motions",f),f&&h()}}}function b0(i){let t=F("div",{class:"parameter-nodes"}),e=F("input",{id:"parameter-search",type:"search",placeholder:"Find a node or parameter",oninput:()=>a()}),n=new Map,s="",r=async(c,l,u,h)=>{try{await i.ask("set_parameter",{node:c,name:l,value:u})}catch(d){i.report(d.message),h.show(h.value)}},o=(c,l,u)=>{let h=tT(u,f=>r(c,l,f,d)),d={value:u.value,show:h.show,isBusy:h.isBusy,element:F("div",{class:"parameter","data-parameter":`${c} ${l}`,title:`${u.description||l}
+${u.allowed}`},F("span",{class:"name"},l),h.element,F("span",{class:"dim about"},u.description||u.allowed))};return d},a=()=>{let c=e.value.trim().toLowerCase();for(let l of t.querySelectorAll("details")){let u=!1;for(let h of l.querySelectorAll(".parameter"))h.hidden=!h.dataset.parameter.toLowerCase().includes(c),u||=!h.hidden;l.hidden=!u}};return i.on("packet:parameters",({nodes:c})=>{let l=JSON.stringify(Object.entries(c).map(([u,h])=>[u,Object.entries(h).map(([d,f])=>[d,f.allowed,f.type])]));if(l!==s){s=l,n.clear();let u=Object.keys(c).length<4;t.replaceChildren(...Object.entries(c).map(([h,d])=>F("details",{open:u},F("summary",{},h,F("span",{class:"dim"},` ${Object.keys(d).length}`)),...Object.entries(d).map(([f,p])=>{let _=o(h,f,p);return n.set(`${h} ${f}`,_),_.element})))),Object.keys(c).length||t.append(F("p",{class:"dim"},"no node has parameters")),a()}for(let[u,h]of Object.entries(c))for(let[d,f]of Object.entries(h)){let p=n.get(`${u} ${d}`);p.value=f.value,p.isBusy()||p.show(f.value)}}),{element:F("div",{class:"parameter-tab"},F("div",{class:"tab-tools"},e),t),show(c){i.connection.want("parameters",c?{}:null)}}}function tT(i,t){let{type:e,minimum:n,maximum:s,choices:r,value:o}=i,a=u=>()=>document.activeElement===u&&!u.matches("[type=checkbox], select");if(r.length){let u=F("select",{onchange:()=>t(r[u.selectedIndex])},...r.map(h=>F("option",{},String(h))));return{element:u,show:h=>{u.selectedIndex=r.indexOf(h)},isBusy:()=>!1}}if(e==="bool"){let u=F("input",{type:"checkbox",onchange:()=>t(u.checked)});return{element:u,show:h=>{u.checked=h},isBusy:()=>!1}}if(e==="int"||e==="float"){let h=F("input",{type:"number",step:e==="int"?1:"any",min:n??"",max:s??"",onchange:()=>{h.value!==""&&t(+h.value)}});if(n===null||s===null)return{element:F("span",{class:"number"},h),show:f=>{h.value=f},isBusy:a(h)};let d=F("input",{type:"range",min:n,max:s,step:e==="int"?1:(s-n)/1e3,"aria-label":"Value",oninput:()=>{h.value=+(+d.value).toPrecision(6),t(+h.value)}});return{element:F("span",{class:"number"},d,h),show:f=>{d.value=f,h.value=+(+f).toPrecision(8)},isBusy:()=>a(h)()||d.matches(":active")}}let c=Array.isArray(o),l=F("input",{onchange:()=>t(c?l.value.split(/[\s,;]+/).filter(Boolean).map(Number):l.value)});return{element:l,show:u=>{l.value=c?u.join(", "):u},isBusy:a(l)}}var eT="uplot",nT="u-hz",iT="u-vt",sT="u-title",rT="u-wrap",oT="u-under",aT="u-over",lT="u-axis",kr="u-off",cT="u-select",hT="u-cursor-x",uT="u-cursor-y",dT="u-cursor-pt",fT="u-legend",pT="u-live",mT="u-inline",gT="u-series",_T="u-marker",w0="u-label",xT="u-value",Sl="width",Ml="height";var T0="bottom",Jo="left",vf="right",Ff="#000",E0=Ff+"0",Sf="mousemove",A0="mousedown",Mf="mouseup",C0="mouseenter",R0="mouseleave",P0="dblclick",yT="resize",vT="scroll",I0="change",su="dppxchange",Bf="--",ia=typeof window<"u",Af=ia?document:null,Ko=ia?window:null,ST=ia?navigator:null,Ce,tu;function Cf(){let i=devicePixelRatio;Ce!=i&&(Ce=i,tu&&Pf(I0,tu,Cf),tu=matchMedia(`(min-resolution: ${Ce-.001}dppx) and (max-resolution: ${Ce+.001}dppx)`),zr(I0,tu,Cf),Ko.dispatchEvent(new CustomEvent(su)))}function Ai(i,t){if(t!=null){let e=i.classList;!e.contains(t)&&e.add(t)}}function Rf(i,t){let e=i.classList;e.contains(t)&&e.remove(t)}function Ke(i,t,e){i.style[t]=e+"px"}function Ki(i,t,e,n){let s=Af.createElement(i);return t!=null&&Ai(s,t),e?.insertBefore(s,n),s}function ki(i,t){return Ki("div",i,t)}var L0=new WeakMap;function gs(i,t,e,n,s){let r="translate("+t+"px,"+e+"px)",o=L0.get(i);r!=o&&(i.style.transform=r,L0.set(i,r),t<0||e<0||t>n||e>s?Ai(i,kr):Rf(i,kr))}var D0=new WeakMap;function N0(i,t,e){let n=t+e,s=D0.get(i);n!=s&&(D0.set(i,n),i.style.background=t,i.style.borderColor=e)}var U0=new WeakMap;function O0(i,t,e,n){let s=t+""+e,r=U0.get(i);s!=r&&(U0.set(i,s),i.style.height=e+"px",i.style.width=t+"px",i.style.marginLeft=n?-t/2+"px":0,i.style.marginTop=n?-e/2+"px":0)}var kf={passive:!0},MT={...kf,capture:!0};function zr(i,t,e,n){t.addEventListener(i,e,n?MT:kf)}function Pf(i,t,e,n){t.removeEventListener(i,e,kf)}ia&&Cf();function Qi(i,t,e,n){let s;e=e||0,n=n||t.length-1;let r=n<=2147483647;for(;n-e>1;)s=r?e+n>>1:Ci((e+n)/2),t[s]<i?e=s:n=s;return i-t[e]<=t[n]-i?e:n}function h_(i){return(e,n,s)=>{let r=-1,o=-1;for(let a=n;a<=s;a++)if(i(e[a])){r=a;break}for(let a=s;a>=n;a--)if(i(e[a])){o=a;break}return[r,o]}}var u_=i=>i!=null,d_=i=>i!=null&&i>0,au=h_(u_),bT=h_(d_);function wT(i,t,e,n=0,s=!1){let r=s?bT:au,o=s?d_:u_;[t,e]=r(i,t,e);let a=i[t],c=i[t];if(t>-1)if(n==1)a=i[t],c=i[e];else if(n==-1)a=i[e],c=i[t];else for(let l=t;l<=e;l++){let u=i[l];o(u)&&(u<a?a=u:u>c&&(c=u))}return[a??Ve,c??-Ve]}function lu(i,t,e,n){let s=k0(i),r=k0(t);i==t&&(s==-1?(i*=e,t/=e):(i/=e,t*=e));let o=e==10?Gs:f_,a=s==1?Ci:zi,c=r==1?zi:Ci,l=a(o(Ln(i))),u=c(o(Ln(t))),h=Qo(e,l),d=Qo(e,u);return e==10&&(l<0&&(h=Ge(h,-l)),u<0&&(d=Ge(d,-u))),n||e==2?(i=h*s,t=d*r):(i=__(i,h),t=cu(t,d)),[i,t]}function zf(i,t,e,n){let s=lu(i,t,e,n);return i==0&&(s[0]=0),t==0&&(s[1]=0),s}var Vf=.1,F0={mode:3,pad:Vf},wl={pad:0,soft:null,mode:0},TT={min:wl,max:wl};function ru(i,t,e,n){return hu(e)?B0(i,t,e):(wl.pad=e,wl.soft=n?0:null,wl.mode=n?3:0,B0(i,t,TT))}function Te(i,t){return i??t}function ET(i,t,e){for(t=Te(t,0),e=Te(e,i.length-1);t<=e;){if(i[t]!=null)return!0;t++}return!1}function B0(i,t,e){let n=e.min,s=e.max,r=Te(n.pad,0),o=Te(s.pad,0),a=Te(n.hard,-Ve),c=Te(s.hard,Ve),l=Te(n.soft,Ve),u=Te(s.soft,-Ve),h=Te(n.mode,0),d=Te(s.mode,0),f=t-i,p=Gs(f),_=di(Ln(i),Ln(t)),m=Gs(_),g=Ln(m-p);(f<1e-24||g>10)&&(f=0,(i==0||t==0)&&(f=1e-24,h==2&&l!=Ve&&(r=0),d==2&&u!=-Ve&&(o=0)));let x=f||_||1e3,E=Gs(x),S=Qo(10,Ci(E)),M=x*(f==0?i==0?.1:1:r),T=Ge(__(i-M,S/10),24),y=i>=l&&(h==1||h==3&&T<=l||h==2&&T>=l)?l:Ve,b=di(a,T<y&&i>=y?y:ts(y,T)),U=x*(f==0?t==0?.1:1:o),I=Ge(cu(t+U,S/10),24),L=t<=u&&(d==1||d==3&&I>=u||d==2&&I<=u)?u:-Ve,B=ts(c,I>L&&t<=L?L:di(L,I));return b==B&&b==0&&(B=100),[b,B]}var AT=new Intl.NumberFormat(ia?ST.language:"en-US"),Gf=i=>AT.format(i),Ri=Math,iu=Ri.PI,Ln=Ri.abs,Ci=Ri.floor,In=Ri.round,zi=Ri.ceil,ts=Ri.min,di=Ri.max,Qo=Ri.pow,k0=Ri.sign,Gs=Ri.log10,f_=Ri.log2,CT=(i,t=1)=>Ri.sinh(i)*t,bf=(i,t=1)=>Ri.asinh(i/t),Ve=1/0;function z0(i){return(Gs((i^i>>31)-(i>>31))|0)+1}function If(i,t,e){return ts(di(i,t),e)}function p_(i){return typeof i=="function"}function Me(i){return p_(i)?i:()=>i}var RT=()=>{},m_=i=>i,g_=(i,t)=>t,PT=i=>null,V0=i=>!0,G0=(i,t)=>i==t,IT=/\.\d*?(?=9{6,}|0{6,})/gm,Vr=i=>{if(y_(i)||gr.has(i))return i;let t=`${i}`,e=t.match(IT);if(e==null)return i;let n=e[0].length-1;if(t.indexOf("e-")!=-1){let[s,r]=t.split("e");return+`${Vr(s)}e${r}`}return Ge(i,n)};function Fr(i,t){return Vr(Ge(Vr(i/t))*t)}function cu(i,t){return Vr(zi(Vr(i/t))*t)}function __(i,t){return Vr(Ci(Vr(i/t))*t)}function Ge(i,t=0){if(y_(i))return i;let e=10**t,n=i*e*(1+Number.EPSILON);return In(n)/e}var gr=new Map;function x_(i){return((""+i).split(".")[1]||"").length}function El(i,t,e,n){let s=[],r=n.map(x_);for(let o=t;o<e;o++){let a=Ln(o),c=Ge(Qo(i,o),a);for(let l=0;l<n.length;l++){let u=i==10?+`${n[l]}e${o}`:n[l]*c,h=(o>=0?0:a)+(o>=r[l]?0:r[l]),d=i==10?u:Ge(u,h);s.push(d),gr.set(d,h)}}return s}var Tl={},Hf=[],ta=[null,null],mr=Array.isArray,y_=Number.isInteger,LT=i=>i===void 0;function H0(i){return typeof i=="string"}function hu(i){let t=!1;if(i!=null){let e=i.constructor;t=e==null||e==Object}return t}function DT(i){return i!=null&&typeof i=="object"}var NT=Object.getPrototypeOf(Uint8Array),v_="__proto__";function ea(i,t=hu){let e;if(mr(i)){let n=i.find(s=>s!=null);if(mr(n)||t(n)){e=Array(i.length);for(let s=0;s<i.length;s++)e[s]=ea(i[s],t)}else e=i.slice()}else if(i instanceof NT)e=i.slice();else if(t(i)){e={};for(let n in i)n!=v_&&(e[n]=ea(i[n],t))}else e=i;return e}function bn(i){let t=arguments;for(let e=1;e<t.length;e++){let n=t[e];for(let s in n)s!=v_&&(hu(i[s])?bn(i[s],ea(n[s])):i[s]=ea(n[s]))}return i}var UT=0,OT=1,FT=2;function BT(i,t,e){for(let n=0,s,r=-1;n<t.length;n++){let o=t[n];if(o>r){for(s=o-1;s>=0&&i[s]==null;)i[s--]=null;for(s=o+1;s<e&&i[s]==null;)i[r=s++]=null}}}function kT(i,t){if(GT(i)){let o=i[0].slice();for(let a=1;a<i.length;a++)o.push(...i[a].slice(1));return HT(o[0])||(o=VT(o)),o}let e=new Set;for(let o=0;o<i.length;o++){let c=i[o][0],l=c.length;for(let u=0;u<l;u++)e.add(c[u])}let n=[Array.from(e).sort((o,a)=>o-a)],s=n[0].length,r=new Map;for(let o=0;o<s;o++)r.set(n[0][o],o);for(let o=0;o<i.length;o++){let a=i[o],c=a[0];for(let l=1;l<a.length;l++){let u=a[l],h=Array(s).fill(void 0),d=t?t[o][l]:OT,f=[];for(let p=0;p<u.length;p++){let _=u[p],m=r.get(c[p]);_===null?d!=UT&&(h[m]=_,d==FT&&f.push(m)):h[m]=_}BT(h,f,s),n.push(h)}}return n}var zT=typeof queueMicrotask>"u"?i=>Promise.resolve().then(i):queueMicrotask;function VT(i){let t=i[0],e=t.length,n=Array(e);for(let r=0;r<n.length;r++)n[r]=r;n.sort((r,o)=>t[r]-t[o]);let s=[];for(let r=0;r<i.length;r++){let o=i[r],a=Array(e);for(let c=0;c<e;c++)a[c]=o[n[c]];s.push(a)}return s}function GT(i){let t=i[0][0],e=t.length;for(let n=1;n<i.length;n++){let s=i[n][0];if(s.length!=e)return!1;if(s!=t){for(let r=0;r<e;r++)if(s[r]!=t[r])return!1}}return!0}function HT(i,t=100){let e=i.length;if(e<=1)return!0;let n=0,s=e-1;for(;n<=s&&i[n]==null;)n++;for(;s>=n&&i[s]==null;)s--;if(s<=n)return!0;let r=di(1,Ci((s-n+1)/t));for(let o=i[n],a=n+r;a<=s;a+=r){let c=i[a];if(c!=null){if(c<=o)return!1;o=c}}return!0}var S_=["January","February","March","April","May","June","July","August","September","October","November","December"],M_=["Sunday","Monday","Tuesday","Wednesday","Thursday","Friday","Saturday"];function b_(i){return i.slice(0,3)}var WT=M_.map(b_),XT=S_.map(b_),YT={MMMM:S_,MMM:XT,WWWW:M_,WWW:WT};function vl(i){return(i<10?"0":"")+i}function qT(i){return(i<10?"00":i<100?"0":"")+i}var $T={YYYY:i=>i.getFullYear(),YY:i=>(i.getFullYear()+"").slice(2),MMMM:(i,t)=>t.MMMM[i.getMonth()],MMM:(i,t)=>t.MMM[i.getMonth()],MM:i=>vl(i.getMonth()+1),M:i=>i.getMonth()+1,DD:i=>vl(i.getDate()),D:i=>i.getDate(),WWWW:(i,t)=>t.WWWW[i.getDay()],WWW:(i,t)=>t.WWW[i.getDay()],HH:i=>vl(i.getHours()),H:i=>i.getHours(),h:i=>{let t=i.getHours();return t==0?12:t>12?t-12:t},AA:i=>i.getHours()>=12?"PM":"AM",aa:i=>i.getHours()>=12?"pm":"am",a:i=>i.getHours()>=12?"p":"a",mm:i=>vl(i.getMinutes()),m:i=>i.getMinutes(),ss:i=>vl(i.getSeconds()),s:i=>i.getSeconds(),fff:i=>qT(i.getMilliseconds())};function Wf(i,t){t=t||YT;let e=[],n=/\{([a-z]+)\}|[^{]+/gi,s;for(;s=n.exec(i);)e.push(s[0][0]=="{"?$T[s[1]]:s[0]);return r=>{let o="";for(let a=0;a<e.length;a++)o+=typeof e[a]=="string"?e[a]:e[a](r,t);return o}}var ZT=new Intl.DateTimeFormat().resolvedOptions().timeZone;function JT(i,t){let e;return t=="UTC"||t=="Etc/UTC"?e=new Date(+i+i.getTimezoneOffset()*6e4):t==ZT?e=i:(e=new Date(i.toLocaleString("en-US",{timeZone:t})),e.setMilliseconds(i.getMilliseconds())),e}var w_=i=>i%1==0,ou=[1,2,2.5,5],jT=El(10,-32,0,ou),T_=El(10,0,32,ou),KT=T_.filter(w_),Br=jT.concat(T_),Xf=`
+`,E_="{YYYY}",W0=Xf+E_,A_="{M}/{D}",bl=Xf+A_,eu=bl+"/{YY}",C_="{aa}",QT="{h}:{mm}",jo=QT+C_,X0=Xf+jo,Y0=":{ss}",Ne=null;function R_(i){let t=i*1e3,e=t*60,n=e*60,s=n*24,r=s*30,o=s*365,c=(i==1?El(10,0,3,ou).filter(w_):El(10,-3,0,ou)).concat([t,t*5,t*10,t*15,t*30,e,e*5,e*10,e*15,e*30,n,n*2,n*3,n*4,n*6,n*8,n*12,s,s*2,s*3,s*4,s*5,s*6,s*7,s*8,s*9,s*10,s*15,r,r*2,r*3,r*4,r*6,o,o*2,o*5,o*10,o*25,o*50,o*100]),l=[[o,E_,Ne,Ne,Ne,Ne,Ne,Ne,1],[s*28,"{MMM}",W0,Ne,Ne,Ne,Ne,Ne,1],[s,A_,W0,Ne,Ne,Ne,Ne,Ne,1],[n,"{h}"+C_,eu,Ne,bl,Ne,Ne,Ne,1],[e,jo,eu,Ne,bl,Ne,Ne,Ne,1],[t,Y0,eu+" "+jo,Ne,bl+" "+jo,Ne,X0,Ne,1],[i,Y0+".{fff}",eu+" "+jo,Ne,bl+" "+jo,Ne,X0,Ne,1]];function u(h){return(d,f,p,_,m,g)=>{let x=[],E=m>=o,S=m>=r&&m<o,M=h(p),T=Ge(M*i,3),y=wf(M.getFullYear(),E?0:M.getMonth(),S||E?1:M.getDate()),b=Ge(y*i,3);if(S||E){let U=S?m/r:0,I=E?m/o:0,L=T==b?T:Ge(wf(y.getFullYear()+I,y.getMonth()+U,1)*i,3),B=new Date(In(L/i)),W=B.getFullYear(),P=B.getMonth();for(let k=0;L<=_;k++){let Y=wf(W+I*k,P+U*k,1),G=Y-h(Ge(Y*i,3));L=Ge((+Y+G)*i,3),L<=_&&x.push(L)}}else{let U=m>=s?s:m,I=Ci(p)-Ci(T),L=b+I+cu(T-b,U);x.push(L);let B=h(L),W=B.getHours()+B.getMinutes()/e+B.getSeconds()/n,P=m/n,k=d.axes[f]._space,Y=g/k;for(;L=Ge(L+m,i==1?0:3),!(L>_);)if(P>1){let G=Ci(Ge(W+P,6))%24,Q=h(L).getHours()-G;Q>1&&(Q=-1),L-=Q*n,W=(W+P)%24;let it=x[x.length-1];Ge((L-it)/m,3)*Y>=.7&&x.push(L)}else x.push(L)}return x}}return[c,l,u]}var[t1,e1,n1]=R_(1),[i1,s1,r1]=R_(.001);El(2,-53,53,[1]);function q0(i,t){return i.map(e=>e.map((n,s)=>s==0||s==8||n==null?n:t(s==1||e[8]==0?n:e[1]+n)))}function $0(i,t){return(e,n,s,r,o)=>{let a=t.find(p=>o>=p[0])||t[t.length-1],c,l,u,h,d,f;return n.map(p=>{let _=i(p),m=_.getFullYear(),g=_.getMonth(),x=_.getDate(),E=_.getHours(),S=_.getMinutes(),M=_.getSeconds(),T=m!=c&&a[2]||g!=l&&a[3]||x!=u&&a[4]||E!=h&&a[5]||S!=d&&a[6]||M!=f&&a[7]||a[1];return c=m,l=g,u=x,h=E,d=S,f=M,T(_)})}}function o1(i,t){let e=Wf(t);return(n,s,r,o,a)=>s.map(c=>e(i(c)))}function wf(i,t,e){return new Date(i,t,e)}function Z0(i,t){return t(i)}var a1="{YYYY}-{MM}-{DD} {h}:{mm}{aa}";function J0(i,t){return(e,n,s,r)=>r==null?Bf:t(i(n))}function l1(i,t){let e=i.series[t];return e.width?e.stroke(i,t):e.points.width?e.points.stroke(i,t):null}function c1(i,t){return i.series[t].fill(i,t)}var h1={show:!0,live:!0,isolate:!1,mount:RT,markers:{show:!0,width:2,stroke:l1,fill:c1,dash:"solid"},idx:null,idxs:null,values:[]};function u1(i,t){let e=i.cursor.points,n=ki(),s=e.size(i,t);Ke(n,Sl,s),Ke(n,Ml,s);let r=s/-2;Ke(n,"marginLeft",r),Ke(n,"marginTop",r);let o=e.width(i,t,s);return o&&Ke(n,"borderWidth",o),n}function d1(i,t){let e=i.series[t].points;return e._fill||e._stroke}function f1(i,t){let e=i.series[t].points;return e._stroke||e._fill}function p1(i,t){return i.series[t].points.size}var Tf=[0,0];function m1(i,t,e){return Tf[0]=t,Tf[1]=e,Tf}function nu(i,t,e,n=!0){return s=>{s.button==0&&(!n||s.target==t)&&e(s)}}function Ef(i,t,e,n=!0){return s=>{(!n||s.target==t)&&e(s)}}var g1={show:!0,x:!0,y:!0,lock:!1,move:m1,points:{one:!1,show:u1,size:p1,width:0,stroke:f1,fill:d1},bind:{mousedown:nu,mouseup:nu,click:nu,dblclick:nu,mousemove:Ef,mouseleave:Ef,mouseenter:Ef},drag:{setScale:!0,x:!0,y:!1,dist:0,uni:null,click:(i,t)=>{t.stopPropagation(),t.stopImmediatePropagation()},_x:!1,_y:!1},focus:{dist:(i,t,e,n,s)=>n-s,prox:-1,bias:0},hover:{skip:[void 0],prox:null,bias:0},left:-10,top:-10,idx:null,dataIdx:null,idxs:null,event:null},P_={show:!0,stroke:"rgba(0,0,0,0.07)",width:2},Yf=bn({},P_,{filter:g_}),I_=bn({},Yf,{size:10}),L_=bn({},P_,{show:!1}),qf='12px system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, "Noto Sans", sans-serif, "Apple Color Emoji", "Segoe UI Emoji", "Segoe UI Symbol", "Noto Color Emoji"',D_="bold "+qf,N_=1.5,j0={show:!0,scale:"x",stroke:Ff,space:50,gap:5,alignTo:1,size:50,labelGap:0,labelSize:30,labelFont:D_,side:2,grid:Yf,ticks:I_,border:L_,font:qf,lineGap:N_,rotate:0},_1="Value",x1="Time",K0={show:!0,scale:"x",auto:!1,sorted:1,min:Ve,max:-Ve,idxs:[]};function y1(i,t,e,n,s){return t.map(r=>r==null?"":Gf(r))}function v1(i,t,e,n,s,r,o){let a=[],c=gr.get(s)||0;e=o?e:Ge(cu(e,s),c);for(let l=e;l<=n;l=Ge(l+s,c))a.push(Object.is(l,-0)?0:l);return a}function Lf(i,t,e,n,s,r,o){let a=[],c=i.scales[i.axes[t].scale].log,l=c==10?Gs:f_,u=Ci(l(e));s=Qo(c,u),c==10&&(s=Br[Qi(s,Br)]);let h=e,d=s*c;c==10&&(d=Br[Qi(d,Br)]);do a.push(h),h=h+s,c==10&&!gr.has(h)&&(h=Ge(h,gr.get(s))),h>=d&&(s=h,d=s*c,c==10&&(d=Br[Qi(d,Br)]));while(h<=n);return a}function S1(i,t,e,n,s,r,o){let c=i.scales[i.axes[t].scale].asinh,l=n>c?Lf(i,t,di(c,e),n,s):[c],u=n>=0&&e<=0?[0]:[];return(e<-c?Lf(i,t,di(c,-n),-e,s):[c]).reverse().map(d=>-d).concat(u,l)}var U_=/./,M1=/[12357]/,b1=/[125]/,Q0=/1/,Df=(i,t,e,n)=>i.map((s,r)=>t==4&&s==0||r%n==0&&e.test(s.toExponential()[s<0?1:0])?s:null);function w1(i,t,e,n,s){let r=i.axes[e],o=r.scale,a=i.scales[o],c=i.valToPos,l=r._space,u=c(10,o),h=c(9,o)-u>=l?U_:c(7,o)-u>=l?M1:c(5,o)-u>=l?b1:Q0;if(h==Q0){let d=Ln(c(1,o)-u);if(d<l)return Df(t.slice().reverse(),a.distr,h,zi(l/d)).reverse()}return Df(t,a.distr,h,1)}function T1(i,t,e,n,s){let r=i.axes[e],o=r.scale,a=r._space,c=i.valToPos,l=Ln(c(1,o)-c(2,o));return l<a?Df(t.slice().reverse(),3,U_,zi(a/l)).reverse():t}function E1(i,t,e,n){return n==null?Bf:t==null?"":Gf(t)}var t_={show:!0,scale:"y",stroke:Ff,space:30,gap:5,alignTo:1,size:50,labelGap:0,labelSize:30,labelFont:D_,side:3,grid:Yf,ticks:I_,border:L_,font:qf,lineGap:N_,rotate:0};function A1(i,t){let e=3+(i||1)*2;return Ge(e*t,3)}function C1(i,t){let{scale:e,idxs:n}=i.series[0],s=i._data[0],r=i.valToPos(s[n[0]],e,!0),o=i.valToPos(s[n[1]],e,!0),a=Ln(o-r),c=i.series[t],l=a/(c.points.space*Ce);return n[1]-n[0]<=l}var e_={scale:null,auto:!0,sorted:0,min:Ve,max:-Ve},O_=(i,t,e,n,s)=>s,n_={show:!0,auto:!0,sorted:0,gaps:O_,alpha:1,facets:[bn({},e_,{scale:"x"}),bn({},e_,{scale:"y"})]},i_={scale:"y",auto:!0,sorted:0,show:!0,spanGaps:!1,gaps:O_,alpha:1,points:{show:C1,filter:null},values:null,min:Ve,max:-Ve,idxs:[],path:null,clip:null};function R1(i,t,e,n,s){return e/10}var F_={time:!0,auto:!0,distr:1,log:10,asinh:1,min:null,max:null,dir:1,ori:0},P1=bn({},F_,{time:!1,ori:1}),s_={};function B_(i,t){let e=s_[i];return e||(e={key:i,plots:[],sub(n){e.plots.push(n)},unsub(n){e.plots=e.plots.filter(s=>s!=n)},pub(n,s,r,o,a,c,l){for(let u=0;u<e.plots.length;u++)e.plots[u]!=s&&e.plots[u].pub(n,s,r,o,a,c,l)}},i!=null&&(s_[i]=e)),e}var na=1,Nf=2;function Gr(i,t,e){let n=i.mode,s=i.series[t],r=n==2?i._data[t]:i._data,o=i.scales,a=i.bbox,c=r[0],l=n==2?r[1]:r[t],u=n==2?o[s.facets[0].scale]:o[i.series[0].scale],h=n==2?o[s.facets[1].scale]:o[s.scale],d=a.left,f=a.top,p=a.width,_=a.height,m=i.valToPosH,g=i.valToPosV;return u.ori==0?e(s,c,l,u,h,m,g,d,f,p,_,du,sa,pu,z_,G_):e(s,c,l,u,h,g,m,f,d,_,p,fu,ra,Jf,V_,H_)}function $f(i,t){let e=0,n=0,s=Te(i.bands,Hf);for(let r=0;r<s.length;r++){let o=s[r];o.series[0]==t?e=o.dir:o.series[1]==t&&(o.dir==1?n|=1:n|=2)}return[e,n==1?-1:n==2?1:n==3?2:0]}function I1(i,t,e,n,s){let r=i.mode,o=i.series[t],a=r==2?o.facets[1].scale:o.scale,c=i.scales[a];return s==-1?c.min:s==1?c.max:c.distr==3?c.dir==1?c.min:c.max:0}function Hs(i,t,e,n,s,r){return Gr(i,t,(o,a,c,l,u,h,d,f,p,_,m)=>{let g=o.pxRound,x=l.dir*(l.ori==0?1:-1),E=l.ori==0?sa:ra,S,M;x==1?(S=e,M=n):(S=n,M=e);let T=g(h(a[S],l,_,f)),y=g(d(c[S],u,m,p)),b=g(h(a[M],l,_,f)),U=g(d(r==1?u.max:u.min,u,m,p)),I=new Path2D(s);return E(I,b,U),E(I,T,U),E(I,T,y),I})}function uu(i,t,e,n,s,r){let o=null;if(i.length>0){o=new Path2D;let a=t==0?pu:Jf,c=e;for(let h=0;h<i.length;h++){let d=i[h];if(d[1]>d[0]){let f=d[0]-c;f>0&&a(o,c,n,f,n+r),c=d[1]}}let l=e+s-c,u=10;l>0&&a(o,c,n-u/2,l,n+r+u)}return o}function L1(i,t,e){let n=i[i.length-1];n&&n[0]==t?n[1]=e:i.push([t,e])}function Zf(i,t,e,n,s,r,o){let a=[],c=i.length;for(let l=s==1?e:n;l>=e&&l<=n;l+=s)if(t[l]===null){let h=l,d=l;if(s==1)for(;++l<=n&&t[l]===null;)d=l;else for(;--l>=e&&t[l]===null;)d=l;let f=r(i[h]),p=d==h?f:r(i[d]),_=h-s;f=o<=0&&_>=0&&_<c?r(i[_]):f;let g=d+s;p=o>=0&&g>=0&&g<c?r(i[g]):p,p>=f&&a.push([f,p])}return a}function r_(i){return i==0?m_:i==1?In:t=>Fr(t,i)}function k_(i){let t=i==0?du:fu,e=i==0?(s,r,o,a,c,l)=>{s.arcTo(r,o,a,c,l)}:(s,r,o,a,c,l)=>{s.arcTo(o,r,c,a,l)},n=i==0?(s,r,o,a,c)=>{s.rect(r,o,a,c)}:(s,r,o,a,c)=>{s.rect(o,r,c,a)};return(s,r,o,a,c,l=0,u=0)=>{l==0&&u==0?n(s,r,o,a,c):(l=ts(l,a/2,c/2),u=ts(u,a/2,c/2),t(s,r+l,o),e(s,r+a,o,r+a,o+c,l),e(s,r+a,o+c,r,o+c,u),e(s,r,o+c,r,o,u),e(s,r,o,r+a,o,l),s.closePath())}}var du=(i,t,e)=>{i.moveTo(t,e)},fu=(i,t,e)=>{i.moveTo(e,t)},sa=(i,t,e)=>{i.lineTo(t,e)},ra=(i,t,e)=>{i.lineTo(e,t)},pu=k_(0),Jf=k_(1),z_=(i,t,e,n,s,r)=>{i.arc(t,e,n,s,r)},V_=(i,t,e,n,s,r)=>{i.arc(e,t,n,s,r)},G_=(i,t,e,n,s,r,o)=>{i.bezierCurveTo(t,e,n,s,r,o)},H_=(i,t,e,n,s,r,o)=>{i.bezierCurveTo(e,t,s,n,o,r)};function W_(i){return(t,e,n,s,r)=>Gr(t,e,(o,a,c,l,u,h,d,f,p,_,m)=>{let{pxRound:g,points:x}=o,E,S;l.ori==0?(E=du,S=z_):(E=fu,S=V_);let M=Ge(x.width*Ce,3),T=(x.size-x.width)/2*Ce,y=Ge(T*2,3),b=new Path2D,U=new Path2D,{left:I,top:L,width:B,height:W}=t.bbox;pu(U,I-y,L-y,B+y*2,W+y*2);let P=k=>{if(c[k]!=null){let Y=g(h(a[k],l,_,f)),G=g(d(c[k],u,m,p));E(b,Y+T,G),S(b,Y,G,T,0,iu*2)}};if(r)r.forEach(P);else for(let k=n;k<=s;k++)P(k);return{stroke:M>0?b:null,fill:b,clip:U,flags:na|Nf}})}function X_(i){return(t,e,n,s,r,o)=>{n!=s&&(r!=n&&o!=n&&i(t,e,n),r!=s&&o!=s&&i(t,e,s),i(t,e,o))}}var D1=X_(sa),N1=X_(ra);function Y_(i){let t=Te(i?.alignGaps,0);return(e,n,s,r)=>Gr(e,n,(o,a,c,l,u,h,d,f,p,_,m)=>{[s,r]=au(c,s,r);let g=o.pxRound,x=W=>g(h(W,l,_,f)),E=W=>g(d(W,u,m,p)),S,M;l.ori==0?(S=sa,M=D1):(S=ra,M=N1);let T=l.dir*(l.ori==0?1:-1),y={stroke:new Path2D,fill:null,clip:null,band:null,gaps:null,flags:na},b=y.stroke,U=!1;if(r-s>=_*4){let W=dt=>e.posToVal(dt,l.key,!0),P=null,k=null,Y,G,at,$=x(a[T==1?s:r]),Q=x(a[s]),it=x(a[r]),ut=W(T==1?Q+1:it-1);for(let dt=T==1?s:r;dt>=s&&dt<=r;dt+=T){let tt=a[dt],xt=(T==1?tt<ut:tt>ut)?$:x(tt),Rt=c[dt];xt==$?Rt!=null?(G=Rt,P==null?(S(b,xt,E(G)),Y=P=k=G):G<P?P=G:G>k&&(k=G)):Rt===null&&(U=!0):(P!=null&&M(b,$,E(P),E(k),E(Y),E(G)),Rt!=null?(G=Rt,S(b,xt,E(G)),P=k=Y=G):(P=k=null,Rt===null&&(U=!0)),$=xt,ut=W($+T))}P!=null&&P!=k&&at!=$&&M(b,$,E(P),E(k),E(Y),E(G))}else for(let W=T==1?s:r;W>=s&&W<=r;W+=T){let P=c[W];P===null?U=!0:P!=null&&S(b,x(a[W]),E(P))}let[L,B]=$f(e,n);if(o.fill!=null||L!=0){let W=y.fill=new Path2D(b),P=o.fillTo(e,n,o.min,o.max,L),k=E(P),Y=x(a[s]),G=x(a[r]);T==-1&&([G,Y]=[Y,G]),S(W,G,k),S(W,Y,k)}if(!o.spanGaps){let W=[];U&&W.push(...Zf(a,c,s,r,T,x,t)),y.gaps=W=o.gaps(e,n,s,r,W),y.clip=uu(W,l.ori,f,p,_,m)}return B!=0&&(y.band=B==2?[Hs(e,n,s,r,b,-1),Hs(e,n,s,r,b,1)]:Hs(e,n,s,r,b,B)),y})}function U1(i){let t=Te(i.align,1),e=Te(i.ascDesc,!1),n=Te(i.alignGaps,0),s=Te(i.extend,!1);return(r,o,a,c)=>Gr(r,o,(l,u,h,d,f,p,_,m,g,x,E)=>{[a,c]=au(h,a,c);let S=l.pxRound,{left:M,width:T}=r.bbox,y=Q=>S(p(Q,d,x,m)),b=Q=>S(_(Q,f,E,g)),U=d.ori==0?sa:ra,I={stroke:new Path2D,fill:null,clip:null,band:null,gaps:null,flags:na},L=I.stroke,B=d.dir*(d.ori==0?1:-1),W=b(h[B==1?a:c]),P=y(u[B==1?a:c]),k=P,Y=P;s&&t==-1&&(Y=M,U(L,Y,W)),U(L,P,W);for(let Q=B==1?a:c;Q>=a&&Q<=c;Q+=B){let it=h[Q];if(it==null)continue;let ut=y(u[Q]),dt=b(it);t==1?U(L,ut,W):U(L,k,dt),U(L,ut,dt),W=dt,k=ut}let G=k;s&&t==1&&(G=M+T,U(L,G,W));let[at,$]=$f(r,o);if(l.fill!=null||at!=0){let Q=I.fill=new Path2D(L),it=l.fillTo(r,o,l.min,l.max,at),ut=b(it);U(Q,G,ut),U(Q,Y,ut)}if(!l.spanGaps){let Q=[];Q.push(...Zf(u,h,a,c,B,y,n));let it=l.width*Ce/2,ut=e||t==1?it:-it,dt=e||t==-1?-it:it;Q.forEach(tt=>{tt[0]+=ut,tt[1]+=dt}),I.gaps=Q=l.gaps(r,o,a,c,Q),I.clip=uu(Q,d.ori,m,g,x,E)}return $!=0&&(I.band=$==2?[Hs(r,o,a,c,L,-1),Hs(r,o,a,c,L,1)]:Hs(r,o,a,c,L,$)),I})}function o_(i,t,e,n,s,r,o=Ve){if(i.length>1){let a=null;for(let c=0,l=1/0;c<i.length;c++)if(t[c]!==void 0){if(a!=null){let u=Ln(i[c]-i[a]);u<l&&(l=u,o=Ln(e(i[c],n,s,r)-e(i[a],n,s,r)))}a=c}}return o}function O1(i){i=i||Tl;let t=Te(i.size,[.6,Ve,1]),e=i.align||0,n=i.gap||0,s=i.radius;s=s==null?[0,0]:typeof s=="number"?[s,0]:s;let r=Me(s),o=1-t[0],a=Te(t[1],Ve),c=Te(t[2],1),l=Te(i.disp,Tl),u=Te(i.each,f=>{}),{fill:h,stroke:d}=l;return(f,p,_,m)=>Gr(f,p,(g,x,E,S,M,T,y,b,U,I,L)=>{let B=g.pxRound,W=e,P=n*Ce,k=a*Ce,Y=c*Ce,G,at;S.ori==0?[G,at]=r(f,p):[at,G]=r(f,p);let $=S.dir*(S.ori==0?1:-1),Q=S.ori==0?pu:Jf,it=S.ori==0?u:(It,Kt,ce,wt,ze,Wt,Jt)=>{u(It,Kt,ce,ze,wt,Jt,Wt)},ut=Te(f.bands,Hf).find(It=>It.series[0]==p),dt=ut!=null?ut.dir:0,tt=g.fillTo(f,p,g.min,g.max,dt),mt=B(y(tt,M,L,U)),xt,Rt,bt,$t=I,le=B(g.width*Ce),Xt=!1,ge=null,de=null,oe=null,Qe=null;h!=null&&(le==0||d!=null)&&(Xt=!0,ge=h.values(f,p,_,m),de=new Map,new Set(ge).forEach(It=>{It!=null&&de.set(It,new Path2D)}),le>0&&(oe=d.values(f,p,_,m),Qe=new Map,new Set(oe).forEach(It=>{It!=null&&Qe.set(It,new Path2D)})));let{x0:We,size:pn}=l;if(We!=null&&pn!=null){W=1,x=We.values(f,p,_,m),We.unit==2&&(x=x.map(ce=>f.posToVal(b+ce*I,S.key,!0)));let It=pn.values(f,p,_,m);pn.unit==2?Rt=It[0]*I:Rt=T(It[0],S,I,b)-T(0,S,I,b),$t=o_(x,E,T,S,I,b,$t),bt=$t-Rt+P}else $t=o_(x,E,T,S,I,b,$t),bt=$t*o+P,Rt=$t-bt;bt<1&&(bt=0),le>=Rt/2&&(le=0),bt<5&&(B=m_);let Be=bt>0,Nn=$t-bt-(Be?le:0);Rt=B(If(Nn,Y,k)),xt=(W==0?Rt/2:W==$?0:Rt)-W*$*((W==0?P/2:0)+(Be?le/2:0));let be={stroke:null,fill:null,clip:null,band:null,gaps:null,flags:0},wn=Xt?null:new Path2D,on=null;if(ut!=null)on=f.data[ut.series[1]];else{let{y0:It,y1:Kt}=l;It!=null&&Kt!=null&&(E=Kt.values(f,p,_,m),on=It.values(f,p,_,m))}let mn=G*Rt,V=at*Rt;for(let It=$==1?_:m;It>=_&&It<=m;It+=$){let Kt=E[It];if(Kt==null)continue;if(on!=null){let q=on[It]??0;if(Kt-q==0)continue;mt=y(q,M,L,U)}let ce=S.distr!=2||l!=null?x[It]:It,wt=T(ce,S,I,b),ze=y(Te(Kt,tt),M,L,U),Wt=B(wt-xt),Jt=B(di(ze,mt)),D=B(ts(ze,mt)),w=Jt-D;if(Kt!=null){let q=Kt<0?V:mn,ht=Kt<0?mn:V;Xt?(le>0&&oe[It]!=null&&Q(Qe.get(oe[It]),Wt,D+Ci(le/2),Rt,di(0,w-le),q,ht),ge[It]!=null&&Q(de.get(ge[It]),Wt,D+Ci(le/2),Rt,di(0,w-le),q,ht)):Q(wn,Wt,D+Ci(le/2),Rt,di(0,w-le),q,ht),it(f,p,It,Wt-le/2,D,Rt+le,w)}}return le>0?be.stroke=Xt?Qe:wn:Xt||(be._fill=g.width==0?g._fill:g._stroke??g._fill,be.width=0),be.fill=Xt?de:wn,be})}function F1(i,t){let e=Te(t?.alignGaps,0);return(n,s,r,o)=>Gr(n,s,(a,c,l,u,h,d,f,p,_,m,g)=>{[r,o]=au(l,r,o);let x=a.pxRound,E=G=>x(d(G,u,m,p)),S=G=>x(f(G,h,g,_)),M,T,y;u.ori==0?(M=du,y=sa,T=G_):(M=fu,y=ra,T=H_);let b=u.dir*(u.ori==0?1:-1),U=E(c[b==1?r:o]),I=U,L=[],B=[];for(let G=b==1?r:o;G>=r&&G<=o;G+=b)if(l[G]!=null){let $=c[G],Q=E($);L.push(I=Q),B.push(S(l[G]))}let W={stroke:i(L,B,M,y,T,x),fill:null,clip:null,band:null,gaps:null,flags:na},P=W.stroke,[k,Y]=$f(n,s);if(a.fill!=null||k!=0){let G=W.fill=new Path2D(P),at=a.fillTo(n,s,a.min,a.max,k),$=S(at);y(G,I,$),y(G,U,$)}if(!a.spanGaps){let G=[];G.push(...Zf(c,l,r,o,b,E,e)),W.gaps=G=a.gaps(n,s,r,o,G),W.clip=uu(G,u.ori,p,_,m,g)}return Y!=0&&(W.band=Y==2?[Hs(n,s,r,o,P,-1),Hs(n,s,r,o,P,1)]:Hs(n,s,r,o,P,Y)),W})}function B1(i){return F1(k1,i)}function k1(i,t,e,n,s,r){let o=i.length;if(o<2)return null;let a=new Path2D;if(e(a,i[0],t[0]),o==2)n(a,i[1],t[1]);else{let c=Array(o),l=Array(o-1),u=Array(o-1),h=Array(o-1);for(let d=0;d<o-1;d++)u[d]=t[d+1]-t[d],h[d]=i[d+1]-i[d],l[d]=u[d]/h[d];c[0]=l[0];for(let d=1;d<o-1;d++)l[d]===0||l[d-1]===0||l[d-1]>0!=l[d]>0?c[d]=0:(c[d]=3*(h[d-1]+h[d])/((2*h[d]+h[d-1])/l[d-1]+(h[d]+2*h[d-1])/l[d]),isFinite(c[d])||(c[d]=0));c[o-1]=l[o-2];for(let d=0;d<o-1;d++)s(a,i[d]+h[d]/3,t[d]+c[d]*h[d]/3,i[d+1]-h[d]/3,t[d+1]-c[d+1]*h[d]/3,i[d+1],t[d+1])}return a}var Uf=new Set;function a_(){for(let i of Uf)i.syncRect(!0)}ia&&(zr(yT,Ko,a_),zr(vT,Ko,a_,!0),zr(su,Ko,()=>{Gn.pxRatio=Ce}));var z1=Y_(),V1=W_();function l_(i,t,e,n){return(n?[i[0],i[1]].concat(i.slice(2)):[i[0]].concat(i.slice(1))).map((r,o)=>Of(r,o,t,e))}function G1(i,t){return i.map((e,n)=>n==0?{}:bn({},t,e))}function Of(i,t,e,n){return bn({},t==0?e:n,i)}function q_(i,t,e){return t==null?ta:[t,e]}var H1=q_;function W1(i,t,e){return t==null?ta:ru(t,e,Vf,!0)}function $_(i,t,e,n){return t==null?ta:lu(t,e,i.scales[n].log,!1)}var X1=$_;function Z_(i,t,e,n){return t==null?ta:zf(t,e,i.scales[n].log,!1)}var Y1=Z_;function q1(i,t,e,n,s){let r=di(z0(i),z0(t)),o=t-i,a=Qi(s/n*o,e);do{let c=e[a],l=n*c/o;if(l>=s&&r+(c<5?gr.get(c):0)<=17)return[c,l]}while(++a<e.length);return[0,0]}function c_(i){let t,e;return i=i.replace(/(\d+)px/,(n,s)=>(t=In((e=+s)*Ce))+"px"),[i,t,e]}function $1(i){i.show&&[i.font,i.labelFont].forEach(t=>{let e=Ge(t[2]*Ce,1);t[0]=t[0].replace(/[0-9.]+px/,e+"px"),t[1]=e})}function Gn(i,t,e){let n={mode:Te(i.mode,1)},s=n.mode;function r(v,A,N,O){let X=A.valToPct(v);return O+N*(A.dir==-1?1-X:X)}function o(v,A,N,O){let X=A.valToPct(v);return O+N*(A.dir==-1?X:1-X)}function a(v,A,N,O){return A.ori==0?r(v,A,N,O):o(v,A,N,O)}n.valToPosH=r,n.valToPosV=o;let c=!1;n.status=0;let l=n.root=ki(eT);if(i.id!=null&&(l.id=i.id),Ai(l,i.class),i.title){let v=ki(sT,l);v.textContent=i.title}let u=Ki("canvas"),h=n.ctx=u.getContext("2d"),d=ki(rT,l);zr("click",d,v=>{v.target===p&&($e!=jr||tn!=Kr)&&Hn.click(n,v)},!0);let f=n.under=ki(oT,d);d.appendChild(u);let p=n.over=ki(aT,d);i=ea(i);let _=+Te(i.pxAlign,1),m=r_(_);(i.plugins||[]).forEach(v=>{v.opts&&(i=v.opts(n,i)||i)});let g=i.ms||.001,x=n.series=s==1?l_(i.series||[],K0,i_,!1):G1(i.series||[null],n_),E=n.axes=l_(i.axes||[],j0,t_,!0),S=n.scales={},M=n.bands=i.bands||[];M.forEach(v=>{v.fill=Me(v.fill||null),v.dir=Te(v.dir,-1)});let T=s==2?x[1].facets[0].scale:x[0].scale,y={axes:Ss,series:xe},b=(i.drawOrder||["axes","series"]).map(v=>y[v]);function U(v){let A=v.distr==3?N=>Gs(N>0?N:v.clamp(n,N,v.min,v.max,v.key)):v.distr==4?N=>bf(N,v.asinh):v.distr==100?N=>v.fwd(N):N=>N;return N=>{let O=A(N),{_min:X,_max:j}=v,lt=j-X;return(O-X)/lt}}function I(v){let A=S[v];if(A==null){let N=(i.scales||Tl)[v]||Tl;if(N.from!=null){I(N.from);let O=bn({},S[N.from],N,{key:v});O.valToPct=U(O),S[v]=O}else{A=S[v]=bn({},v==T?F_:P1,N),A.key=v;let O=A.time,X=A.range,j=mr(X);if((v!=T||s==2&&!O)&&(j&&(X[0]==null||X[1]==null)&&(X={min:X[0]==null?F0:{mode:1,hard:X[0],soft:X[0]},max:X[1]==null?F0:{mode:1,hard:X[1],soft:X[1]}},j=!1),!j&&hu(X))){let lt=X;X=(ft,vt,Ut)=>vt==null?ta:ru(vt,Ut,lt)}A.range=Me(X||(O?H1:v==T?A.distr==3?X1:A.distr==4?Y1:q_:A.distr==3?$_:A.distr==4?Z_:W1)),A.auto=Me(j?!1:A.auto),A.clamp=Me(A.clamp||R1),A._min=A._max=null,A.valToPct=U(A)}}}I("x"),I("y"),s==1&&x.forEach(v=>{I(v.scale)}),E.forEach(v=>{I(v.scale)});for(let v in i.scales)I(v);let L=S[T],B=L.distr,W,P;L.ori==0?(Ai(l,nT),W=r,P=o):(Ai(l,iT),W=o,P=r);let k={};for(let v in S){let A=S[v];(A.min!=null||A.max!=null)&&(k[v]={min:A.min,max:A.max},A.min=A.max=null)}let Y=i.tzDate||(v=>new Date(In(v/g))),G=i.fmtDate||Wf,at=g==1?n1(Y):r1(Y),$=$0(Y,q0(g==1?e1:s1,G)),Q=J0(Y,Z0(a1,G)),it=[],ut=n.legend=bn({},h1,i.legend),dt=n.cursor=bn({},g1,{drag:{y:s==2}},i.cursor),tt=ut.show,mt=dt.show,xt=ut.markers;ut.idxs=it,xt.width=Me(xt.width),xt.dash=Me(xt.dash),xt.stroke=Me(xt.stroke),xt.fill=Me(xt.fill);let Rt,bt,$t,le=[],Xt=[],ge,de=!1,oe={};if(ut.live){let v=x[1]?x[1].values:null;de=v!=null,ge=de?v(n,1,0):{_:0};for(let A in ge)oe[A]=Bf}if(tt)if(Rt=Ki("table",fT,l),$t=Ki("tbody",null,Rt),ut.mount(n,Rt),de){bt=Ki("thead",null,Rt,$t);let v=Ki("tr",null,bt);Ki("th",null,v);for(var Qe in ge)Ki("th",w0,v).textContent=Qe}else Ai(Rt,mT),ut.live&&Ai(Rt,pT);let We={show:!0},pn={show:!1};function Be(v,A){if(A==0&&(de||!ut.live||s==2))return ta;let N=[],O=Ki("tr",gT,$t,$t.childNodes[A]);Ai(O,v.class),v.show||Ai(O,kr);let X=Ki("th",null,O);if(xt.show){let ft=ki(_T,X);if(A>0){let vt=xt.width(n,A);vt&&(ft.style.border=vt+"px "+xt.dash(n,A)+" "+xt.stroke(n,A)),ft.style.background=xt.fill(n,A)}}let j=ki(w0,X);v.label instanceof HTMLElement?j.appendChild(v.label):j.textContent=v.label,A>0&&(xt.show||(j.style.color=v.width>0?xt.stroke(n,A):xt.fill(n,A)),be("click",X,ft=>{if(dt._lock)return;ee(ft);let vt=x.indexOf(v);if((ft.ctrlKey||ft.metaKey)!=ut.isolate){let Ut=x.some((Ot,Bt)=>Bt>0&&Bt!=vt&&Ot.show);x.forEach((Ot,Bt)=>{Bt>0&&ss(Bt,Ut?Bt==vt?We:pn:We,!0,yn.setSeries)})}else ss(vt,{show:!v.show},!0,yn.setSeries)},!1),ne&&be(C0,X,ft=>{dt._lock||(ee(ft),ss(x.indexOf(v),to,!0,yn.setSeries))},!1));for(var lt in ge){let ft=Ki("td",xT,O);ft.textContent="--",N.push(ft)}return[O,N]}let Nn=new Map;function be(v,A,N,O=!0){let X=Nn.get(A)||{},j=dt.bind[v](n,A,N,O);j&&(zr(v,A,X[v]=j),Nn.set(A,X))}function wn(v,A,N){let O=Nn.get(A)||{};for(let X in O)(v==null||X==v)&&(Pf(X,A,O[X]),delete O[X]);v==null&&Nn.delete(A)}let on=0,mn=0,V=0,It=0,Kt=0,ce=0,wt=Kt,ze=ce,Wt=V,Jt=It,D=0,w=0,q=0,ht=0;n.bbox={};let ot=!1,_t=!1,yt=!1,et=!1,st=!1,pt=!1;function z(v,A,N){(N||v!=n.width||A!=n.height)&&rt(v,A),fe(!1),yt=!0,_t=!0,Zn()}function rt(v,A){n.width=on=V=v,n.height=mn=It=A,Kt=ce=0,St(),Yt();let N=n.bbox;D=N.left=Fr(Kt*Ce,.5),w=N.top=Fr(ce*Ce,.5),q=N.width=Fr(V*Ce,.5),ht=N.height=Fr(It*Ce,.5)}let nt=3;function Tt(){let v=!1,A=0;for(;!v;){A++;let N=$r(A),O=is(A);v=A==nt||N&&O,v||(rt(n.width,n.height),_t=!0)}}function gt({width:v,height:A}){z(v,A)}n.setSize=gt;function St(){let v=!1,A=!1,N=!1,O=!1;E.forEach((X,j)=>{if(X.show&&X._show){let{side:lt,_size:ft}=X,vt=lt%2,Ut=X.label!=null?X.labelSize:0,Ot=ft+Ut;Ot>0&&(vt?(V-=Ot,lt==3?(Kt+=Ot,O=!0):N=!0):(It-=Ot,lt==0?(ce+=Ot,v=!0):A=!0))}}),es[0]=v,es[1]=N,es[2]=A,es[3]=O,V-=Vi[1]+Vi[3],Kt+=Vi[3],It-=Vi[2]+Vi[0],ce+=Vi[0]}function Yt(){let v=Kt+V,A=ce+It,N=Kt,O=ce;function X(j,lt){switch(j){case 1:return v+=lt,v-lt;case 2:return A+=lt,A-lt;case 3:return N-=lt,N+lt;case 0:return O-=lt,O+lt}}E.forEach((j,lt)=>{if(j.show&&j._show){let ft=j.side;j._pos=X(ft,j._size),j.label!=null&&(j._lpos=X(ft,j.labelSize))}})}if(dt.dataIdx==null){let v=dt.hover,A=v.skip=new Set(v.skip??[]);A.add(void 0);let N=v.prox=Me(v.prox),O=v.bias??=0;dt.dataIdx=(X,j,lt,ft)=>{if(j==0)return lt;let vt=lt,Ut=N(X,j,lt,ft)??Ve,Ot=Ut>=0&&Ut<Ve,Bt=L.ori==0?V:It,ae=dt.left,Ee=t[0],we=t[j];if(A.has(we[lt])){vt=null;let ye=null,Qt=null,Zt;if(O==0||O==-1)for(Zt=lt;ye==null&&Zt-- >0;)A.has(we[Zt])||(ye=Zt);if(O==0||O==1)for(Zt=lt;Qt==null&&Zt++<we.length;)A.has(we[Zt])||(Qt=Zt);if(ye!=null||Qt!=null)if(Ot){let Je=ye==null?-1/0:W(Ee[ye],L,Bt,0),cn=Qt==null?1/0:W(Ee[Qt],L,Bt,0),Bn=ae-Je,ke=cn-ae;Bn<=ke?Bn<=Ut&&(vt=ye):ke<=Ut&&(vt=Qt)}else vt=Qt==null?ye:ye==null?Qt:lt-ye<=Qt-lt?ye:Qt}else Ot&&Ln(ae-W(Ee[lt],L,Bt,0))>Ut&&(vt=null);return vt}}let ee=v=>{dt.event=v};dt.idxs=it,dt._lock=!1;let ct=dt.points;ct.show=Me(ct.show),ct.size=Me(ct.size),ct.stroke=Me(ct.stroke),ct.width=Me(ct.width),ct.fill=Me(ct.fill);let zt=n.focus=bn({},i.focus||{alpha:.3},dt.focus),ne=zt.prox>=0,Pt=ne&&ct.one,ue=[],qe=[],ni=[];function oa(v,A){let N=ct.show(n,A);if(N instanceof HTMLElement)return Ai(N,dT),Ai(N,v.class),gs(N,-10,-10,V,It),p.insertBefore(N,ue[A]),N}function Xr(v,A){if(s==1||A>0){let N=s==1&&S[v.scale].time,O=v.value;v.value=N?H0(O)?J0(Y,Z0(O,G)):O||Q:O||E1,v.label=v.label||(N?x1:_1)}if(Pt||A>0){v.width=v.width==null?1:v.width,v.paths=v.paths||z1||PT,v.fillTo=Me(v.fillTo||I1),v.pxAlign=+Te(v.pxAlign,_),v.pxRound=r_(v.pxAlign),v.stroke=Me(v.stroke||null),v.fill=Me(v.fill||null),v._stroke=v._fill=v._paths=v._focus=null;let N=A1(di(1,v.width),1),O=v.points=bn({},{size:N,width:di(1,N*.2),stroke:v.stroke,space:N*2,paths:V1,_stroke:null,_fill:null},v.points);O.show=Me(O.show),O.filter=Me(O.filter),O.fill=Me(O.fill),O.stroke=Me(O.stroke),O.paths=Me(O.paths),O.pxAlign=v.pxAlign}if(tt){let N=Be(v,A);le.splice(A,0,N[0]),Xt.splice(A,0,N[1]),ut.values.push(null)}if(mt){it.splice(A,0,null);let N=null;Pt?A==0&&(N=oa(v,A)):A>0&&(N=oa(v,A)),ue.splice(A,0,N),qe.splice(A,0,0),ni.splice(A,0,0)}Fn("addSeries",A)}function Cu(v,A){A=A??x.length,v=s==1?Of(v,A,K0,i_):Of(v,A,{},n_),x.splice(A,0,v),Xr(x[A],A)}n.addSeries=Cu;function Il(v){if(x.splice(v,1),tt){ut.values.splice(v,1),Xt.splice(v,1);let A=le.splice(v,1)[0];wn(null,A.firstChild),A.remove()}mt&&(it.splice(v,1),ue.splice(v,1)[0].remove(),qe.splice(v,1),ni.splice(v,1)),Fn("delSeries",v)}n.delSeries=Il;let es=[!1,!1,!1,!1];function xs(v,A){if(v._show=v.show,v.show){let N=v.side%2,O=S[v.scale];O==null&&(v.scale=N?x[1].scale:T,O=S[v.scale]);let X=O.time;v.size=Me(v.size),v.space=Me(v.space),v.rotate=Me(v.rotate),mr(v.incrs)&&v.incrs.forEach(lt=>{!gr.has(lt)&&gr.set(lt,x_(lt))}),v.incrs=Me(v.incrs||(O.distr==2?KT:X?g==1?t1:i1:Br)),v.splits=Me(v.splits||(X&&O.distr==1?at:O.distr==3?Lf:O.distr==4?S1:v1)),v.stroke=Me(v.stroke),v.grid.stroke=Me(v.grid.stroke),v.ticks.stroke=Me(v.ticks.stroke),v.border.stroke=Me(v.border.stroke);let j=v.values;v.values=mr(j)&&!mr(j[0])?Me(j):X?mr(j)?$0(Y,q0(j,G)):H0(j)?o1(Y,j):j||$:j||y1,v.filter=Me(v.filter||(O.distr>=3&&O.log==10?w1:O.distr==3&&O.log==2?T1:g_)),v.font=c_(v.font),v.labelFont=c_(v.labelFont),v._size=v.size(n,null,A,0),v._space=v._rotate=v._incrs=v._found=v._splits=v._values=null,v._size>0&&(es[A]=!0,v._el=ki(lT,d))}}function ys(v,A,N,O){let[X,j,lt,ft]=N,vt=A%2,Ut=0;return vt==0&&(ft||j)&&(Ut=A==0&&!X||A==2&&!lt?In(j0.size/3):0),vt==1&&(X||lt)&&(Ut=A==1&&!j||A==3&&!ft?In(t_.size/2):0),Ut}let aa=n.padding=(i.padding||[ys,ys,ys,ys]).map(v=>Me(Te(v,ys))),Vi=n._padding=aa.map((v,A)=>v(n,A,es,0)),an,dn=null,fn=null,ns=s==1?x[0].idxs:null,xi=null,Ws=!1;function la(v,A){if(t=v??[],n.data=n._data=t,s==2){an=0;for(let N=1;N<x.length;N++)an+=t[N][0].length}else{t.length==0&&(n.data=n._data=t=[[]]),xi=t[0],an=xi.length;let N=t;if(B==2){N=t.slice();let O=N[0]=Array(an);for(let X=0;X<an;X++)O[X]=X}n._data=t=N}if(fe(!0),Fn("setData"),B==2&&(yt=!0),A!==!1){let N=L;N.auto(n,Ws)?ca():qs(T,N.min,N.max),et=et||dt.left>=0,pt=!0,Zn()}}n.setData=la;function ca(){Ws=!0;let v,A;s==1&&(an>0?(dn=ns[0]=0,fn=ns[1]=an-1,v=t[0][dn],A=t[0][fn],B==2?(v=dn,A=fn):v==A&&(B==3?[v,A]=lu(v,v,L.log,!1):B==4?[v,A]=zf(v,v,L.log,!1):L.time?A=v+In(86400/g):[v,A]=ru(v,A,Vf,!0))):(dn=ns[0]=v=null,fn=ns[1]=A=null)),qs(T,v,A)}let Yr,Xs,qr,C,H,K,Z,J,Et,Dt;function At(v,A,N,O,X,j){v??=E0,N??=Hf,O??="butt",X??=E0,j??="round",v!=Yr&&(h.strokeStyle=Yr=v),X!=Xs&&(h.fillStyle=Xs=X),A!=qr&&(h.lineWidth=qr=A),j!=H&&(h.lineJoin=H=j),O!=K&&(h.lineCap=K=O),N!=C&&h.setLineDash(C=N)}function Nt(v,A,N,O){A!=Xs&&(h.fillStyle=Xs=A),v!=Z&&(h.font=Z=v),N!=J&&(h.textAlign=J=N),O!=Et&&(h.textBaseline=Et=O)}function Gt(v,A,N,O,X=0){if(O.length>0&&v.auto(n,Ws)&&(A==null||A.min==null)){let j=Te(dn,0),lt=Te(fn,O.length-1),ft=N.min==null?wT(O,j,lt,X,v.distr==3):[N.min,N.max];v.min=ts(v.min,N.min=ft[0]),v.max=di(v.max,N.max=ft[1])}}let ie={min:null,max:null};function _e(){for(let O in S){let X=S[O];k[O]==null&&(X.min==null||k[T]!=null&&X.auto(n,Ws))&&(k[O]=ie)}for(let O in S){let X=S[O];k[O]==null&&X.from!=null&&k[X.from]!=null&&(k[O]=ie)}k[T]!=null&&fe(!0);let v={};for(let O in k){let X=k[O];if(X!=null){let j=v[O]=ea(S[O],DT);if(X.min!=null)bn(j,X);else if(O!=T||s==2)if(an==0&&j.from==null){let lt=j.range(n,null,null,O);j.min=lt[0],j.max=lt[1]}else j.min=Ve,j.max=-Ve}}if(an>0){x.forEach((O,X)=>{if(s==1){let j=O.scale,lt=k[j];if(lt==null)return;let ft=v[j];if(X==0){let vt=ft.range(n,ft.min,ft.max,j);ft.min=vt[0],ft.max=vt[1],dn=Qi(ft.min,t[0]),fn=Qi(ft.max,t[0]),fn-dn>1&&(t[0][dn]<ft.min&&dn++,t[0][fn]>ft.max&&fn--),O.min=xi[dn],O.max=xi[fn]}else O.show&&O.auto&&Gt(ft,lt,O,t[X],O.sorted);O.idxs[0]=dn,O.idxs[1]=fn}else if(X>0&&O.show&&O.auto){let[j,lt]=O.facets,ft=j.scale,vt=lt.scale,[Ut,Ot]=t[X],Bt=v[ft],ae=v[vt];Bt!=null&&Gt(Bt,k[ft],j,Ut,j.sorted),ae!=null&&Gt(ae,k[vt],lt,Ot,lt.sorted),O.min=lt.min,O.max=lt.max}});for(let O in v){let X=v[O],j=k[O];if(X.from==null&&(j==null||j.min==null)){let lt=X.range(n,X.min==Ve?null:X.min,X.max==-Ve?null:X.max,O);X.min=lt[0],X.max=lt[1]}}}for(let O in v){let X=v[O];if(X.from!=null){let j=v[X.from];if(j.min==null)X.min=X.max=null;else{let lt=X.range(n,j.min,j.max,O);X.min=lt[0],X.max=lt[1]}}}let A={},N=!1;for(let O in v){let X=v[O],j=S[O];if(j.min!=X.min||j.max!=X.max){j.min=X.min,j.max=X.max;let lt=j.distr;j._min=lt==3?Gs(j.min):lt==4?bf(j.min,j.asinh):lt==100?j.fwd(j.min):j.min,j._max=lt==3?Gs(j.max):lt==4?bf(j.max,j.asinh):lt==100?j.fwd(j.max):j.max,A[O]=N=!0}}if(N){x.forEach((O,X)=>{s==2?X>0&&A.y&&(O._paths=null):A[O.scale]&&(O._paths=null)});for(let O in A)yt=!0,Fn("setScale",O);mt&&dt.left>=0&&(et=pt=!0)}for(let O in k)k[O]=null}function Vt(v){let A=If(dn-1,0,an-1),N=If(fn+1,0,an-1);for(;v[A]==null&&A>0;)A--;for(;v[N]==null&&N<an-1;)N++;return[A,N]}function xe(){if(an>0){let v=x.some(A=>A._focus)&&Dt!=zt.alpha;v&&(h.globalAlpha=Dt=zt.alpha),x.forEach((A,N)=>{if(N>0&&A.show&&(nn(N,!1),nn(N,!0),A._paths==null)){let O=Dt;Dt!=A.alpha&&(h.globalAlpha=Dt=A.alpha);let X=s==2?[0,t[N][0].length-1]:Vt(t[N]);A._paths=A.paths(n,N,X[0],X[1]),Dt!=O&&(h.globalAlpha=Dt=O)}}),x.forEach((A,N)=>{if(N>0&&A.show){let O=Dt;Dt!=A.alpha&&(h.globalAlpha=Dt=A.alpha),A._paths!=null&&Ue(N,!1);{let X=A._paths!=null?A._paths.gaps:null,j=A.points.show(n,N,dn,fn,X),lt=A.points.filter(n,N,j,X);(j||lt)&&(A.points._paths=A.points.paths(n,N,dn,fn,lt),Ue(N,!0))}Dt!=O&&(h.globalAlpha=Dt=O),Fn("drawSeries",N)}}),v&&(h.globalAlpha=Dt=1)}}function nn(v,A){let N=A?x[v].points:x[v];N._stroke=N.stroke(n,v),N._fill=N.fill(n,v)}function Ue(v,A){let N=A?x[v].points:x[v],{stroke:O,fill:X,clip:j,flags:lt,_stroke:ft=N._stroke,_fill:vt=N._fill,_width:Ut=N.width}=N._paths;Ut=Ge(Ut*Ce,3);let Ot=null,Bt=Ut%2/2;A&&vt==null&&(vt=Ut>0?"#fff":ft);let ae=N.pxAlign==1&&Bt>0;if(ae&&h.translate(Bt,Bt),!A){let Ee=D-Ut/2,we=w-Ut/2,ye=q+Ut,Qt=ht+Ut;Ot=new Path2D,Ot.rect(Ee,we,ye,Qt)}A?Ft(ft,Ut,N.dash,N.cap,vt,O,X,lt,j):Oe(v,ft,Ut,N.dash,N.cap,vt,O,X,lt,Ot,j),ae&&h.translate(-Bt,-Bt)}function Oe(v,A,N,O,X,j,lt,ft,vt,Ut,Ot){let Bt=!1;vt!=0&&M.forEach((ae,Ee)=>{if(ae.series[0]==v){let we=x[ae.series[1]],ye=t[ae.series[1]],Qt=(we._paths||Tl).band;mr(Qt)&&(Qt=ae.dir==1?Qt[0]:Qt[1]);let Zt,Je=null;we.show&&Qt&&ET(ye,dn,fn)?(Je=ae.fill(n,Ee)||j,Zt=we._paths.clip):Qt=null,Ft(A,N,O,X,Je,lt,ft,vt,Ut,Ot,Zt,Qt),Bt=!0}}),Bt||Ft(A,N,O,X,j,lt,ft,vt,Ut,Ot)}let Tn=na|Nf;function Ft(v,A,N,O,X,j,lt,ft,vt,Ut,Ot,Bt){At(v,A,N,O,X),(vt||Ut||Bt)&&(h.save(),vt&&h.clip(vt),Ut&&h.clip(Ut)),Bt?(ft&Tn)==Tn?(h.clip(Bt),Ot&&h.clip(Ot),ve(X,lt),gn(v,j,A)):ft&Nf?(ve(X,lt),h.clip(Bt),gn(v,j,A)):ft&na&&(h.save(),h.clip(Bt),Ot&&h.clip(Ot),ve(X,lt),h.restore(),gn(v,j,A)):(ve(X,lt),gn(v,j,A)),(vt||Ut||Bt)&&h.restore()}function gn(v,A,N){N>0&&(A instanceof Map?A.forEach((O,X)=>{h.strokeStyle=Yr=X,h.stroke(O)}):A!=null&&v&&h.stroke(A))}function ve(v,A){A instanceof Map?A.forEach((N,O)=>{h.fillStyle=Xs=O,h.fill(N)}):A!=null&&v&&h.fill(A)}function vs(v,A,N,O){let X=E[v],j;if(O<=0)j=[0,0];else{let lt=X._space=X.space(n,v,A,N,O),ft=X._incrs=X.incrs(n,v,A,N,O,lt);j=q1(A,N,ft,O,lt)}return X._found=j}function _n(v,A,N,O,X,j,lt,ft,vt,Ut){let Ot=lt%2/2;_==1&&h.translate(Ot,Ot),At(ft,lt,vt,Ut,ft),h.beginPath();let Bt,ae,Ee,we,ye=X+(O==0||O==3?-j:j);N==0?(ae=X,we=ye):(Bt=X,Ee=ye);for(let Qt=0;Qt<v.length;Qt++)A[Qt]!=null&&(N==0?Bt=Ee=v[Qt]:ae=we=v[Qt],h.moveTo(Bt,ae),h.lineTo(Ee,we));h.stroke(),_==1&&h.translate(-Ot,-Ot)}function $r(v){let A=!0;return E.forEach((N,O)=>{if(!N.show)return;let X=S[N.scale];if(X.min==null){N._show&&(A=!1,N._show=!1,fe(!1));return}else N._show||(A=!1,N._show=!0,fe(!1));let j=N.side,lt=j%2,{min:ft,max:vt}=X,[Ut,Ot]=vs(O,ft,vt,lt==0?V:It);if(Ot==0)return;let Bt=X.distr==2,ae=N._splits=N.splits(n,O,ft,vt,Ut,Ot,Bt),Ee=X.distr==2?ae.map(Zt=>xi[Zt]):ae,we=X.distr==2?xi[ae[1]]-xi[ae[0]]:Ut,ye=N._values=N.values(n,N.filter(n,Ee,O,Ot,we),O,Ot,we);N._rotate=j==2?N.rotate(n,ye,O,Ot):0;let Qt=N._size;N._size=zi(N.size(n,ye,O,v)),Qt!=null&&N._size!=Qt&&(A=!1)}),A}function is(v){let A=!0;return aa.forEach((N,O)=>{let X=N(n,O,es,v);X!=Vi[O]&&(A=!1),Vi[O]=X}),A}function Ss(){for(let v=0;v<E.length;v++){let A=E[v];if(!A.show||!A._show)continue;let N=A.side,O=N%2,X,j,lt=A.stroke(n,v),ft=N==0||N==3?-1:1,[vt,Ut]=A._found;if(A.label!=null){let ri=A.labelGap*ft,Si=In((A._lpos+ri)*Ce);Nt(A.labelFont[0],lt,"center",N==2?"top":T0),h.save(),O==1?(X=j=0,h.translate(Si,In(w+ht/2)),h.rotate((N==3?-iu:iu)/2)):(X=In(D+q/2),j=Si);let vr=p_(A.label)?A.label(n,v,vt,Ut):A.label;h.fillText(vr,X,j),h.restore()}if(Ut==0)continue;let Ot=S[A.scale],Bt=O==0?q:ht,ae=O==0?D:w,Ee=A._splits,we=Ot.distr==2?Ee.map(ri=>xi[ri]):Ee,ye=Ot.distr==2?xi[Ee[1]]-xi[Ee[0]]:vt,Qt=A.ticks,Zt=A.border,Je=Qt.show?Qt.size:0,cn=In(Je*Ce),Bn=In((A.alignTo==2?A._size-Je-A.gap:A.gap)*Ce),ke=A._rotate*-iu/180,hn=m(A._pos*Ce),yi=(cn+Bn)*ft,si=hn+yi;j=O==0?si:0,X=O==1?si:0;let Pi=A.font[0],Gi=A.align==1?Jo:A.align==2?vf:ke>0?Jo:ke<0?vf:O==0?"center":N==3?vf:Jo,os=ke||O==1?"middle":N==2?"top":T0;Nt(Pi,lt,Gi,os);let vi=A.font[1]*A.lineGap,Ii=Ee.map(ri=>m(a(ri,Ot,Bt,ae))),Hi=A._values;for(let ri=0;ri<Hi.length;ri++){let Si=Hi[ri];if(Si!=null){O==0?X=Ii[ri]:j=Ii[ri],Si=""+Si;let vr=Si.indexOf(`
+`)==-1?[Si]:Si.split(/\n/gm);for(let oi=0;oi<vr.length;oi++){let Ip=vr[oi];ke?(h.save(),h.translate(X,j+oi*vi),h.rotate(ke),h.fillText(Ip,0,0),h.restore()):h.fillText(Ip,X,j+oi*vi)}}}Qt.show&&_n(Ii,Qt.filter(n,we,v,Ut,ye),O,N,hn,cn,Ge(Qt.width*Ce,3),Qt.stroke(n,v),Qt.dash,Qt.cap);let as=A.grid;as.show&&_n(Ii,as.filter(n,we,v,Ut,ye),O,O==0?2:1,O==0?w:D,O==0?ht:q,Ge(as.width*Ce,3),as.stroke(n,v),as.dash,as.cap),Zt.show&&_n([hn],[1],O==0?1:0,O==0?1:2,O==1?w:D,O==1?ht:q,Ge(Zt.width*Ce,3),Zt.stroke(n,v),Zt.dash,Zt.cap)}Fn("drawAxes")}function fe(v){x.forEach((A,N)=>{N>0&&(A._paths=null,v&&(s==1?(A.min=null,A.max=null):A.facets.forEach(O=>{O.min=null,O.max=null})))})}let ln=!1,ii=!1,Fe=[];function xn(){ii=!1;for(let v=0;v<Fe.length;v++)Fn(...Fe[v]);Fe.length=0}function Zn(){ln||(zT(fp),ln=!0)}function Ll(v,A=!1){ln=!0,ii=A,v(n),fp(),A&&Fe.length>0&&queueMicrotask(xn)}n.batch=Ll;function fp(){if(ot&&(_e(),ot=!1),yt&&(Tt(),yt=!1),_t){if(Ke(f,Jo,Kt),Ke(f,"top",ce),Ke(f,Sl,V),Ke(f,Ml,It),Ke(p,Jo,Kt),Ke(p,"top",ce),Ke(p,Sl,V),Ke(p,Ml,It),Ke(d,Sl,on),Ke(d,Ml,mn),u.width=In(on*Ce),u.height=In(mn*Ce),E.forEach(({_el:v,_show:A,_size:N,_pos:O,side:X})=>{if(v!=null)if(A){let j=X===3||X===0?N:0,lt=X%2==1;Ke(v,lt?"left":"top",O-j),Ke(v,lt?"width":"height",N),Ke(v,lt?"top":"left",lt?ce:Kt),Ke(v,lt?"height":"width",lt?It:V),Rf(v,kr)}else Ai(v,kr)}),Yr=Xs=qr=H=K=Z=J=Et=C=null,Dt=1,da(!0),Kt!=wt||ce!=ze||V!=Wt||It!=Jt){fe(!1);let v=V/Wt,A=It/Jt;if(mt&&!et&&dt.left>=0){dt.left*=v,dt.top*=A,Zr&&gs(Zr,In(dt.left),0,V,It),Jr&&gs(Jr,0,In(dt.top),V,It);for(let N=0;N<ue.length;N++){let O=ue[N];O!=null&&(qe[N]*=v,ni[N]*=A,gs(O,zi(qe[N]),zi(ni[N]),V,It))}}if(Ze.show&&!st&&Ze.left>=0&&Ze.width>0){Ze.left*=v,Ze.width*=v,Ze.top*=A,Ze.height*=A;for(let N in Nu)Ke(Qr,N,Ze[N])}wt=Kt,ze=ce,Wt=V,Jt=It}Fn("setSize"),_t=!1}on>0&&mn>0&&(h.clearRect(0,0,u.width,u.height),Fn("drawClear"),b.forEach(v=>v()),Fn("draw")),Ze.show&&st&&(Dl(Ze),st=!1),mt&&et&&(yr(null,!0,!1),et=!1),ut.show&&ut.live&&pt&&(Lu(),pt=!1),c||(c=!0,n.status=1,Fn("ready")),Ws=!1,ln=!1}n.redraw=(v,A)=>{yt=A||!1,v!==!1?qs(T,L.min,L.max):Zn()};function Ru(v,A){let N=S[v];if(N.from==null){if(an==0){let O=N.range(n,A.min,A.max,v);A.min=O[0],A.max=O[1]}if(A.min>A.max){let O=A.min;A.min=A.max,A.max=O}if(an>1&&A.min!=null&&A.max!=null&&A.max-A.min<1e-16)return;v==T&&N.distr==2&&an>0&&(A.min=Qi(A.min,t[0]),A.max=Qi(A.max,t[0]),A.min==A.max&&A.max++),k[v]=A,ot=!0,Zn()}}n.setScale=Ru;let Pu,Iu,Zr,Jr,pp,mp,jr,Kr,gp,_p,$e,tn,Ys=!1,Hn=dt.drag,Un=Hn.x,On=Hn.y;mt&&(dt.x&&(Pu=ki(hT,p)),dt.y&&(Iu=ki(uT,p)),L.ori==0?(Zr=Pu,Jr=Iu):(Zr=Iu,Jr=Pu),$e=dt.left,tn=dt.top);let Ze=n.select=bn({show:!0,over:!0,left:0,width:0,top:0,height:0},i.select),Qr=Ze.show?ki(cT,Ze.over?p:f):null;function Dl(v,A){if(Ze.show){for(let N in v)Ze[N]=v[N],N in Nu&&Ke(Qr,N,v[N]);A!==!1&&Fn("setSelect")}}n.setSelect=Dl;function Px(v){if(x[v].show)tt&&Rf(le[v],kr);else if(tt&&Ai(le[v],kr),mt){let N=Pt?ue[0]:ue[v];N!=null&&gs(N,-10,-10,V,It)}}function qs(v,A,N){Ru(v,{min:A,max:N})}function ss(v,A,N,O){A.focus!=null&&Ux(v),A.show!=null&&x.forEach((X,j)=>{j>0&&(v==j||v==null)&&(X.show=A.show,Px(j),s==2?(qs(X.facets[0].scale,null,null),qs(X.facets[1].scale,null,null)):qs(X.scale,null,null),Zn())}),N!==!1&&Fn("setSeries",v,A),O&&fa("setSeries",n,v,A)}n.setSeries=ss;function Ix(v,A){bn(M[v],A)}function Lx(v,A){v.fill=Me(v.fill||null),v.dir=Te(v.dir,-1),A=A??M.length,M.splice(A,0,v)}function Dx(v){v==null?M.length=0:M.splice(v,1)}n.addBand=Lx,n.setBand=Ix,n.delBand=Dx;function Nx(v,A){x[v].alpha=A,mt&&ue[v]!=null&&(ue[v].style.opacity=A),tt&&le[v]&&(le[v].style.opacity=A)}let Ms,$s,xr,to={focus:!0};function Ux(v){if(v!=xr){let A=v==null,N=zt.alpha!=1;x.forEach((O,X)=>{if(s==1||X>0){let j=A||X==0||X==v;O._focus=A?null:j,N&&Nx(X,j?1:zt.alpha)}}),xr=v,N&&Zn()}}tt&&ne&&be(R0,Rt,v=>{dt._lock||(ee(v),xr!=null&&ss(null,to,!0,yn.setSeries))});function rs(v,A,N){let O=S[A];N&&(v=v/Ce-(O.ori==1?ce:Kt));let X=V;O.ori==1&&(X=It,v=X-v),O.dir==-1&&(v=X-v);let j=O._min,lt=O._max,ft=v/X,vt=j+(lt-j)*ft,Ut=O.distr;return Ut==3?Qo(10,vt):Ut==4?CT(vt,O.asinh):Ut==100?O.bwd(vt):vt}function Ox(v,A){let N=rs(v,T,A);return Qi(N,t[0],dn,fn)}n.valToIdx=v=>Qi(v,t[0]),n.posToIdx=Ox,n.posToVal=rs,n.valToPos=(v,A,N)=>S[A].ori==0?r(v,S[A],N?q:V,N?D:0):o(v,S[A],N?ht:It,N?w:0),n.setCursor=(v,A,N)=>{$e=v.left,tn=v.top,yr(null,A,N)};function xp(v,A){Ke(Qr,Jo,Ze.left=v),Ke(Qr,Sl,Ze.width=A)}function yp(v,A){Ke(Qr,"top",Ze.top=v),Ke(Qr,Ml,Ze.height=A)}let ha=L.ori==0?xp:yp,ua=L.ori==1?xp:yp;function Fx(){if(tt&&ut.live)for(let v=s==2?1:0;v<x.length;v++){if(v==0&&de)continue;let A=ut.values[v],N=0;for(let O in A)Xt[v][N++].firstChild.nodeValue=A[O]}}function Lu(v,A){if(v!=null&&(v.idxs?v.idxs.forEach((N,O)=>{it[O]=N}):LT(v.idx)||it.fill(v.idx),ut.idx=it[0]),tt&&ut.live){for(let N=0;N<x.length;N++)(N>0||s==1&&!de)&&Bx(N,it[N]);Fx()}pt=!1,A!==!1&&Fn("setLegend")}n.setLegend=Lu;function Bx(v,A){let N=x[v],O=v==0&&B==2?xi:t[v],X;de?X=N.values(n,v,A)??oe:(X=N.value(n,A==null?null:O[A],v,A),X=X==null?oe:{_:X}),ut.values[v]=X}function yr(v,A,N){gp=$e,_p=tn,[$e,tn]=dt.move(n,$e,tn),dt.left=$e,dt.top=tn,mt&&(Zr&&gs(Zr,In($e),0,V,It),Jr&&gs(Jr,0,In(tn),V,It));let O,X=dn>fn;Ms=Ve,$s=null;let j=L.ori==0?V:It,lt=L.ori==1?V:It;if($e<0||an==0||X){O=dt.idx=null;for(let ft=0;ft<x.length;ft++){let vt=ue[ft];vt!=null&&gs(vt,-10,-10,V,It)}ne&&ss(null,to,!0,v==null&&yn.setSeries),ut.live&&(it.fill(O),pt=!0)}else{let ft,vt,Ut;s==1&&(ft=L.ori==0?$e:tn,vt=rs(ft,T),O=dt.idx=Qi(vt,t[0],dn,fn),Ut=W(t[0][O],L,j,0));let Ot=-10,Bt=-10,ae=0,Ee=0,we=!0,ye="",Qt="";for(let Zt=s==2?1:0;Zt<x.length;Zt++){let Je=x[Zt],cn=it[Zt],Bn=cn==null?null:s==1?t[Zt][cn]:t[Zt][1][cn],ke=dt.dataIdx(n,Zt,O,vt),hn=ke==null?null:s==1?t[Zt][ke]:t[Zt][1][ke];if(pt=pt||hn!=Bn||ke!=cn,it[Zt]=ke,Zt>0&&Je.show){let yi=ke==null?-10:ke==O?Ut:W(s==1?t[0][ke]:t[Zt][0][ke],L,j,0),si=hn==null?-10:P(hn,s==1?S[Je.scale]:S[Je.facets[1].scale],lt,0);if(ne&&hn!=null){let Pi=L.ori==1?$e:tn,Gi=Ln(zt.dist(n,Zt,ke,si,Pi));if(Gi<Ms){let os=zt.bias;if(os!=0){let vi=rs(Pi,Je.scale),Ii=hn>=0?1:-1,Hi=vi>=0?1:-1;Hi==Ii&&(Hi==1?os==1?hn>=vi:hn<=vi:os==1?hn<=vi:hn>=vi)&&(Ms=Gi,$s=Zt)}else Ms=Gi,$s=Zt}}if(pt||Pt){let Pi,Gi;L.ori==0?(Pi=yi,Gi=si):(Pi=si,Gi=yi);let os,vi,Ii,Hi,as,ri,Si=!0,vr=ct.bbox;if(vr!=null){Si=!1;let oi=vr(n,Zt);Ii=oi.left,Hi=oi.top,os=oi.width,vi=oi.height}else Ii=Pi,Hi=Gi,os=vi=ct.size(n,Zt);if(ri=ct.fill(n,Zt),as=ct.stroke(n,Zt),Pt)Zt==$s&&Ms<=zt.prox&&(Ot=Ii,Bt=Hi,ae=os,Ee=vi,we=Si,ye=ri,Qt=as);else{let oi=ue[Zt];oi!=null&&(qe[Zt]=Ii,ni[Zt]=Hi,O0(oi,os,vi,Si),N0(oi,ri,as),gs(oi,zi(Ii),zi(Hi),V,It))}}}}if(Pt){let Zt=zt.prox,Je=xr==null?Ms<=Zt:Ms>Zt||$s!=xr;if(pt||Je){let cn=ue[0];cn!=null&&(qe[0]=Ot,ni[0]=Bt,O0(cn,ae,Ee,we),N0(cn,ye,Qt),gs(cn,zi(Ot),zi(Bt),V,It))}}}if(Ze.show&&Ys)if(v!=null){let[ft,vt]=yn.scales,[Ut,Ot]=yn.match,[Bt,ae]=v.cursor.sync.scales,Ee=v.cursor.drag;if(Un=Ee._x,On=Ee._y,Un||On){let{left:we,top:ye,width:Qt,height:Zt}=v.select,Je=v.scales[Bt].ori,cn=v.posToVal,Bn,ke,hn,yi,si,Pi=ft!=null&&Ut(ft,Bt),Gi=vt!=null&&Ot(vt,ae);Pi&&Un?(Je==0?(Bn=we,ke=Qt):(Bn=ye,ke=Zt),hn=S[ft],yi=W(cn(Bn,Bt),hn,j,0),si=W(cn(Bn+ke,Bt),hn,j,0),ha(ts(yi,si),Ln(si-yi))):ha(0,j),Gi&&On?(Je==1?(Bn=we,ke=Qt):(Bn=ye,ke=Zt),hn=S[vt],yi=P(cn(Bn,ae),hn,lt,0),si=P(cn(Bn+ke,ae),hn,lt,0),ua(ts(yi,si),Ln(si-yi))):ua(0,lt)}else Uu()}else{let ft=Ln(gp-pp),vt=Ln(_p-mp);if(L.ori==1){let ae=ft;ft=vt,vt=ae}Un=Hn.x&&ft>=Hn.dist,On=Hn.y&&vt>=Hn.dist;let Ut=Hn.uni;Ut!=null?Un&&On&&(Un=ft>=Ut,On=vt>=Ut,!Un&&!On&&(vt>ft?On=!0:Un=!0)):Hn.x&&Hn.y&&(Un||On)&&(Un=On=!0);let Ot,Bt;Un&&(L.ori==0?(Ot=jr,Bt=$e):(Ot=Kr,Bt=tn),ha(ts(Ot,Bt),Ln(Bt-Ot)),On||ua(0,lt)),On&&(L.ori==1?(Ot=jr,Bt=$e):(Ot=Kr,Bt=tn),ua(ts(Ot,Bt),Ln(Bt-Ot)),Un||ha(0,j)),!Un&&!On&&(ha(0,0),ua(0,0))}if(Hn._x=Un,Hn._y=On,v==null){if(N){if(Pp!=null){let[ft,vt]=yn.scales;yn.values[0]=ft!=null?rs(L.ori==0?$e:tn,ft):null,yn.values[1]=vt!=null?rs(L.ori==1?$e:tn,vt):null}fa(Sf,n,$e,tn,V,It,O)}if(ne){let ft=N&&yn.setSeries,vt=zt.prox;xr==null?Ms<=vt&&ss($s,to,!0,ft):Ms>vt?ss(null,to,!0,ft):$s!=xr&&ss($s,to,!0,ft)}}pt&&(ut.idx=O,Lu()),A!==!1&&Fn("setCursor")}let Zs=null;Object.defineProperty(n,"rect",{get(){return Zs==null&&da(!1),Zs}});function da(v=!1){v?Zs=null:(Zs=p.getBoundingClientRect(),Fn("syncRect",Zs))}function vp(v,A,N,O,X,j,lt){dt._lock||Ys&&v!=null&&v.movementX==0&&v.movementY==0||(Du(v,A,N,O,X,j,lt,!1,v!=null),v!=null?yr(null,!0,!0):yr(A,!0,!1))}function Du(v,A,N,O,X,j,lt,ft,vt){if(Zs==null&&da(!1),ee(v),v!=null)N=v.clientX-Zs.left,O=v.clientY-Zs.top;else{if(N<0||O<0){$e=-10,tn=-10;return}let[Ut,Ot]=yn.scales,Bt=A.cursor.sync,[ae,Ee]=Bt.values,[we,ye]=Bt.scales,[Qt,Zt]=yn.match,Je=A.axes[0].side%2==1,cn=L.ori==0?V:It,Bn=L.ori==1?V:It,ke=Je?j:X,hn=Je?X:j,yi=Je?O:N,si=Je?N:O;if(we!=null?N=Qt(Ut,we)?a(ae,S[Ut],cn,0):-10:N=cn*(yi/ke),ye!=null?O=Zt(Ot,ye)?a(Ee,S[Ot],Bn,0):-10:O=Bn*(si/hn),L.ori==1){let Pi=N;N=O,O=Pi}}vt&&(A==null||A.cursor.event.type==Sf)&&((N<=1||N>=V-1)&&(N=Fr(N,V)),(O<=1||O>=It-1)&&(O=Fr(O,It))),ft?(pp=N,mp=O,[jr,Kr]=dt.move(n,N,O)):($e=N,tn=O)}let Nu={width:0,height:0,left:0,top:0};function Uu(){Dl(Nu,!1)}let Sp,Mp,bp,wp;function Tp(v,A,N,O,X,j,lt){Ys=!0,Un=On=Hn._x=Hn._y=!1,Du(v,A,N,O,X,j,lt,!0,!1),v!=null&&(be(Mf,Af,Ep,!1),fa(A0,n,jr,Kr,V,It,null));let{left:ft,top:vt,width:Ut,height:Ot}=Ze;Sp=ft,Mp=vt,bp=Ut,wp=Ot}function Ep(v,A,N,O,X,j,lt){Ys=Hn._x=Hn._y=!1,Du(v,A,N,O,X,j,lt,!1,!0);let{left:ft,top:vt,width:Ut,height:Ot}=Ze,Bt=Ut>0||Ot>0,ae=Sp!=ft||Mp!=vt||bp!=Ut||wp!=Ot;if(Bt&&ae&&Dl(Ze),Hn.setScale&&Bt&&ae){let Ee=ft,we=Ut,ye=vt,Qt=Ot;if(L.ori==1&&(Ee=vt,we=Ot,ye=ft,Qt=Ut),Un&&qs(T,rs(Ee,T),rs(Ee+we,T)),On)for(let Zt in S){let Je=S[Zt];Zt!=T&&Je.from==null&&Je.min!=Ve&&qs(Zt,rs(ye+Qt,Zt),rs(ye,Zt))}Uu()}else dt.lock&&(dt._lock=!dt._lock,yr(A,!0,v!=null));v!=null&&(wn(Mf,Af),fa(Mf,n,$e,tn,V,It,null))}function kx(v,A,N,O,X,j,lt){if(dt._lock)return;ee(v);let ft=Ys;if(Ys){let vt=!0,Ut=!0,Ot=10,Bt,ae;L.ori==0?(Bt=Un,ae=On):(Bt=On,ae=Un),Bt&&ae&&(vt=$e<=Ot||$e>=V-Ot,Ut=tn<=Ot||tn>=It-Ot),Bt&&vt&&($e=$e<jr?0:V),ae&&Ut&&(tn=tn<Kr?0:It),yr(null,!0,!0),Ys=!1}$e=-10,tn=-10,it.fill(null),yr(null,!0,!0),ft&&(Ys=ft)}function Ap(v,A,N,O,X,j,lt){dt._lock||(ee(v),ca(),Uu(),v!=null&&fa(P0,n,$e,tn,V,It,null))}function Cp(){E.forEach($1),z(n.width,n.height,!0)}zr(su,Ko,Cp);let eo={};eo.mousedown=Tp,eo.mousemove=vp,eo.mouseup=Ep,eo.dblclick=Ap,eo.setSeries=(v,A,N,O)=>{let X=yn.match[2];N=X(n,A,N),N!=-1&&ss(N,O,!0,!1)},mt&&(be(A0,p,Tp),be(Sf,p,vp),be(C0,p,v=>{ee(v),da(!1)}),be(R0,p,kx),be(P0,p,Ap),Uf.add(n),n.syncRect=da);let Nl=n.hooks=i.hooks||{};function Fn(v,A,N){ii?Fe.push([v,A,N]):v in Nl&&Nl[v].forEach(O=>{O.call(null,n,A,N)})}(i.plugins||[]).forEach(v=>{for(let A in v.hooks)Nl[A]=(Nl[A]||[]).concat(v.hooks[A])});let Rp=(v,A,N)=>N,yn=bn({key:null,setSeries:!1,filters:{pub:V0,sub:V0},scales:[T,x[1]?x[1].scale:null],match:[G0,G0,Rp],values:[null,null]},dt.sync);yn.match.length==2&&yn.match.push(Rp),dt.sync=yn;let Pp=yn.key,Ou=B_(Pp);function fa(v,A,N,O,X,j,lt){yn.filters.pub(v,A,N,O,X,j,lt)&&Ou.pub(v,A,N,O,X,j,lt)}Ou.sub(n);function zx(v,A,N,O,X,j,lt){yn.filters.sub(v,A,N,O,X,j,lt)&&eo[v](null,A,N,O,X,j,lt)}n.pub=zx;function Vx(){Ou.unsub(n),Uf.delete(n),Nn.clear(),Pf(su,Ko,Cp),l.remove(),Rt?.remove(),Fn("destroy")}n.destroy=Vx;function Fu(){Fn("init",i,t),la(t||i.data,!1),k[T]?Ru(T,k[T]):ca(),st=Ze.show&&(Ze.width>0||Ze.height>0),et=pt=!0,z(i.width,i.height)}return x.forEach(Xr),E.forEach(xs),e?e instanceof HTMLElement?(e.appendChild(l),Fu()):e(n,Fu):Fu(),n}Gn.assign=bn;Gn.fmtNum=Gf;Gn.rangeNum=ru;Gn.rangeLog=lu;Gn.rangeAsinh=zf;Gn.orient=Gr;Gn.pxRatio=Ce;Gn.join=kT;Gn.fmtDate=Wf,Gn.tzDate=JT;Gn.sync=B_;{Gn.addGap=L1,Gn.clipGaps=uu;let i=Gn.paths={points:W_};i.linear=Y_,i.stepped=U1,i.bars=O1,i.spline=B1}var jf="text/plain",mu=class{constructor(t,e,n){Object.assign(this,{app:t,store:e,choose:n}),this.topics=[],this.types={},this.rates={},this.models=[],this.truth=[],this.open=new Set,this.search=F("input",{id:"topic-search",type:"search",placeholder:"Find a topic or field",oninput:()=>this.show()}),this.path=F("input",{id:"topic-path",placeholder:"/topic.field, Enter",title:"For example /scan.ranges[180] or /odom.pose.pose.position",onkeydown:s=>{s.key==="Enter"&&this.add(this.path.value.trim())&&(this.path.value="")}}),this.list=F("div",{class:"topic-rows"}),this.element=F("div",{class:"topics"},this.search,this.path,this.list),t.on("packet:topics",s=>this.take(s)),t.on("packet:rates",({rates:s})=>{this.rates=s;for(let r of this.list.querySelectorAll("[data-rate]"))r.textContent=this.rateOf(r.dataset.rate)})}setShown(t){if(this.store.file){this.topics.length||this.take(this.store.file.get("topics")??{topics:[],types:{},models:[...this.app.bodyOf.keys()],truth:Object.keys(gf)});return}this.app.connection.want("topics",t?{}:null),this.app.scene?.recording||this.app.connection.want("rates",t?{}:null)}take({topics:t,types:e,models:n,truth:s}){if(Object.assign(this,{topics:t,types:e,models:n,truth:s}),this.store.file)for(let r of t)r.fields=[...new Set((this.store.file.get(r.name)?.curves??[]).map(o=>o.path))];this.rates=Object.fromEntries(t.filter(r=>r.rate).map(r=>[r.name,r.rate]).concat(Object.entries(this.rates))),this.show()}rateOf(t){let e=this.rates[t];return e===void 0?"":`${e>=100?e.toFixed(0):e>=10?e.toFixed(1):e.toFixed(2)} Hz`}fieldsOf(t){return t.fields??this.types[t.type]??[]}add(t){let e=this.topics.map(s=>s.name).filter(s=>t.startsWith(s)&&"./[".includes(t[s.length]??" ")).sort((s,r)=>r.length-s.length)[0],n=this.models.some(s=>t.startsWith(`${s}.`));return e?this.choose(e,t.slice(e.length).replace(/^[./]/,"")):n?this.choose(ms,t):this.app.report(`there is no topic with numbers for ${t}`),!!e||n}show(){let t=this.search.value.trim().toLowerCase(),e=[],n=(s,r)=>!t||s.toLowerCase().includes(t)||r.some(o=>`${s}.${o}`.toLowerCase().includes(t));for(let s of this.models){let r=this.truth.map(o=>`${s}.${o}`);n(`${s} (truth)`,r)&&e.push(this.row(`truth:${s}`,s,"true pose and velocity",null,()=>r.map(o=>[ms,o,o.slice(s.length+1)])))}for(let s of this.topics){let r=this.fieldsOf(s);r.length&&n(s.name,r)&&e.push(this.row(s.name,s.name,s.type,s.name,()=>r.filter(o=>!t||s.name.toLowerCase().includes(t)||o.toLowerCase().includes(t)).map(o=>[s.name,o,o])))}this.list.replaceChildren(...e.length?e:[F("p",{class:"dim"},this.topics.length?"nothing found":"no topics")])}row(t,e,n,s,r){let o=s===null?null:F("span",{class:"rate","data-rate":s},this.rateOf(s)),a=F("details",{"data-topic":t,open:this.open.has(t)},F("summary",{title:`${e}
+${n}`},F("span",{class:"name"},e),o,F("span",{class:"type"},n.replace("/msg/","/")))),c=()=>{a.open&&a.childElementCount===1&&a.append(...r().map(([l,u,h])=>this.field(l,u,h)))};return a.addEventListener("toggle",()=>{a.open?this.open.add(t):this.open.delete(t),c()}),c(),a}field(t,e,n){let s=n.split("[]"),r=s.slice(1).map(()=>F("input",{class:"index",value:"0",size:3,title:"Index, name, or range such as 0:5"})),o=()=>e.split("[]").map((l,u)=>l+(u<r.length?`[${r[u].value.trim()||0}]`:"")).join(""),a=s.flatMap((l,u)=>u<r.length?[`${l}[`,r[u],"]"]:[l]),c=F("div",{class:"field",draggable:!0,tabIndex:0,role:"button",title:"Drag to a plot, or click","data-field":e},...a);return c.addEventListener("dragstart",l=>{l.dataTransfer.setData(jf,JSON.stringify([t,o()])),l.dataTransfer.effectAllowed="copy"}),c.addEventListener("click",l=>{l.target.tagName!=="INPUT"&&this.choose(t,o())}),c.addEventListener("keydown",l=>{l.key==="Enter"&&this.choose(t,o())}),c}};var Kf=["#4c9ffe","#f2a33c","#3fbf7f","#e5636b","#b38cf4","#2fc4c9","#e87fbf","#a8b545","#8d99ae","#d98e5f"],Qf=[["5 s",5],["10 s",10],["30 s",30],["60 s",60],["5 min",300],["all",1/0]],gu=class{constructor(t,e,{close:n,select:s,changed:r}){Object.assign(this,{app:t,store:e,changed:r}),this.fields=[],this.zoom=null,this.isPaused=this.usesStamps=this.inDegrees=!1,this.shape="",this.colours=new Map;let o=(l,u,h,d)=>F("button",{class:l,title:h,"aria-label":h,onclick:d},u);this.pause=o("pause","\u275A\u275A","Pause or resume the drawing; data are kept",()=>this.setPaused(!this.isPaused)),this.range=F("select",{class:"range",title:"Shown time",onchange:()=>{this.zoom=null,this.draw()}},...Qf.map(([l])=>F("option",{},l))),this.range.selectedIndex=t.scene?.recording?Qf.length-1:2,this.axis=F("select",{class:"axis",title:"Time axis",onchange:()=>{this.usesStamps=this.axis.selectedIndex===1,this.zoom=null,this.draw()}},F("option",{},"receive time"),F("option",{},"header stamp")),this.degrees=o("degrees","\xB0","Show angles in degrees",()=>{this.inDegrees=!this.inDegrees,this.degrees.classList.toggle("on",this.inDegrees),this.draw()}),this.legend=F("div",{class:"legend"}),this.area=F("div",{class:"area"}),this.hint=F("p",{class:"hint dim"},"Drag fields here, or click them in the list");let a=o("clear","Clear","Drop the samples",()=>this.clear());a.hidden=!!t.scene?.recording;let c=F("div",{class:"plot-tools"},this.pause,this.range,this.axis,this.degrees,a,o("csv","CSV","Save the samples as CSV",()=>this.saveCsv()),o("png","PNG","Save the picture",()=>this.savePng()),o("close","\u2715","Close the plot",()=>n(this)));this.element=F("div",{class:"plot"},F("div",{class:"plot-head"},this.legend,c),this.area),this.area.append(this.hint),this.element.addEventListener("pointerdown",()=>s(this)),this.element.addEventListener("dragover",l=>{l.preventDefault(),this.element.classList.add("over")}),this.element.addEventListener("dragleave",()=>this.element.classList.remove("over")),this.element.addEventListener("drop",l=>{l.preventDefault(),this.element.classList.remove("over");try{this.add(...JSON.parse(l.dataTransfer.getData(jf)))}catch{}}),this.size=new ResizeObserver(()=>this.resize()),this.size.observe(this.area)}add(t,e){!e||this.fields.some(n=>n.topic===t&&n.field===e)||(this.fields.push({topic:t,field:e}),this.store.use(t,e,!0),this.changed(),this.draw())}remove(t,e){this.fields=this.fields.filter(n=>n.topic!==t||n.field!==e),this.store.use(t,e,!1),this.changed(),this.draw()}close(){for(let{topic:t,field:e}of[...this.fields])this.remove(t,e);this.size.disconnect(),this.chart?.destroy()}clear(){for(let{topic:t,field:e}of this.fields)this.store.clear(t,e);this.zoom=null,this.draw()}setPaused(t){this.isPaused=t,this.pause.textContent=t?"\u25B6":"\u275A\u275A",this.pause.classList.toggle("on",t),t||this.draw()}curves(){let t=this.fields.flatMap(({topic:e,field:n})=>this.store.of(e,n));return[...new Map(t.map(e=>[e.key,e])).values()]}colourOf(t){if(!this.colours.has(t.key)){let e=new Set(this.curves().map(n=>this.colours.get(n.key)));this.colours.set(t.key,Kf.find(n=>!e.has(n))??Kf[this.colours.size%Kf.length])}return this.colours.get(t.key)}scale(t){return this.inDegrees&&t.unit==="rad"?180/Math.PI:1}unit(t){return this.inDegrees&&t.unit==="rad"?"\xB0":t.unit}times(t){return this.usesStamps&&t.s.some(Number.isFinite)?t.s:t.t}limits(t){if(this.zoom)return this.zoom;let e=t.map(r=>this.times(r)).filter(r=>r.length);if(!e.length)return[0,1];let n=Math.max(...e.map(r=>r[r.length-1])),s=Math.min(...e.map(r=>r[0]));return[Math.max(s,n-Qf[this.range.selectedIndex][1]),Math.max(n,s+.1)]}draw(){if(this.isPaused&&this.chart){this.showLegend();return}let t=this.curves();if(this.hint.hidden=this.fields.length>0,this.make(t),this.showLegend(),!this.chart)return;let[e,n]=this.limits(t);this.chart.batch(()=>{this.chart.setData(this.table(t,e,n),!1),this.chart.setScale("x",{min:e,max:n})})}table(t,e,n){if(!t.length)return[[]];let s=t.map(r=>{let o=this.times(r),a=Math.max(0,tp(o,e)-1),c=Math.min(o.length,tp(o,n)+1),l=this.scale(r),u=[],h=[];for(let d=a;d<c;d++)!Number.isFinite(o[d])||u.length&&o[d]<=u[u.length-1]||(u.push(o[d]),h.push(Number.isFinite(r.v[d])?r.v[d]*l:null));return[u,h]});return s.length===1?s[0]:Gn.join(s)}make(t){let e=JSON.stringify([t.map(p=>[p.key,this.unit(p)]),matchMedia("(prefers-color-scheme: light)").matches]);if(e===this.shape||(this.shape=e,this.chart?.destroy(),this.chart=null,!t.length))return;let n=getComputedStyle(document.body),s=n.getPropertyValue("--dim").trim(),r=n.getPropertyValue("--grid").trim(),o="11px system-ui, sans-serif",a=[...new Set(t.map(p=>this.unit(p)))],c=a.slice(0,2),l=p=>c.includes(this.unit(p))?`u${c.indexOf(this.unit(p))}`:`u${c.length-1}`,u=p=>({stroke:s,font:o,labelFont:o,labelSize:16,grid:{stroke:r,width:1},ticks:{stroke:r,width:1,size:4},gap:3,...p}),h={x:{time:!1},...Object.fromEntries(c.map((p,_)=>[`u${_}`,{range:(m,g,x)=>Z1(g,x)}]))},{width:d,height:f}=this.space();this.chart=new Gn({width:d,height:f,scales:h,legend:{show:!1},padding:[8,c.length>1?0:12,0,0],cursor:{drag:{x:!0,y:!1,setScale:!1},points:{size:5},focus:{prox:24}},focus:{alpha:.4},series:[{},...t.map(p=>({label:p.label,stroke:this.colourOf(p),width:1.5,scale:l(p),points:{show:!1},spanGaps:!1,pxAlign:0,paths:p.isAngle?J1(l(p),Math.PI*this.scale(p)):void 0}))],axes:[u({size:24}),...c.map((p,_)=>u({scale:`u${_}`,side:_?1:3,size:52,label:(_?a.slice(1):[p]).filter(Boolean).join(", ")||" ",values:j1,grid:{show:_===0,stroke:r,width:1}}))],hooks:{setSelect:[p=>this.setZoom(p)],setCursor:[()=>this.showValues()],draw:[p=>this.drawNow(p)],ready:[p=>p.over.addEventListener("dblclick",()=>{this.zoom=null,this.draw()})]}},[[],...t.map(()=>[])],this.area)}setZoom(t){let{left:e,width:n}=t.select;n<4||(this.zoom=[t.posToVal(e,"x"),t.posToVal(e+n,"x")],t.setSelect({left:0,top:0,width:0,height:0},!1),this.isPaused?t.setScale("x",{min:this.zoom[0],max:this.zoom[1]}):this.draw())}drawNow(t){if(!this.app.player||!this.app.state)return;let e=t.valToPos(this.app.state.time,"x",!0),{left:n,top:s,width:r,height:o}=t.bbox;e<n||e>n+r||(t.ctx.fillStyle="#f2a33c",t.ctx.fillRect(Math.round(e),s,Math.max(1,devicePixelRatio),o))}showLegend(){this.legendOf?.join()===this.legendKey()||(this.legendOf=[this.legendKey()],this.legend.replaceChildren(...this.fields.flatMap(({topic:e,field:n})=>{let s=()=>F("button",{class:"drop",title:"Remove","aria-label":`Remove ${n}`,onclick:()=>this.remove(e,n)},"\u2715"),r=this.store.of(e,n),o=this.store.errors.get(`${e} ${n}`);return r.length?r.map((a,c)=>{let l=F("i",{}),u=F("output",{});return l.style.background=this.colourOf(a),F("span",{class:"key",title:a.label,"data-curve":a.key},l,F("span",{class:"label"},F("bdi",{},a.label)),u,c?null:s())}):[F("span",{class:`key ${o?"wrong":""}`,title:o??""},o?`${n}: ${o}`:`${e}.${n} \u2026`,s())]}))),this.showValues()}legendKey(){return JSON.stringify(this.fields.map(({topic:t,field:e})=>[t,e,this.store.of(t,e).map(n=>n.key),this.store.errors.get(`${t} ${e}`)]))}showValues(){let t=this.chart?.cursor.left>=0?this.chart.posToVal(this.chart.cursor.left,"x"):null;for(let e of this.legend.querySelectorAll("[data-curve]")){let n=this.store.curves.get(e.dataset.curve);if(!n?.v.length){e.querySelector("output").textContent="";continue}let s=t??(this.app.player?this.app.state?.time??0:1/0),r=Math.max(0,tp(this.times(n),s)-1),o=n.v[Math.min(r,n.v.length-1)];e.querySelector("output").textContent=`${K1(o*this.scale(n))}${this.unit(n)?` ${this.unit(n)}`:""}`}}space(){return{width:Math.max(120,this.area.clientWidth),height:Math.max(80,this.area.clientHeight)}}resize(){this.chart&&this.area.clientWidth&&this.chart.setSize(this.space())}csv(){let t=this.curves(),e=new Map;t.forEach((o,a)=>this.times(o).forEach((c,l)=>{e.has(c)||e.set(c,new Array(t.length).fill("")),e.get(c)[a]=Number.isFinite(o.v[l])?o.v[l]:"nan"}));let n=o=>/[",\n]/.test(o)?`"${o.replaceAll('"','""')}"`:o,s=["time [s]",...t.map(o=>n(o.label+(o.unit?` [${o.unit}]`:"")))],r=[...e].sort((o,a)=>o[0]-a[0]).map(([o,a])=>[+o.toFixed(9),...a.map(c=>typeof c=="number"?+c.toPrecision(9):c)].join(","));return[s.join(","),...r,""].join(`
+`)}saveCsv(){J_(new Blob([this.csv()],{type:"text/csv"}),"simkit-plot.csv")}picture(){let t=getComputedStyle(document.body),e=this.chart.ctx.canvas,n=e.width/this.chart.width,s=18*n,r=this.curves(),o=F("canvas",{width:e.width,height:e.height+s*r.length+8*n}),a=o.getContext("2d");return a.fillStyle=t.getPropertyValue("--panel"),a.fillRect(0,0,o.width,o.height),a.font=`${12*n}px system-ui, sans-serif`,r.forEach((c,l)=>{let u=(l+.8)*s;a.fillStyle=this.colourOf(c),a.fillRect(12*n,u-8*n,14*n,8*n),a.fillStyle=t.getPropertyValue("--text"),a.fillText(c.label+(this.unit(c)?` [${this.unit(c)}]`:""),32*n,u)}),a.drawImage(e,0,s*r.length+8*n),o}savePng(){this.chart&&this.picture().toBlob(t=>J_(t,"simkit-plot.png"),"image/png")}};function J_(i,t){let e=URL.createObjectURL(i),n=F("a",{href:e,download:t});document.body.append(n),n.click(),n.remove(),setTimeout(()=>URL.revokeObjectURL(e),1e4)}function tp(i,t){let e=0,n=i.length;for(;e<n;){let s=e+n>>1;i[s]<=t?e=s+1:n=s}return e}function Z1(i,t){if(i===null||t===null)return[-1,1];let e=t>i?.08*(t-i):Math.max(Math.abs(t)*.1,.1);return[i-e,t+e]}function J1(i,t){return(e,n,s,r)=>{let o=new Path2D,a=e.data[0],c=e.data[n],l=null;for(let u=s;u<=r;u++){let h=c[u];if(h===void 0)continue;if(h===null){l=null;continue}let d=e.valToPos(a[u],"x",!0),f=e.valToPos(h,i,!0);l===null||Math.abs(h-l)>t?o.moveTo(d,f):o.lineTo(d,f),l=h}return{stroke:o,fill:null,clip:null,flags:1}}}function j1(i,t,e,n,s){let r=Math.max(...t.map(Math.abs)),o=Math.max(0,-Math.floor(Math.log10(s)+1e-9));return o>5||r>=1e6?t.map(a=>a===0?"0":a.toExponential(Math.max(0,Math.min(2,Math.round(Math.log10(r/s)))))):t.map(a=>(Math.abs(a)<s/2?0:a).toFixed(o))}function K1(i){if(!Number.isFinite(i))return"\u2013";let t=Math.abs(i);return t!==0&&(t<.001||t>=1e6)?i.toExponential(3):String(+i.toFixed(4))}var Q1=100;function j_(i){let t=new Qh(i),e=F("div",{class:"plots"}),n=[],s=null,r=!1,o=null,a=m=>{s=m;for(let g of n)g.element.classList.toggle("chosen",g===m&&n.length>1)},c=m=>{m.close(),m.element.remove(),n=n.filter(g=>g!==m),a(n.at(-1)??null),h()},l=()=>{let m=new gu(i,t,{close:c,select:a,changed:h});return n.push(m),e.append(m.element),a(m),m},u=()=>`simkit-plots ${i.scene?.world}`,h=()=>{try{localStorage.setItem(u(),JSON.stringify(n.map(m=>m.fields)))}catch{}},d=()=>{try{for(let m of JSON.parse(localStorage.getItem(u()))??[]){let g=l();for(let{topic:x,field:E}of m)g.add(x,E)}}catch{}n.length||l()},f=(m,g)=>(s??l()).add(m,g),p=()=>{o!==null||!r||(o=setTimeout(()=>{if(o=null,r&&!document.hidden)for(let m of n)m.draw()},Q1))};t.listeners.push(p);let _=new mu(i,t,f);return _.element.append(F("button",{id:"new-plot",onclick:l},"+ Plot")),i.on("state",()=>{i.player&&p()}),i.on("scene",()=>{r&&t.want()}),matchMedia("(prefers-color-scheme: light)").addEventListener("change",p),i.plots={store:t,list:_,add:l,choose:f,get all(){return n}},d(),{element:F("div",{class:"plot-tab"},_.element,e),show(m){if(r=m,_.setShown(m),t.show(m),m)for(let g of n)g.draw()}}}var K_=[["plots","Plots",j_,!0],["console","Console",g0,!0],["calls","Services and actions",h0,!1],["motions","Motions",M0,!1],["parameters","Parameters",b0,!1],["graph","Graph",v0,!1],["frames","Frames",S0,!1]],Q_="simkit-dock",tE=120;function tx(i){let t=F("div",{id:"dock-body"}),e=F("div",{id:"dock-grip",title:"Drag to change the height"}),n=F("div",{id:"dock-tabs",role:"tablist"}),s=F("section",{id:"dock","aria-label":"Data"},e,n,t),r=new Map,o=null,a=d=>{o&&r.get(o).show(!1),o=d;for(let[f,[,p]]of c)p.classList.toggle("on",f===d),p.setAttribute("aria-selected",f===d);document.body.classList.toggle("docked",d!==null),d&&!r.has(d)&&r.set(d,K_.find(([f])=>f===d)[2](i)),t.replaceChildren(...d?[r.get(d).element]:[]),d&&r.get(d).show(!0),u()},c=new Map(K_.map(d=>[d[0],[d,F("button",{id:`tab-${d[0]}`,role:"tab",onclick:()=>a(o===d[0]?null:d[0])},d[1])]])),l=F("button",{id:"dock-close",title:"Close","aria-label":"Close",onclick:()=>a(null)},"\u2715");n.append(...[...c.values()].map(([,d])=>d),F("span",{class:"space"}),l);let u=()=>{try{localStorage.setItem(Q_,JSON.stringify([o,t.style.height]))}catch{}},h=d=>{t.style.height=`${Math.round(Math.min(Math.max(d,tE),innerHeight*.75))}px`};e.addEventListener("pointerdown",d=>{e.setPointerCapture(d.pointerId);let f=d.clientY,p=t.clientHeight,_=g=>h(p+f-g.clientY),m=()=>{e.removeEventListener("pointermove",_),u()};e.addEventListener("pointermove",_),e.addEventListener("lostpointercapture",m,{once:!0})}),i.on("scene",d=>{for(let[f,p]of c.values())p.hidden=d.recording&&!f[3]}),i.openTab=a,document.body.append(s);try{let[d,f]=JSON.parse(localStorage.getItem(Q_))??[];f&&h(parseFloat(f)),c.has(d)&&i.on("scene",p=>{o===null&&!r.size&&!(p.recording&&!c.get(d)[0][3])&&a(d)})}catch{}return null}function ex(i){let t=F("div",{class:"displays"}),e=ei("displays","Topics in the scene",t),n=new Map,s=(o,a)=>{let c=qo(`display-${o}`,o,i.displays.wanted.has(o),u=>i.displays.set(o,u));c.title=a;let l=F("div",{class:"dim problem"});return{type:a,check:c,problems:l,element:F("div",{},c,l)}},r=()=>{let{topics:o}=i.displays,a=new Set(o.map(([l])=>l));for(let l of n.keys())!a.has(l)&&!i.displays.wanted.has(l)&&n.delete(l);for(let[l,u]of o)n.get(l)?.type!==u&&n.set(l,s(l,u));for(let[l,u]of n)u.problems.textContent=i.displays.problems(l).join("; ");let c=[...n].sort(([l],[u])=>l<u?-1:1).map(([,l])=>l.element);(c.length!==t.children.length||c.some((l,u)=>l!==t.children[u]))&&t.replaceChildren(...c),e.hidden=n.size===0};return i.on("displays",r),i.on("scene",()=>{i.player||i.connection.want("displays",{})}),i.on("recording",o=>{i.displays.topics=o.displayTopics(),r()}),e.hidden=!0,e}var nx={w:"w",x:"x",a:"a",d:"d",s:"s",j:"j",l:"l",q:"q",z:"z",ArrowUp:"up",ArrowDown:"down",ArrowLeft:"left",ArrowRight:"right"},eE=200;function ix(i){let t=F("select",{id:"target",title:"Robot",onchange:()=>_()}),e=F("div",{class:"knob"}),n=F("div",{id:"pad",class:"pad",title:"Drag to drive"},e),s=F("div",{id:"speeds",class:"dim"}),r=F("button",{id:"stop",onclick:()=>g("s")},"Stop (s)"),o=F("button",{id:"go",title:"Click on the ground, drag for the direction",onclick:()=>y("goal",o)},"Go there"),a=F("button",{id:"here",title:"Click on the ground, drag for the direction",onclick:()=>y("initial",a)},"I am here"),c=F("div",{class:"dim"},"w a s d x or arrows: drive"),l=F("div",{},t,n,s,r),u=ei("drive","Drive",l,c,F("div",{class:"row"},o,a)),h=[],d=null,f=[0,0],p=()=>h[t.selectedIndex],_=()=>{l.hidden=c.hidden=h.length===0,t.hidden=h.length<2,u.hidden=h.length===0},m=P=>{Array.isArray(P)&&(s.textContent=`${P[0].toFixed(2)} m/s  ${P[2].toFixed(2)} rad/s`)},g=P=>{p()&&i.send("key",{topic:p().topic,key:P}).then(m)},x=()=>{if(!p())return;let P=(k,Y,G)=>Y*Math.abs((Y>0?k[1]:k[0])??G);i.send("drive",{topic:p().topic,ahead:P(p().linear,f[0],1),turn:P(p().angular,f[1],1.5)}).then(m)},E=P=>{let k=n.getBoundingClientRect(),Y=2*(P.clientX-k.left)/k.width-1,G=2*(P.clientY-k.top)/k.height-1,at=Math.hypot(Y,G);at>1&&(Y/=at,G/=at),e.style.translate=`${36*Y}px ${36*G}px`,f=[-G,-Y]},S=()=>{d!==null&&(clearInterval(d),d=null,e.style.translate="0 0",g("s"))};n.addEventListener("pointerdown",P=>{n.setPointerCapture(P.pointerId),E(P),x(),d??=setInterval(x,eE)}),n.addEventListener("pointermove",P=>{d!==null&&E(P)});for(let P of["pointerup","pointercancel","lostpointercapture"])n.addEventListener(P,S);addEventListener("blur",S),addEventListener("keydown",P=>{if(P.target.closest("input, select, textarea")||P.ctrlKey||P.metaKey||P.altKey)return;let k=nx[P.key]??nx[P.key.toLowerCase()];k&&h.length&&(P.preventDefault(),g(k))});let M=new nl(new R(1,0,0),new R,.5,3199320,.18,.12);M.visible=!1,i.stage.helpers.add(M);let T=null,y=(P,k)=>{let Y=i.aiming===P;b(),!Y&&(T=i.aiming=P,k.classList.add("on"),i.stage.controls.enabled=!1,i.stage.canvas.style.cursor="crosshair")},b=()=>{T=i.aiming=null,o.classList.remove("on"),a.classList.remove("on"),i.stage.controls.enabled=i.views.sensor===null,i.stage.canvas.style.cursor=""},U=P=>{let k=i.pickAt(P.clientX,P.clientY);if(k)return k.point;let Y=i.stage.canvas.getBoundingClientRect(),G=new Oi;return G.setFromCamera(new kt(2*(P.clientX-Y.left)/Y.width-1,1-2*(P.clientY-Y.top)/Y.height),i.stage.camera),G.ray.intersectPlane(new En(new R(0,0,1),0),new R)},I=null,L=i.stage.canvas;L.addEventListener("pointerdown",P=>{I=T?U(P):null,I&&(L.setPointerCapture(P.pointerId),M.position.copy(I).setZ(I.z+.05),M.setColor(T==="goal"?3199320:5809919),M.visible=!0,i.stage.invalidate())});let B=P=>{let k=U(P);return k&&k.distanceTo(I)>.1?Math.atan2(k.y-I.y,k.x-I.x):0};L.addEventListener("pointermove",P=>{if(!I)return;let k=B(P);M.setDirection(new R(Math.cos(k),Math.sin(k),0)),i.stage.invalidate()}),L.addEventListener("pointerup",P=>{!I||!T||(i.send("pose",{kind:T,x:I.x,y:I.y,yaw:B(P)}),I=null,b())}),i.on("scene",()=>i.ask("targets").then(P=>W(P)).catch(()=>{})),i.on("link",P=>{P&&i.ask("targets").then(k=>W(k)).catch(()=>{})});let W=P=>{h=P,t.replaceChildren(...P.map(k=>F("option",{},k.model||k.topic))),P[0]&&(s.textContent=P[0].topic),_()};return u.hidden=!0,u}var nE=80;function sx(i){let t=F("div",{class:"joints"}),e=ei("joints","Joints",t),n=[],s=l=>l.type!=="prismatic",r=(l,u)=>s(l)?`${(u*180/Math.PI).toFixed(1)}\xB0`:`${u.toFixed(3)} m`,o=(l,u)=>{let h=l.type==="continuous"||l.lower===null||l.upper===null?[-Math.PI,Math.PI]:[l.lower,l.upper],d=F("output",{class:"dim"}),f=F("input",{type:"range",min:h[0],max:h[1],step:(h[1]-h[0])/500,"aria-label":l.name,"data-joint":l.name,oninput:()=>i.send("joint",{name:l.name,value:+f.value})});return f.hidden=l.axes.length!==1||h[0]>=h[1],{joint:l,index:u,slider:f,value:d,row:F("label",{title:l.name},F("span",{},l.name.split("::").at(-1)),d,f)}},a=new Set,c=()=>i.connection.want("joints",n.length&&e.open&&!e.hidden||a.size?{}:null);return i.wantJoints=(l,u)=>{u?a.add(l):a.delete(l),c()},i.on("scene",l=>{let u=new Set(i.robots.map(h=>h.name));n=l.joints.map((h,d)=>[h,d]).filter(([h])=>u.has(h.name.split("::",1)[0])).slice(0,nE).map(([h,d])=>o(h,d)),t.replaceChildren(...n.map(({row:h})=>h)),e.hidden=n.length===0||l.recording,c()}),i.on("packet:joints",({arrays:{position:l}})=>{for(let{joint:u,index:h,slider:d,value:f}of n)Number.isNaN(l[h])||(f.textContent=r(u,l[h]),(document.activeElement!==d||!d.matches(":active"))&&(d.value=l[h]))}),i.on("state",l=>{for(let{slider:u}of n)u.disabled=!l.paused}),e.addEventListener("toggle",c),e.hidden=!0,e}function rx(i){let t=ff.map(([e,n,s])=>qo(`show-${e}`,n,s&&!(e==="shadows"&&i.stage.lite),r=>i.layers.set(e,r)));return ei("layers","Show",F("div",{class:"checks"},...t))}var Hr=new Oi,un=new R,_r=new R,en=new Xe,ox={X:new R(1,0,0),Y:new R(0,1,0),Z:new R(0,0,1)},ep={type:"change"},ax={type:"mouseDown",mode:null},lx={type:"mouseUp",mode:null},cx={type:"objectChange"},Su=class extends Rr{constructor(t,e=null){super(void 0,e);let n=new ip(this);this._root=n;let s=new sp;this._gizmo=s,n.add(s);let r=new rp;this._plane=r,n.add(r);let o=this;function a(E,S){let M=S;Object.defineProperty(o,E,{get:function(){return M!==void 0?M:S},set:function(T){M!==T&&(M=T,r[E]=T,s[E]=T,o.dispatchEvent({type:E+"-changed",value:T}),o.dispatchEvent(ep))}}),o[E]=S,r[E]=S,s[E]=S}a("camera",t),a("object",void 0),a("enabled",!0),a("axis",null),a("mode","translate"),a("translationSnap",null),a("rotationSnap",null),a("scaleSnap",null),a("space","world"),a("size",1),this.viewport=null,a("dragging",!1),a("showX",!0),a("showY",!0),a("showZ",!0),a("showXY",!0),a("showYZ",!0),a("showXZ",!0),a("showXYZE",!0),a("showE",!0),a("minX",-1/0),a("maxX",1/0),a("minY",-1/0),a("maxY",1/0),a("minZ",-1/0),a("maxZ",1/0);let c=new R,l=new R,u=new Xe,h=new Xe,d=new R,f=new Xe,p=new R,_=new R,m=new R,g=0,x=new R;a("worldPosition",c),a("worldPositionStart",l),a("worldQuaternion",u),a("worldQuaternionStart",h),a("cameraPosition",d),a("cameraQuaternion",f),a("pointStart",p),a("pointEnd",_),a("rotationAxis",m),a("rotationAngle",g),a("eye",x),this._offset=new R,this._startNorm=new R,this._endNorm=new R,this._cameraScale=new R,this._parentPosition=new R,this._parentQuaternion=new Xe,this._parentQuaternionInv=new Xe,this._parentScale=new R,this._worldScaleStart=new R,this._worldQuaternionInv=new Xe,this._worldScale=new R,this._positionStart=new R,this._quaternionStart=new Xe,this._scaleStart=new R,this._getPointer=iE.bind(this),this._onPointerDown=rE.bind(this),this._onPointerHover=sE.bind(this),this._onPointerMove=oE.bind(this),this._onPointerUp=aE.bind(this),e!==null&&this.connect(e)}connect(t){super.connect(t),this.domElement.addEventListener("pointerdown",this._onPointerDown),this.domElement.addEventListener("pointermove",this._onPointerHover),this.domElement.addEventListener("pointerup",this._onPointerUp),this.domElement.style.touchAction="none"}disconnect(){this.domElement.removeEventListener("pointerdown",this._onPointerDown),this.domElement.removeEventListener("pointermove",this._onPointerHover),this.domElement.removeEventListener("pointermove",this._onPointerMove),this.domElement.removeEventListener("pointerup",this._onPointerUp),this.domElement.style.touchAction=""}getHelper(){return this._root}pointerHover(t){if(this.object===void 0||this.dragging===!0)return;t!==null&&Hr.setFromCamera(t,this.camera);let e=np(this._gizmo.picker[this.mode],Hr);e?this.axis=e.object.name:this.axis=null}pointerDown(t){if(!(this.object===void 0||this.dragging===!0||t!=null&&t.button!==0)&&this.axis!==null){t!==null&&Hr.setFromCamera(t,this.camera);let e=np(this._plane,Hr,!0);e&&(this.object.updateMatrixWorld(),this.object.parent.updateMatrixWorld(),this._positionStart.copy(this.object.position),this._quaternionStart.copy(this.object.quaternion),this._scaleStart.copy(this.object.scale),this.object.matrixWorld.decompose(this.worldPositionStart,this.worldQuaternionStart,this._worldScaleStart),this.pointStart.copy(e.point).sub(this.worldPositionStart)),this.dragging=!0,ax.mode=this.mode,this.dispatchEvent(ax)}}pointerMove(t){let e=this.axis,n=this.mode,s=this.object,r=this.space;if(n==="scale"?r="local":(e==="E"||e==="XYZE"||e==="XYZ")&&(r="world"),s===void 0||e===null||this.dragging===!1||t!==null&&t.button!==-1)return;t!==null&&Hr.setFromCamera(t,this.camera);let o=np(this._plane,Hr,!0);if(o){if(this.pointEnd.copy(o.point).sub(this.worldPositionStart),n==="translate")this._offset.copy(this.pointEnd).sub(this.pointStart),r==="local"&&e!=="XYZ"&&this._offset.applyQuaternion(this._worldQuaternionInv),e.indexOf("X")===-1&&(this._offset.x=0),e.indexOf("Y")===-1&&(this._offset.y=0),e.indexOf("Z")===-1&&(this._offset.z=0),r==="local"&&e!=="XYZ"?this._offset.applyQuaternion(this._quaternionStart).divide(this._parentScale):this._offset.applyQuaternion(this._parentQuaternionInv).divide(this._parentScale),s.position.copy(this._offset).add(this._positionStart),this.translationSnap&&(r==="local"&&(s.position.applyQuaternion(en.copy(this._quaternionStart).invert()),e.search("X")!==-1&&(s.position.x=Math.round(s.position.x/this.translationSnap)*this.translationSnap),e.search("Y")!==-1&&(s.position.y=Math.round(s.position.y/this.translationSnap)*this.translationSnap),e.search("Z")!==-1&&(s.position.z=Math.round(s.position.z/this.translationSnap)*this.translationSnap),s.position.applyQuaternion(this._quaternionStart)),r==="world"&&(s.getWorldPosition(un),e.search("X")!==-1&&(un.x=Math.round(un.x/this.translationSnap)*this.translationSnap),e.search("Y")!==-1&&(un.y=Math.round(un.y/this.translationSnap)*this.translationSnap),e.search("Z")!==-1&&(un.z=Math.round(un.z/this.translationSnap)*this.translationSnap),s.position.copy(s.parent.worldToLocal(un)))),s.position.x=Math.max(this.minX,Math.min(this.maxX,s.position.x)),s.position.y=Math.max(this.minY,Math.min(this.maxY,s.position.y)),s.position.z=Math.max(this.minZ,Math.min(this.maxZ,s.position.z));else if(n==="scale"){if(e.search("XYZ")!==-1){let a=this.pointEnd.length()/this.pointStart.length();this.pointEnd.dot(this.pointStart)<0&&(a*=-1),_r.set(a,a,a)}else un.copy(this.pointStart),_r.copy(this.pointEnd),un.applyQuaternion(this._worldQuaternionInv),_r.applyQuaternion(this._worldQuaternionInv),_r.divide(un),e.search("X")===-1&&(_r.x=1),e.search("Y")===-1&&(_r.y=1),e.search("Z")===-1&&(_r.z=1);s.scale.copy(this._scaleStart).multiply(_r),this.scaleSnap&&(e.search("X")!==-1&&(s.scale.x=Math.round(s.scale.x/this.scaleSnap)*this.scaleSnap||this.scaleSnap),e.search("Y")!==-1&&(s.scale.y=Math.round(s.scale.y/this.scaleSnap)*this.scaleSnap||this.scaleSnap),e.search("Z")!==-1&&(s.scale.z=Math.round(s.scale.z/this.scaleSnap)*this.scaleSnap||this.scaleSnap))}else if(n==="rotate"){this._offset.copy(this.pointEnd).sub(this.pointStart);let a=20/this.worldPosition.distanceTo(un.setFromMatrixPosition(this.camera.matrixWorld)),c=!1;e==="XYZE"?(this.rotationAxis.copy(this._offset).cross(this.eye).normalize(),this.rotationAngle=this._offset.dot(un.copy(this.rotationAxis).cross(this.eye))*a):(e==="X"||e==="Y"||e==="Z")&&(this.rotationAxis.copy(ox[e]),un.copy(ox[e]),r==="local"&&un.applyQuaternion(this.worldQuaternion),un.cross(this.eye),un.length()===0?c=!0:this.rotationAngle=this._offset.dot(un.normalize())*a),(e==="E"||c)&&(this.rotationAxis.copy(this.eye),this.rotationAngle=this.pointEnd.angleTo(this.pointStart),this._startNorm.copy(this.pointStart).normalize(),this._endNorm.copy(this.pointEnd).normalize(),this.rotationAngle*=this._endNorm.cross(this._startNorm).dot(this.eye)<0?1:-1),this.rotationSnap&&(this.rotationAngle=Math.round(this.rotationAngle/this.rotationSnap)*this.rotationSnap),r==="local"&&e!=="E"&&e!=="XYZE"?(s.quaternion.copy(this._quaternionStart),s.quaternion.multiply(en.setFromAxisAngle(this.rotationAxis,this.rotationAngle)).normalize()):(this.rotationAxis.applyQuaternion(this._parentQuaternionInv),s.quaternion.copy(en.setFromAxisAngle(this.rotationAxis,this.rotationAngle)),s.quaternion.multiply(this._quaternionStart).normalize())}this.dispatchEvent(ep),this.dispatchEvent(cx)}}pointerUp(t){t!==null&&t.button!==0||(this.dragging&&this.axis!==null&&(lx.mode=this.mode,this.dispatchEvent(lx)),this.dragging=!1,this.axis=null)}dispose(){this.disconnect(),this._root.dispose()}attach(t){return this.object=t,this._root.visible=!0,this}detach(){return this.object=void 0,this.axis=null,this._root.visible=!1,this}reset(){this.enabled&&this.dragging&&(this.object.position.copy(this._positionStart),this.object.quaternion.copy(this._quaternionStart),this.object.scale.copy(this._scaleStart),this.dispatchEvent(ep),this.dispatchEvent(cx),this.pointStart.copy(this.pointEnd))}getRaycaster(){return Hr}getMode(){return this.mode}setMode(t){this.mode=t}setTranslationSnap(t){this.translationSnap=t}setRotationSnap(t){this.rotationSnap=t}setScaleSnap(t){this.scaleSnap=t}setSize(t){this.size=t}setSpace(t){this.space=t}setColors(t,e,n,s){let r=this._gizmo.materialLib;r.xAxis.color.set(t),r.yAxis.color.set(e),r.zAxis.color.set(n),r.active.color.set(s),r.xAxisTransparent.color.set(t),r.yAxisTransparent.color.set(e),r.zAxisTransparent.color.set(n),r.activeTransparent.color.set(s),r.xAxis._color&&r.xAxis._color.set(t),r.yAxis._color&&r.yAxis._color.set(e),r.zAxis._color&&r.zAxis._color.set(n),r.active._color&&r.active._color.set(s),r.xAxisTransparent._color&&r.xAxisTransparent._color.set(t),r.yAxisTransparent._color&&r.yAxisTransparent._color.set(e),r.zAxisTransparent._color&&r.zAxisTransparent._color.set(n),r.activeTransparent._color&&r.activeTransparent._color.set(s)}};function iE(i){if(this.domElement.ownerDocument.pointerLockElement)return{x:0,y:0,button:i.button};{let t=this.domElement.getBoundingClientRect(),e=this.viewport,n,s,r,o;return e!==null?(n=e.x,s=t.height-e.y-e.w,r=e.z,o=e.w):(n=0,s=0,r=t.width,o=t.height),{x:(i.clientX-t.left-n)/r*2-1,y:-(i.clientY-t.top-s)/o*2+1,button:i.button}}}function sE(i){if(this.enabled)switch(i.pointerType){case"mouse":case"pen":this.pointerHover(this._getPointer(i));break}}function rE(i){this.enabled&&(document.pointerLockElement||this.domElement.setPointerCapture(i.pointerId),this.domElement.addEventListener("pointermove",this._onPointerMove),this.pointerHover(this._getPointer(i)),this.pointerDown(this._getPointer(i)))}function oE(i){this.enabled&&this.pointerMove(this._getPointer(i))}function aE(i){this.enabled&&(this.domElement.releasePointerCapture(i.pointerId),this.domElement.removeEventListener("pointermove",this._onPointerMove),this.pointerUp(this._getPointer(i)))}function np(i,t,e){let n=t.intersectObject(i,!0);for(let s=0;s<n.length;s++)if(n[s].object.visible||e)return n[s];return!1}var _u=new Kn,He=new R(0,1,0),hx=new R(0,0,0),ux=new qt,xu=new Xe,vu=new Xe,_s=new R,Mu=new qt,Rl=new R(1,0,0),Wr=new R(0,1,0),Pl=new R(0,0,1),yu=new R,Al=new R,Cl=new R,ip=class extends De{constructor(t){super(),this.isTransformControlsRoot=!0,this.controls=t,this.visible=!1}updateMatrixWorld(t){let e=this.controls;e.object!==void 0&&(e.object.updateMatrixWorld(),e.object.parent===null?console.error("TransformControls: The attached 3D object must be a part of the scene graph."):e.object.parent.matrixWorld.decompose(e._parentPosition,e._parentQuaternion,e._parentScale),e.object.matrixWorld.decompose(e.worldPosition,e.worldQuaternion,e._worldScale),e._parentQuaternionInv.copy(e._parentQuaternion).invert(),e._worldQuaternionInv.copy(e.worldQuaternion).invert()),e.camera.updateMatrixWorld(),e.camera.matrixWorld.decompose(e.cameraPosition,e.cameraQuaternion,e._cameraScale),e.camera.isOrthographicCamera?e.camera.getWorldDirection(e.eye).negate():e.eye.copy(e.cameraPosition).sub(e.worldPosition).normalize(),this.parent&&(Mu.copy(this.parent.matrixWorld).invert(),Mu.decompose(this.position,this.quaternion,this.scale)),super.updateMatrixWorld(t)}dispose(){this.traverse(function(t){t.geometry&&t.geometry.dispose(),t.material&&t.material.dispose()})}},sp=class extends De{constructor(){super(),this.isTransformControlsGizmo=!0,this.type="TransformControlsGizmo";let t=new Vn({depthTest:!1,depthWrite:!1,fog:!1,toneMapped:!1,transparent:!0}),e=new pi({depthTest:!1,depthWrite:!1,fog:!1,toneMapped:!1,transparent:!0}),n=t.clone();n.opacity=.15;let s=e.clone();s.opacity=.5;let r=t.clone();r.color.setHex(16711680);let o=t.clone();o.color.setHex(65280);let a=t.clone();a.color.setHex(255);let c=t.clone();c.color.setHex(16711680),c.opacity=.5;let l=t.clone();l.color.setHex(65280),l.opacity=.5;let u=t.clone();u.color.setHex(255),u.opacity=.5;let h=t.clone();h.opacity=.25;let d=t.clone();d.color.setHex(16776960),d.opacity=.25;let f=t.clone();f.color.setHex(16776960);let p=t.clone();p.color.setHex(7895160),this.materialLib={xAxis:r,yAxis:o,zAxis:a,active:f,xAxisTransparent:c,yAxisTransparent:l,zAxisTransparent:u,activeTransparent:d};let _=new rn(0,.04,.1,12);_.translate(0,.05,0);let m=new Ye(.08,.08,.08);m.translate(0,.04,0);let g=new pe;g.setAttribute("position",new se([0,0,0,1,0,0],3));let x=new rn(.0075,.0075,.5,3);x.translate(0,.25,0);function E(k,Y){let G=new Os(k,.0075,3,64,Y*Math.PI*2);return G.rotateY(Math.PI/2),G.rotateX(Math.PI/2),G}function S(){let k=new pe;return k.setAttribute("position",new se([0,0,0,1,1,1],3)),k}let M={X:[[new Mt(_,r),[.5,0,0],[0,0,-Math.PI/2]],[new Mt(_,r),[-.5,0,0],[0,0,Math.PI/2]],[new Mt(x,r),[0,0,0],[0,0,-Math.PI/2]]],Y:[[new Mt(_,o),[0,.5,0]],[new Mt(_,o),[0,-.5,0],[Math.PI,0,0]],[new Mt(x,o)]],Z:[[new Mt(_,a),[0,0,.5],[Math.PI/2,0,0]],[new Mt(_,a),[0,0,-.5],[-Math.PI/2,0,0]],[new Mt(x,a),null,[Math.PI/2,0,0]]],XYZ:[[new Mt(new ir(.1,0),h),[0,0,0]]],XY:[[new Mt(new Ye(.15,.15,.01),u),[.15,.15,0]]],YZ:[[new Mt(new Ye(.15,.15,.01),c),[0,.15,.15],[0,Math.PI/2,0]]],XZ:[[new Mt(new Ye(.15,.15,.01),l),[.15,0,.15],[-Math.PI/2,0,0]]]},T={X:[[new Mt(new rn(.2,0,.6,4),n),[.3,0,0],[0,0,-Math.PI/2]],[new Mt(new rn(.2,0,.6,4),n),[-.3,0,0],[0,0,Math.PI/2]]],Y:[[new Mt(new rn(.2,0,.6,4),n),[0,.3,0]],[new Mt(new rn(.2,0,.6,4),n),[0,-.3,0],[0,0,Math.PI]]],Z:[[new Mt(new rn(.2,0,.6,4),n),[0,0,.3],[Math.PI/2,0,0]],[new Mt(new rn(.2,0,.6,4),n),[0,0,-.3],[-Math.PI/2,0,0]]],XYZ:[[new Mt(new ir(.2,0),n)]],XY:[[new Mt(new Ye(.2,.2,.01),n),[.15,.15,0]]],YZ:[[new Mt(new Ye(.2,.2,.01),n),[0,.15,.15],[0,Math.PI/2,0]]],XZ:[[new Mt(new Ye(.2,.2,.01),n),[.15,0,.15],[-Math.PI/2,0,0]]]},y={START:[[new Mt(new ir(.01,2),s),null,null,null,"helper"]],END:[[new Mt(new ir(.01,2),s),null,null,null,"helper"]],DELTA:[[new Qn(S(),s),null,null,null,"helper"]],X:[[new Qn(g,s),[-1e3,0,0],null,[1e6,1,1],"helper"]],Y:[[new Qn(g,s),[0,-1e3,0],[0,0,Math.PI/2],[1e6,1,1],"helper"]],Z:[[new Qn(g,s),[0,0,-1e3],[0,-Math.PI/2,0],[1e6,1,1],"helper"]]},b={XYZE:[[new Mt(E(.5,1),p),null,[0,Math.PI/2,0]]],X:[[new Mt(E(.5,.5),r)]],Y:[[new Mt(E(.5,.5),o),null,[0,0,-Math.PI/2]]],Z:[[new Mt(E(.5,.5),a),null,[0,Math.PI/2,0]]],E:[[new Mt(E(.75,1),d),null,[0,Math.PI/2,0]]]},U={AXIS:[[new Qn(g,s),[-1e3,0,0],null,[1e6,1,1],"helper"]]},I={XYZE:[[new Mt(new hi(.25,10,8),n)]],X:[[new Mt(new Os(.5,.1,4,24),n),[0,0,0],[0,-Math.PI/2,-Math.PI/2]]],Y:[[new Mt(new Os(.5,.1,4,24),n),[0,0,0],[Math.PI/2,0,0]]],Z:[[new Mt(new Os(.5,.1,4,24),n),[0,0,0],[0,0,-Math.PI/2]]],E:[[new Mt(new Os(.75,.1,2,24),n)]]},L={X:[[new Mt(m,r),[.5,0,0],[0,0,-Math.PI/2]],[new Mt(x,r),[0,0,0],[0,0,-Math.PI/2]],[new Mt(m,r),[-.5,0,0],[0,0,Math.PI/2]]],Y:[[new Mt(m,o),[0,.5,0]],[new Mt(x,o)],[new Mt(m,o),[0,-.5,0],[0,0,Math.PI]]],Z:[[new Mt(m,a),[0,0,.5],[Math.PI/2,0,0]],[new Mt(x,a),[0,0,0],[Math.PI/2,0,0]],[new Mt(m,a),[0,0,-.5],[-Math.PI/2,0,0]]],XY:[[new Mt(new Ye(.15,.15,.01),u),[.15,.15,0]]],YZ:[[new Mt(new Ye(.15,.15,.01),c),[0,.15,.15],[0,Math.PI/2,0]]],XZ:[[new Mt(new Ye(.15,.15,.01),l),[.15,0,.15],[-Math.PI/2,0,0]]],XYZ:[[new Mt(new Ye(.1,.1,.1),h)]]},B={X:[[new Mt(new rn(.2,0,.6,4),n),[.3,0,0],[0,0,-Math.PI/2]],[new Mt(new rn(.2,0,.6,4),n),[-.3,0,0],[0,0,Math.PI/2]]],Y:[[new Mt(new rn(.2,0,.6,4),n),[0,.3,0]],[new Mt(new rn(.2,0,.6,4),n),[0,-.3,0],[0,0,Math.PI]]],Z:[[new Mt(new rn(.2,0,.6,4),n),[0,0,.3],[Math.PI/2,0,0]],[new Mt(new rn(.2,0,.6,4),n),[0,0,-.3],[-Math.PI/2,0,0]]],XY:[[new Mt(new Ye(.2,.2,.01),n),[.15,.15,0]]],YZ:[[new Mt(new Ye(.2,.2,.01),n),[0,.15,.15],[0,Math.PI/2,0]]],XZ:[[new Mt(new Ye(.2,.2,.01),n),[.15,0,.15],[-Math.PI/2,0,0]]],XYZ:[[new Mt(new Ye(.2,.2,.2),n),[0,0,0]]]},W={X:[[new Qn(g,s),[-1e3,0,0],null,[1e6,1,1],"helper"]],Y:[[new Qn(g,s),[0,-1e3,0],[0,0,Math.PI/2],[1e6,1,1],"helper"]],Z:[[new Qn(g,s),[0,0,-1e3],[0,-Math.PI/2,0],[1e6,1,1],"helper"]]};function P(k){let Y=new De;for(let G in k)for(let at=k[G].length;at--;){let $=k[G][at][0].clone(),Q=k[G][at][1],it=k[G][at][2],ut=k[G][at][3],dt=k[G][at][4];$.name=G,$.tag=dt,Q&&$.position.set(Q[0],Q[1],Q[2]),it&&$.rotation.set(it[0],it[1],it[2]),ut&&$.scale.set(ut[0],ut[1],ut[2]),$.updateMatrix();let tt=$.geometry.clone();tt.applyMatrix4($.matrix),$.geometry=tt,$.renderOrder=1/0,$.position.set(0,0,0),$.rotation.set(0,0,0),$.scale.set(1,1,1),Y.add($)}return Y}this.gizmo={},this.picker={},this.helper={},this.add(this.gizmo.translate=P(M)),this.add(this.gizmo.rotate=P(b)),this.add(this.gizmo.scale=P(L)),this.add(this.picker.translate=P(T)),this.add(this.picker.rotate=P(I)),this.add(this.picker.scale=P(B)),this.add(this.helper.translate=P(y)),this.add(this.helper.rotate=P(U)),this.add(this.helper.scale=P(W)),this.picker.translate.visible=!1,this.picker.rotate.visible=!1,this.picker.scale.visible=!1}updateMatrixWorld(t){let n=(this.mode==="scale"?"local":this.space)==="local"?this.worldQuaternion:vu;this.gizmo.translate.visible=this.mode==="translate",this.gizmo.rotate.visible=this.mode==="rotate",this.gizmo.scale.visible=this.mode==="scale",this.helper.translate.visible=this.mode==="translate",this.helper.rotate.visible=this.mode==="rotate",this.helper.scale.visible=this.mode==="scale";let s=[];s=s.concat(this.picker[this.mode].children),s=s.concat(this.gizmo[this.mode].children),s=s.concat(this.helper[this.mode].children);for(let r=0;r<s.length;r++){let o=s[r];o.visible=!0,o.rotation.set(0,0,0),o.position.copy(this.worldPosition);let a;if(this.camera.isOrthographicCamera?a=(this.camera.top-this.camera.bottom)/this.camera.zoom:a=this.worldPosition.distanceTo(this.cameraPosition)*Math.min(1.9*Math.tan(Math.PI*this.camera.fov/360)/this.camera.zoom,7),o.scale.set(1,1,1).multiplyScalar(a*this.size/4),o.tag==="helper"){o.visible=!1,o.name==="AXIS"?(o.visible=!!this.axis,this.axis==="X"&&(en.setFromEuler(_u.set(0,0,0)),o.quaternion.copy(n).multiply(en),Math.abs(He.copy(Rl).applyQuaternion(n).dot(this.eye))>.9&&(o.visible=!1)),this.axis==="Y"&&(en.setFromEuler(_u.set(0,0,Math.PI/2)),o.quaternion.copy(n).multiply(en),Math.abs(He.copy(Wr).applyQuaternion(n).dot(this.eye))>.9&&(o.visible=!1)),this.axis==="Z"&&(en.setFromEuler(_u.set(0,Math.PI/2,0)),o.quaternion.copy(n).multiply(en),Math.abs(He.copy(Pl).applyQuaternion(n).dot(this.eye))>.9&&(o.visible=!1)),this.axis==="XYZE"&&(en.setFromEuler(_u.set(0,Math.PI/2,0)),He.copy(this.rotationAxis),o.quaternion.setFromRotationMatrix(ux.lookAt(hx,He,Wr)),o.quaternion.multiply(en),o.visible=this.dragging),this.axis==="E"&&(o.visible=!1)):o.name==="START"?(o.position.copy(this.worldPositionStart),o.visible=this.dragging):o.name==="END"?(o.position.copy(this.worldPosition),o.visible=this.dragging):o.name==="DELTA"?(o.position.copy(this.worldPositionStart),o.quaternion.copy(this.worldQuaternionStart),un.set(1e-10,1e-10,1e-10).add(this.worldPositionStart).sub(this.worldPosition).multiplyScalar(-1),un.applyQuaternion(this.worldQuaternionStart.clone().invert()),o.scale.copy(un),o.visible=this.dragging):(o.quaternion.copy(n),this.dragging?o.position.copy(this.worldPositionStart):o.position.copy(this.worldPosition),this.axis&&(o.visible=this.axis.search(o.name)!==-1));continue}o.quaternion.copy(n),this.mode==="translate"||this.mode==="scale"?(o.name==="X"&&Math.abs(He.copy(Rl).applyQuaternion(n).dot(this.eye))>.99&&(o.scale.set(1e-10,1e-10,1e-10),o.visible=!1),o.name==="Y"&&Math.abs(He.copy(Wr).applyQuaternion(n).dot(this.eye))>.99&&(o.scale.set(1e-10,1e-10,1e-10),o.visible=!1),o.name==="Z"&&Math.abs(He.copy(Pl).applyQuaternion(n).dot(this.eye))>.99&&(o.scale.set(1e-10,1e-10,1e-10),o.visible=!1),o.name==="XY"&&Math.abs(He.copy(Pl).applyQuaternion(n).dot(this.eye))<.2&&(o.scale.set(1e-10,1e-10,1e-10),o.visible=!1),o.name==="YZ"&&Math.abs(He.copy(Rl).applyQuaternion(n).dot(this.eye))<.2&&(o.scale.set(1e-10,1e-10,1e-10),o.visible=!1),o.name==="XZ"&&Math.abs(He.copy(Wr).applyQuaternion(n).dot(this.eye))<.2&&(o.scale.set(1e-10,1e-10,1e-10),o.visible=!1)):this.mode==="rotate"&&(xu.copy(n),He.copy(this.eye).applyQuaternion(en.copy(n).invert()),o.name.search("E")!==-1&&o.quaternion.setFromRotationMatrix(ux.lookAt(this.eye,hx,Wr)),o.name==="X"&&(en.setFromAxisAngle(Rl,Math.atan2(-He.y,He.z)),en.multiplyQuaternions(xu,en),o.quaternion.copy(en)),o.name==="Y"&&(en.setFromAxisAngle(Wr,Math.atan2(He.x,He.z)),en.multiplyQuaternions(xu,en),o.quaternion.copy(en)),o.name==="Z"&&(en.setFromAxisAngle(Pl,Math.atan2(He.y,He.x)),en.multiplyQuaternions(xu,en),o.quaternion.copy(en))),o.visible=o.visible&&(o.name.indexOf("X")===-1||this.showX),o.visible=o.visible&&(o.name.indexOf("Y")===-1||this.showY),o.visible=o.visible&&(o.name.indexOf("Z")===-1||this.showZ),o.visible=o.visible&&(o.name.indexOf("E")===-1||this.showX&&this.showY&&this.showZ),o.visible=o.visible&&(o.name.indexOf("XY")===-1||this.showXY),o.visible=o.visible&&(o.name.indexOf("YZ")===-1||this.showYZ),o.visible=o.visible&&(o.name.indexOf("XZ")===-1||this.showXZ),o.visible=o.visible&&(o.name!=="E"||this.showE),o.visible=o.visible&&(o.name!=="XYZE"||this.showXYZE),o.material._color=o.material._color||o.material.color.clone(),o.material._opacity=o.material._opacity||o.material.opacity,o.material.color.copy(o.material._color),o.material.opacity=o.material._opacity,this.enabled&&this.axis&&(o.name===this.axis?(o.material.color.copy(this.materialLib.active.color),o.material.opacity=1):this.axis.split("").some(function(c){return o.name===c})&&(o.material.color.copy(this.materialLib.active.color),o.material.opacity=1))}super.updateMatrixWorld(t)}},rp=class extends Mt{constructor(){super(new Ui(1e5,1e5,2,2),new Vn({visible:!1,wireframe:!0,side:Sn,transparent:!0,opacity:.1,toneMapped:!1})),this.isTransformControlsPlane=!0,this.type="TransformControlsPlane"}updateMatrixWorld(t){let e=this.space;switch(this.position.copy(this.worldPosition),this.mode==="scale"&&(e="local"),yu.copy(Rl).applyQuaternion(e==="local"?this.worldQuaternion:vu),Al.copy(Wr).applyQuaternion(e==="local"?this.worldQuaternion:vu),Cl.copy(Pl).applyQuaternion(e==="local"?this.worldQuaternion:vu),He.copy(Al),this.mode){case"translate":case"scale":switch(this.axis){case"X":He.copy(this.eye).cross(yu),_s.copy(yu).cross(He);break;case"Y":He.copy(this.eye).cross(Al),_s.copy(Al).cross(He);break;case"Z":He.copy(this.eye).cross(Cl),_s.copy(Cl).cross(He);break;case"XY":_s.copy(Cl);break;case"YZ":_s.copy(yu);break;case"XZ":He.copy(Cl),_s.copy(Al);break;case"XYZ":case"E":_s.set(0,0,0);break}break;default:_s.set(0,0,0)}_s.length()===0?this.quaternion.copy(this.cameraQuaternion):(Mu.lookAt(un.set(0,0,0),_s,He),this.quaternion.setFromRotationMatrix(Mu)),super.updateMatrixWorld(t)}};var lE=60;function dx(i){let t=F("select",{id:"spawn-model",title:"Model to spawn"}),e=F("button",{id:"spawn",title:"Click on the ground where the model shall stand",onclick:()=>m(!i.clickMode)},"Place"),n=F("div",{class:"dim",id:"edited"}),s=(y,b,U,I)=>F("button",{id:y,title:U,onclick:I},b),r=F("div",{class:"row"},s("move-model","Move","Move the selected model along the arrows",()=>E("translate")),s("turn-model","Turn","Turn the selected model by the rings",()=>E("rotate")),s("delete-model","Delete","Remove the selected model from the world",()=>T())),o=ei("models","Models",F("div",{class:"row"},t,e),n,r),a=new De,c=new Su(i.stage.camera,i.stage.canvas),l=c.getHelper();i.stage.helpers.add(a,l),c.setSize(.8);let u={},h=null,d=null,f=null,p=()=>i.selected?.split("::",1)[0]??null,_=()=>{n.textContent=p()??"select a model to move, turn or delete it";for(let y of r.children)y.disabled=p()===null;r.children[0].classList.toggle("on",h!==null&&c.mode==="translate"),r.children[1].classList.toggle("on",h!==null&&c.mode==="rotate"),e.classList.toggle("on",!!i.clickMode&&h===null)},m=y=>{S(),i.clickMode=y?g:null,i.stage.canvas.style.cursor=y?"crosshair":"",_()},g=async(y,b)=>{let U=y?.point??i.groundAt(b);if(!U)return;m(!1);let I=u[t.value],L=t.value,B=1;for(;i.models.has(L);)L=`${t.value}_${B++}`;try{f=await i.ask("spawn",{source:I,name:L,x:U.x,y:U.y}),x()}catch(W){i.report(W.message)}},x=()=>{i.models.has(f)&&(i.select(i.models.get(f).links[0]??f),f=null)},E=async y=>{let b=p(),U=h===b&&c.mode===y;if(S(),!(U||b===null)){try{Mn(await i.ask("model_pose",{name:b}),0,a.matrix)}catch(I){i.report(I.message);return}a.matrix.decompose(a.position,a.quaternion,a.scale),h=b,c.setMode(y),c.attach(a),i.clickMode=I=>{c.axis||(S(),i.select(I&&!I.isFloor?I.link:null))},_(),i.stage.invalidate()}},S=()=>{h=null,i.clickMode=null,c.detach(),_(),i.stage.invalidate()},M=()=>{d=null;let{x:y,y:b,z:U,w:I}=a.quaternion;h&&i.send("move",{name:h,position:a.position.toArray(),quaternion:[I,y,b,U]})};c.addEventListener("objectChange",()=>{d??=setTimeout(M,lE)}),c.addEventListener("change",()=>i.stage.invalidate()),c.addEventListener("dragging-changed",({value:y})=>{i.stage.controls.enabled=!y&&i.views.sensor===null,y||(clearTimeout(d),M())});let T=()=>{let y=p();S(),i.send("remove",{name:y}).then(()=>i.select(null))};return addEventListener("keydown",y=>{y.key==="Escape"&&i.clickMode&&m(!1)}),i.on("select",()=>{h!==null&&h!==p()&&S(),_()}),i.on("scene",y=>{o.hidden=!!y.recording,!o.hidden&&(i.selected&&!i.models.has(p())&&i.select(null),x(),_())}),i.on("link",y=>{!y||i.player||i.ask("spawnable").then(b=>{u=b,t.replaceChildren(...Object.keys(b).map(U=>F("option",{},U)))}).catch(()=>{})}),i.modelEditor={gizmo:c,proxy:a,get edited(){return h}},o.hidden=!0,_(),o}function fx(i){let t=F("div",{class:"selection"}),e=F("button",{onclick:()=>i.views.follow(r)},"Follow"),n=ei("selection","Selected",t,e),s=new el(new sn,16765502);s.material.depthTest=!1,s.visible=!1,i.stage.helpers.add(s);let r=null,o=()=>{if(n.hidden=i.selected===null,s.visible=i.selected!==null,i.selected===null)return;let a=i.scene.frames.find(([l])=>l===i.selected);r=a?a[1]:i.scene.bodies.indexOf(i.selected),e.hidden=!(r>0);let c=[i.selected];if(r>0){let l=i.world.bodies[r],u=new R().setFromMatrixPosition(l),h=new Kn().setFromRotationMatrix(l,"ZYX"),d=f=>(f*180/Math.PI).toFixed(1);c.push(`x ${u.x.toFixed(3)}  y ${u.y.toFixed(3)}  z ${u.z.toFixed(3)} m`),c.push(`roll ${d(h.x)}  pitch ${d(h.y)}  yaw ${d(h.z)}\xB0`)}else c.push("static");t.replaceChildren(...c.map(l=>F("div",{},l)))};return i.on("select",o),i.on("state",()=>{i.selected!==null&&o()}),i.stage.before.push(()=>{i.selected!==null&&s.box.copy(i.world.boxOf(a=>i.world.linkOf(a)===i.selected))}),n.hidden=!0,n}function px(i){let t=F("div",{class:"tree"}),e=r=>r.split("::").at(-1),n=r=>F("button",{class:"leaf",title:r,"data-link":r,onclick:()=>i.select(r)},e(r)),s=r=>{let o=F("details",{class:r.static?"static":""},F("summary",{title:r.scoped},r.name));return o.addEventListener("toggle",()=>{o.open&&o.childElementCount===1&&o.append(...r.links.map(n),...r.models.map(s))}),o};return i.on("scene",r=>t.replaceChildren(...r.models.map(s))),i.on("select",r=>{for(let o of t.querySelectorAll(".leaf"))o.classList.toggle("selected",o.dataset.link===r)}),ei("tree","World",t)}var mx=[["left",px],["left",fx],["left",dx],["right",rx],["right",ex],["right",o0],["right",ix],["right",sx],["right",tx]];var bu=class{constructor(t,e){this.app=t,this.recording=e;let{times:n}=e.arrays;this.times=n,this.length=n[n.length-1],this.size=e.arrays.poses.length/n.length,this.time=0,this.pace=1,this.isPlaying=!1,this.bar=F("input",{type:"range",id:"seek",min:0,max:this.length,step:.01,value:0,"aria-label":"Time",oninput:()=>this.seek(+this.bar.value)}),document.getElementById("view").append(this.bar)}async ask(t,{value:e,count:n}={}){if(t==="pause")this.setPlaying(!e);else if(t==="step")this.setPlaying(!1),this.seek(this.time+n/15);else if(t==="reset")this.seek(0);else if(t==="pace")this.pace=e??5,this.show();else{if(t==="travel")return this.paths(this.time);throw new Error("a recording cannot do this")}return null}setPlaying(t){this.isPlaying=t&&this.length>0,this.isPlaying&&this.time>=this.length&&(this.time=0),this.last=performance.now(),this.isPlaying&&requestAnimationFrame(()=>this.advance()),this.show()}advance(){if(!this.isPlaying)return;let t=performance.now();this.time+=this.pace*Math.min(t-this.last,250)/1e3,this.last=t,this.time>=this.length&&(this.time=this.length,this.isPlaying=!1),this.show(),this.isPlaying&&requestAnimationFrame(()=>this.advance())}seek(t){this.time=Math.min(Math.max(t,0),this.length),this.show(),this.app.layers.setPaths(this.paths(this.time)),this.app.stage.invalidate()}show(){let{times:t,size:e,recording:n}=this,s=t.length,r=Math.min(this.time*(s-1)/(this.length||1),s-1),o=Math.floor(r),a=Math.min(o+1,s-1),c=n.arrays.poses.subarray(o*e,o*e+e),l=n.arrays.poses.subarray(a*e,a*e+e),u=new Float32Array(e),h=r-o;for(let f=0;f<e;f+=7){let p=c[f+3]*l[f+3]+c[f+4]*l[f+4]+c[f+5]*l[f+5]+c[f+6]*l[f+6]<0?-1:1;for(let _=0;_<3;_++)u[f+_]=c[f+_]+h*(l[f+_]-c[f+_]);for(let _=3;_<7;_++)u[f+_]=c[f+_]+h*(p*l[f+_]-c[f+_])}this.bar.value=this.time;let d=n.begin+this.time;this.app.receive({kind:"state",revision:this.app.scene.revision,time:d,tick:Math.round(1e3*this.time),paused:!this.isPlaying,pace:this.pace,rtf:this.pace,contacts:0,arrays:{poses:u}}),this.showScans(),this.showDisplays()}displayTopics(){return(this.recording.displays??[]).map(({topic:t,type:e})=>[t,e])}showDisplays(t=!1){this.drawn??=new Map,(this.recording.displays??[]).forEach(({topic:e,times:n,ends:s},r)=>{if(!this.app.displays.wanted.has(e)){this.drawn.delete(e);return}let o=n.findLastIndex(l=>l<=this.time+1e-6);if(!t&&this.drawn.get(e)===o)return;this.drawn.set(e,o);let a=this.recording.arrays[`display${r}`],c=o<0?{kind:`display:${e}`,problems:[],groups:[],arrays:{}}:ji(a.slice(o?s[o-1]:0,s[o]).buffer);this.app.receive(c)})}showScans(){let t=new qt,e=new R,n=[],s=[],r=[];this.recording.lidars.forEach((o,a)=>{let{[`lidar${a}.times`]:c,[`lidar${a}.poses`]:l,[`lidar${a}.ranges`]:u}=this.recording.arrays,h=c.findLastIndex(d=>d<=this.time+1e-6);if(!(h<0)){Mn(l,7*h,t),r.push(l[7*h],l[7*h+1],l[7*h+2]);for(let d=0;d<o.count;d++){let f=u[h*o.count+d]/1e3,p=o.low+d*o.step;f>0?s.push(...e.set(f*Math.cos(p),f*Math.sin(p),0).applyMatrix4(t)):s.push(NaN,NaN,NaN)}n.push([o.topic,o.count])}}),this.app.receive({kind:"lidar",lidars:n,arrays:{points:Float32Array.from(s),origins:Float32Array.from(r)}})}paths(t){let e={},n=[...this.app.scene.arrays.moving];for(let[s,r]of this.app.bodyOf){let o=7*n.indexOf(r),a=[];for(let c=0;c<this.times.length&&this.times[c]<=t;c++){let l=c*this.size+o,u=[...this.recording.arrays.poses.subarray(l,l+3)],h=a.at(-1);(!h||Math.hypot(u[0]-h[0],u[1]-h[1],u[2]-h[2])>.015)&&a.push(u)}e[s]=a}return e}};async function gx(i){return window.simkitFile?ji(window.simkitFile.recording):ji(await(await i.fetch("recording")).arrayBuffer())}var _x={type:"change"},ap={type:"start"},yx={type:"end"},wu=new Is,xx=new En,cE=Math.cos(70*ul.DEG2RAD),Dn=new R,_i=2*Math.PI,Re={NONE:-1,ROTATE:0,DOLLY:1,PAN:2,TOUCH_ROTATE:3,TOUCH_PAN:4,TOUCH_DOLLY_PAN:5,TOUCH_DOLLY_ROTATE:6},op=1e-6,Tu=class extends Rr{constructor(t,e=null){super(t,e),this.state=Re.NONE,this.target=new R,this.cursor=new R,this.minDistance=0,this.maxDistance=1/0,this.minZoom=0,this.maxZoom=1/0,this.minTargetRadius=0,this.maxTargetRadius=1/0,this.minPolarAngle=0,this.maxPolarAngle=Math.PI,this.minAzimuthAngle=-1/0,this.maxAzimuthAngle=1/0,this.enableDamping=!1,this.dampingFactor=.05,this.enableZoom=!0,this.zoomSpeed=1,this.enableRotate=!0,this.rotateSpeed=1,this.keyRotateSpeed=1,this.enablePan=!0,this.panSpeed=1,this.screenSpacePanning=!0,this.keyPanSpeed=7,this.zoomToCursor=!1,this.autoRotate=!1,this.autoRotateSpeed=2,this.keys={LEFT:"ArrowLeft",UP:"ArrowUp",RIGHT:"ArrowRight",BOTTOM:"ArrowDown"},this.mouseButtons={LEFT:cr.ROTATE,MIDDLE:cr.DOLLY,RIGHT:cr.PAN},this.touches={ONE:hr.ROTATE,TWO:hr.DOLLY_PAN},this.target0=this.target.clone(),this.position0=this.object.position.clone(),this.zoom0=this.object.zoom,this._cursorStyle="auto",this._domElementKeyEvents=null,this._lastPosition=new R,this._lastQuaternion=new Xe,this._lastTargetPosition=new R,this._quat=new Xe().setFromUnitVectors(t.up,new R(0,1,0)),this._quatInverse=this._quat.clone().invert(),this._spherical=new Fo,this._sphericalDelta=new Fo,this._scale=1,this._panOffset=new R,this._rotateStart=new kt,this._rotateEnd=new kt,this._rotateDelta=new kt,this._panStart=new kt,this._panEnd=new kt,this._panDelta=new kt,this._dollyStart=new kt,this._dollyEnd=new kt,this._dollyDelta=new kt,this._dollyDirection=new R,this._mouse=new kt,this._performCursorZoom=!1,this._pointers=[],this._pointerPositions={},this._controlActive=!1,this._onPointerMove=uE.bind(this),this._onPointerDown=hE.bind(this),this._onPointerUp=dE.bind(this),this._onContextMenu=yE.bind(this),this._onMouseWheel=mE.bind(this),this._onKeyDown=gE.bind(this),this._onTouchStart=_E.bind(this),this._onTouchMove=xE.bind(this),this._onMouseDown=fE.bind(this),this._onMouseMove=pE.bind(this),this._interceptControlDown=vE.bind(this),this._interceptControlUp=SE.bind(this),this.domElement!==null&&this.connect(this.domElement),this.update()}set cursorStyle(t){this._cursorStyle=t,t==="grab"?this.domElement.style.cursor="grab":this.domElement.style.cursor="auto"}get cursorStyle(){return this._cursorStyle}connect(t){super.connect(t),this.domElement.addEventListener("pointerdown",this._onPointerDown),this.domElement.addEventListener("pointercancel",this._onPointerUp),this.domElement.addEventListener("contextmenu",this._onContextMenu),this.domElement.addEventListener("wheel",this._onMouseWheel,{passive:!1}),this.domElement.ownerDocument.addEventListener("keydown",this._interceptControlDown,{passive:!0,capture:!0}),this.domElement.style.touchAction="none"}disconnect(){this.state=Re.NONE,this.domElement.removeEventListener("pointerdown",this._onPointerDown),this.domElement.ownerDocument.removeEventListener("pointermove",this._onPointerMove),this.domElement.ownerDocument.removeEventListener("pointerup",this._onPointerUp),this.domElement.removeEventListener("pointercancel",this._onPointerUp),this.domElement.removeEventListener("wheel",this._onMouseWheel),this.domElement.removeEventListener("contextmenu",this._onContextMenu),this.stopListenToKeyEvents(),this.domElement.ownerDocument.removeEventListener("keydown",this._interceptControlDown,{capture:!0}),this.domElement.ownerDocument.removeEventListener("keyup",this._interceptControlUp,{capture:!0}),this._controlActive=!1,this._pointers.length=0,this._pointerPositions={},this.domElement.style.touchAction="",this.domElement.style.cursor="auto"}dispose(){this.disconnect()}getPolarAngle(){return this._spherical.phi}getAzimuthalAngle(){return this._spherical.theta}getDistance(){return this.object.position.distanceTo(this.target)}listenToKeyEvents(t){t.addEventListener("keydown",this._onKeyDown),this._domElementKeyEvents=t}stopListenToKeyEvents(){this._domElementKeyEvents!==null&&(this._domElementKeyEvents.removeEventListener("keydown",this._onKeyDown),this._domElementKeyEvents=null)}saveState(){this.target0.copy(this.target),this.position0.copy(this.object.position),this.zoom0=this.object.zoom}reset(){this.target.copy(this.target0),this.object.position.copy(this.position0),this.object.zoom=this.zoom0,this.object.updateProjectionMatrix(),this.dispatchEvent(_x),this.update(),this.state=Re.NONE}pan(t,e){this._pan(t,e),this.update()}dollyIn(t){this._dollyIn(t),this.update()}dollyOut(t){this._dollyOut(t),this.update()}rotateLeft(t){this._rotateLeft(t),this.update()}rotateUp(t){this._rotateUp(t),this.update()}update(t=null){let e=this.object.position;Dn.copy(e).sub(this.target),Dn.applyQuaternion(this._quat),this._spherical.setFromVector3(Dn),this.autoRotate&&this.state===Re.NONE&&this._rotateLeft(this._getAutoRotationAngle(t)),this.enableDamping?(this._spherical.theta+=this._sphericalDelta.theta*this.dampingFactor,this._spherical.phi+=this._sphericalDelta.phi*this.dampingFactor):(this._spherical.theta+=this._sphericalDelta.theta,this._spherical.phi+=this._sphericalDelta.phi);let n=this.minAzimuthAngle,s=this.maxAzimuthAngle;isFinite(n)&&isFinite(s)&&(n<-Math.PI?n+=_i:n>Math.PI&&(n-=_i),s<-Math.PI?s+=_i:s>Math.PI&&(s-=_i),n<=s?this._spherical.theta=Math.max(n,Math.min(s,this._spherical.theta)):this._spherical.theta=this._spherical.theta>(n+s)/2?Math.max(n,this._spherical.theta):Math.min(s,this._spherical.theta)),this._spherical.phi=Math.max(this.minPolarAngle,Math.min(this.maxPolarAngle,this._spherical.phi)),this._spherical.makeSafe(),this.enableDamping===!0?this.target.addScaledVector(this._panOffset,this.dampingFactor):this.target.add(this._panOffset),this.target.sub(this.cursor),this.target.clampLength(this.minTargetRadius,this.maxTargetRadius),this.target.add(this.cursor);let r=!1;if(this.zoomToCursor&&this._performCursorZoom||this.object.isOrthographicCamera)this._spherical.radius=this._clampDistance(this._spherical.radius);else{let o=this._spherical.radius;this._spherical.radius=this._clampDistance(this._spherical.radius*this._scale),r=o!=this._spherical.radius}if(Dn.setFromSpherical(this._spherical),Dn.applyQuaternion(this._quatInverse),e.copy(this.target).add(Dn),this.object.lookAt(this.target),this.enableDamping===!0?(this._sphericalDelta.theta*=1-this.dampingFactor,this._sphericalDelta.phi*=1-this.dampingFactor,this._panOffset.multiplyScalar(1-this.dampingFactor)):(this._sphericalDelta.set(0,0,0),this._panOffset.set(0,0,0)),this.zoomToCursor&&this._performCursorZoom){let o=null;if(this.object.isPerspectiveCamera){let a=Dn.length();o=this._clampDistance(a*this._scale);let c=a-o;this.object.position.addScaledVector(this._dollyDirection,c),this.object.updateMatrixWorld(),r=!!c}else if(this.object.isOrthographicCamera){let a=new R(this._mouse.x,this._mouse.y,0);a.unproject(this.object);let c=this.object.zoom;this.object.zoom=Math.max(this.minZoom,Math.min(this.maxZoom,this.object.zoom/this._scale)),this.object.updateProjectionMatrix(),r=c!==this.object.zoom;let l=new R(this._mouse.x,this._mouse.y,0);l.unproject(this.object),this.object.position.sub(l).add(a),this.object.updateMatrixWorld(),o=Dn.length()}else console.warn("WARNING: OrbitControls.js encountered an unknown camera type - zoom to cursor disabled."),this.zoomToCursor=!1;o!==null&&(this.screenSpacePanning?this.target.set(0,0,-1).transformDirection(this.object.matrix).multiplyScalar(o).add(this.object.position):(wu.origin.copy(this.object.position),wu.direction.set(0,0,-1).transformDirection(this.object.matrix),Math.abs(this.object.up.dot(wu.direction))<cE?this.object.lookAt(this.target):(xx.setFromNormalAndCoplanarPoint(this.object.up,this.target),wu.intersectPlane(xx,this.target))))}else if(this.object.isOrthographicCamera){let o=this.object.zoom;this.object.zoom=Math.max(this.minZoom,Math.min(this.maxZoom,this.object.zoom/this._scale)),o!==this.object.zoom&&(this.object.updateProjectionMatrix(),r=!0)}return this._scale=1,this._performCursorZoom=!1,r||this._lastPosition.distanceToSquared(this.object.position)>op||8*(1-this._lastQuaternion.dot(this.object.quaternion))>op||this._lastTargetPosition.distanceToSquared(this.target)>op?(this.dispatchEvent(_x),this._lastPosition.copy(this.object.position),this._lastQuaternion.copy(this.object.quaternion),this._lastTargetPosition.copy(this.target),!0):!1}_getAutoRotationAngle(t){return t!==null?_i/60*this.autoRotateSpeed*t:_i/60/60*this.autoRotateSpeed}_getZoomScale(t){let e=Math.abs(t*.01);return Math.pow(.95,this.zoomSpeed*e)}_rotateLeft(t){this._sphericalDelta.theta-=t}_rotateUp(t){this._sphericalDelta.phi-=t}_panLeft(t,e){Dn.setFromMatrixColumn(e,0),Dn.multiplyScalar(-t),this._panOffset.add(Dn)}_panUp(t,e){this.screenSpacePanning===!0?Dn.setFromMatrixColumn(e,1):(Dn.setFromMatrixColumn(e,0),Dn.crossVectors(this.object.up,Dn)),Dn.multiplyScalar(t),this._panOffset.add(Dn)}_pan(t,e){let n=this.domElement;if(this.object.isPerspectiveCamera){let s=this.object.position;Dn.copy(s).sub(this.target);let r=Dn.length();r*=Math.tan(this.object.fov/2*Math.PI/180),this._panLeft(2*t*r/n.clientHeight,this.object.matrix),this._panUp(2*e*r/n.clientHeight,this.object.matrix)}else this.object.isOrthographicCamera?(this._panLeft(t*(this.object.right-this.object.left)/this.object.zoom/n.clientWidth,this.object.matrix),this._panUp(e*(this.object.top-this.object.bottom)/this.object.zoom/n.clientHeight,this.object.matrix)):(console.warn("WARNING: OrbitControls.js encountered an unknown camera type - pan disabled."),this.enablePan=!1)}_dollyOut(t){this.object.isPerspectiveCamera||this.object.isOrthographicCamera?this._scale/=t:(console.warn("WARNING: OrbitControls.js encountered an unknown camera type - dolly/zoom disabled."),this.enableZoom=!1)}_dollyIn(t){this.object.isPerspectiveCamera||this.object.isOrthographicCamera?this._scale*=t:(console.warn("WARNING: OrbitControls.js encountered an unknown camera type - dolly/zoom disabled."),this.enableZoom=!1)}_updateZoomParameters(t,e){if(!this.zoomToCursor)return;this._performCursorZoom=!0;let n=this.domElement.getBoundingClientRect(),s=t-n.left,r=e-n.top,o=n.width,a=n.height;this._mouse.x=s/o*2-1,this._mouse.y=-(r/a)*2+1,this._dollyDirection.set(this._mouse.x,this._mouse.y,1).unproject(this.object).sub(this.object.position).normalize()}_clampDistance(t){return Math.max(this.minDistance,Math.min(this.maxDistance,t))}_handleMouseDownRotate(t){this._rotateStart.set(t.clientX,t.clientY)}_handleMouseDownDolly(t){this._updateZoomParameters(t.clientX,t.clientY),this._dollyStart.set(t.clientX,t.clientY)}_handleMouseDownPan(t){this._panStart.set(t.clientX,t.clientY)}_handleMouseMoveRotate(t){this._rotateEnd.set(t.clientX,t.clientY),this._rotateDelta.subVectors(this._rotateEnd,this._rotateStart).multiplyScalar(this.rotateSpeed);let e=this.domElement;this._rotateLeft(_i*this._rotateDelta.x/e.clientHeight),this._rotateUp(_i*this._rotateDelta.y/e.clientHeight),this._rotateStart.copy(this._rotateEnd),this.update()}_handleMouseMoveDolly(t){this._dollyEnd.set(t.clientX,t.clientY),this._dollyDelta.subVectors(this._dollyEnd,this._dollyStart),this._dollyDelta.y>0?this._dollyOut(this._getZoomScale(this._dollyDelta.y)):this._dollyDelta.y<0&&this._dollyIn(this._getZoomScale(this._dollyDelta.y)),this._dollyStart.copy(this._dollyEnd),this.zoomToCursor&&(this._performCursorZoom=!0,this._dollyDirection.set(this._mouse.x,this._mouse.y,1).unproject(this.object).sub(this.object.position).normalize()),this.update()}_handleMouseMovePan(t){this._panEnd.set(t.clientX,t.clientY),this._panDelta.subVectors(this._panEnd,this._panStart).multiplyScalar(this.panSpeed),this._pan(this._panDelta.x,this._panDelta.y),this._panStart.copy(this._panEnd),this.update()}_handleMouseWheel(t){this._updateZoomParameters(t.clientX,t.clientY),t.deltaY<0?this._dollyIn(this._getZoomScale(t.deltaY)):t.deltaY>0&&this._dollyOut(this._getZoomScale(t.deltaY)),this.update()}_handleKeyDown(t){let e=!1;switch(t.code){case this.keys.UP:t.ctrlKey||t.metaKey||t.shiftKey?this.enableRotate&&this._rotateUp(_i*this.keyRotateSpeed/this.domElement.clientHeight):this.enablePan&&this._pan(0,this.keyPanSpeed),e=!0;break;case this.keys.BOTTOM:t.ctrlKey||t.metaKey||t.shiftKey?this.enableRotate&&this._rotateUp(-_i*this.keyRotateSpeed/this.domElement.clientHeight):this.enablePan&&this._pan(0,-this.keyPanSpeed),e=!0;break;case this.keys.LEFT:t.ctrlKey||t.metaKey||t.shiftKey?this.enableRotate&&this._rotateLeft(_i*this.keyRotateSpeed/this.domElement.clientHeight):this.enablePan&&this._pan(this.keyPanSpeed,0),e=!0;break;case this.keys.RIGHT:t.ctrlKey||t.metaKey||t.shiftKey?this.enableRotate&&this._rotateLeft(-_i*this.keyRotateSpeed/this.domElement.clientHeight):this.enablePan&&this._pan(-this.keyPanSpeed,0),e=!0;break}e&&(t.preventDefault(),this.update())}_handleTouchStartRotate(t){if(this._pointers.length===1)this._rotateStart.set(t.pageX,t.pageY);else{let e=this._getSecondPointerPosition(t),n=.5*(t.pageX+e.x),s=.5*(t.pageY+e.y);this._rotateStart.set(n,s)}}_handleTouchStartPan(t){if(this._pointers.length===1)this._panStart.set(t.pageX,t.pageY);else{let e=this._getSecondPointerPosition(t),n=.5*(t.pageX+e.x),s=.5*(t.pageY+e.y);this._panStart.set(n,s)}}_handleTouchStartDolly(t){let e=this._getSecondPointerPosition(t),n=t.pageX-e.x,s=t.pageY-e.y,r=Math.sqrt(n*n+s*s);this._dollyStart.set(0,r)}_handleTouchStartDollyPan(t){this.enableZoom&&this._handleTouchStartDolly(t),this.enablePan&&this._handleTouchStartPan(t)}_handleTouchStartDollyRotate(t){this.enableZoom&&this._handleTouchStartDolly(t),this.enableRotate&&this._handleTouchStartRotate(t)}_handleTouchMoveRotate(t){if(this._pointers.length==1)this._rotateEnd.set(t.pageX,t.pageY);else{let n=this._getSecondPointerPosition(t),s=.5*(t.pageX+n.x),r=.5*(t.pageY+n.y);this._rotateEnd.set(s,r)}this._rotateDelta.subVectors(this._rotateEnd,this._rotateStart).multiplyScalar(this.rotateSpeed);let e=this.domElement;this._rotateLeft(_i*this._rotateDelta.x/e.clientHeight),this._rotateUp(_i*this._rotateDelta.y/e.clientHeight),this._rotateStart.copy(this._rotateEnd)}_handleTouchMovePan(t){if(this._pointers.length===1)this._panEnd.set(t.pageX,t.pageY);else{let e=this._getSecondPointerPosition(t),n=.5*(t.pageX+e.x),s=.5*(t.pageY+e.y);this._panEnd.set(n,s)}this._panDelta.subVectors(this._panEnd,this._panStart).multiplyScalar(this.panSpeed),this._pan(this._panDelta.x,this._panDelta.y),this._panStart.copy(this._panEnd)}_handleTouchMoveDolly(t){let e=this._getSecondPointerPosition(t),n=t.pageX-e.x,s=t.pageY-e.y,r=Math.sqrt(n*n+s*s);this._dollyEnd.set(0,r),this._dollyDelta.set(0,Math.pow(this._dollyEnd.y/this._dollyStart.y,this.zoomSpeed)),this._dollyOut(this._dollyDelta.y),this._dollyStart.copy(this._dollyEnd);let o=(t.pageX+e.x)*.5,a=(t.pageY+e.y)*.5;this._updateZoomParameters(o,a)}_handleTouchMoveDollyPan(t){this.enableZoom&&this._handleTouchMoveDolly(t),this.enablePan&&this._handleTouchMovePan(t)}_handleTouchMoveDollyRotate(t){this.enableZoom&&this._handleTouchMoveDolly(t),this.enableRotate&&this._handleTouchMoveRotate(t)}_addPointer(t){this._pointers.push(t.pointerId)}_removePointer(t){delete this._pointerPositions[t.pointerId];for(let e=0;e<this._pointers.length;e++)if(this._pointers[e]==t.pointerId){this._pointers.splice(e,1);return}}_isTrackingPointer(t){for(let e=0;e<this._pointers.length;e++)if(this._pointers[e]==t.pointerId)return!0;return!1}_trackPointer(t){let e=this._pointerPositions[t.pointerId];e===void 0&&(e=new kt,this._pointerPositions[t.pointerId]=e),e.set(t.pageX,t.pageY)}_getSecondPointerPosition(t){let e=t.pointerId===this._pointers[0]?this._pointers[1]:this._pointers[0];return this._pointerPositions[e]}_customWheelEvent(t){let e=t.deltaMode,n={clientX:t.clientX,clientY:t.clientY,deltaY:t.deltaY};switch(e){case 1:n.deltaY*=16;break;case 2:n.deltaY*=100;break}return t.ctrlKey&&!this._controlActive&&(n.deltaY*=10),n}};function hE(i){this.enabled!==!1&&(this._pointers.length===0&&(this.domElement.setPointerCapture(i.pointerId),this.domElement.ownerDocument.addEventListener("pointermove",this._onPointerMove),this.domElement.ownerDocument.addEventListener("pointerup",this._onPointerUp)),!this._isTrackingPointer(i)&&(this._addPointer(i),i.pointerType==="touch"?this._onTouchStart(i):this._onMouseDown(i),this._cursorStyle==="grab"&&(this.domElement.style.cursor="grabbing")))}function uE(i){this.enabled!==!1&&(i.pointerType==="touch"?this._onTouchMove(i):this._onMouseMove(i))}function dE(i){switch(this._removePointer(i),this._pointers.length){case 0:this.domElement.releasePointerCapture(i.pointerId),this.domElement.ownerDocument.removeEventListener("pointermove",this._onPointerMove),this.domElement.ownerDocument.removeEventListener("pointerup",this._onPointerUp),this.dispatchEvent(yx),this.state=Re.NONE,this._cursorStyle==="grab"&&(this.domElement.style.cursor="grab");break;case 1:let t=this._pointers[0],e=this._pointerPositions[t];this._onTouchStart({pointerId:t,pageX:e.x,pageY:e.y});break}}function fE(i){let t;switch(i.button){case 0:t=this.mouseButtons.LEFT;break;case 1:t=this.mouseButtons.MIDDLE;break;case 2:t=this.mouseButtons.RIGHT;break;default:t=-1}switch(t){case cr.DOLLY:if(this.enableZoom===!1)return;this._handleMouseDownDolly(i),this.state=Re.DOLLY;break;case cr.ROTATE:if(i.ctrlKey||i.metaKey||i.shiftKey){if(this.enablePan===!1)return;this._handleMouseDownPan(i),this.state=Re.PAN}else{if(this.enableRotate===!1)return;this._handleMouseDownRotate(i),this.state=Re.ROTATE}break;case cr.PAN:if(i.ctrlKey||i.metaKey||i.shiftKey){if(this.enableRotate===!1)return;this._handleMouseDownRotate(i),this.state=Re.ROTATE}else{if(this.enablePan===!1)return;this._handleMouseDownPan(i),this.state=Re.PAN}break;default:this.state=Re.NONE}this.state!==Re.NONE&&this.dispatchEvent(ap)}function pE(i){switch(this.state){case Re.ROTATE:if(this.enableRotate===!1)return;this._handleMouseMoveRotate(i);break;case Re.DOLLY:if(this.enableZoom===!1)return;this._handleMouseMoveDolly(i);break;case Re.PAN:if(this.enablePan===!1)return;this._handleMouseMovePan(i);break}}function mE(i){this.enabled===!1||this.enableZoom===!1||this.state!==Re.NONE||(i.preventDefault(),this.dispatchEvent(ap),this._handleMouseWheel(this._customWheelEvent(i)),this.dispatchEvent(yx))}function gE(i){this.enabled!==!1&&this._handleKeyDown(i)}function _E(i){switch(this._trackPointer(i),this._pointers.length){case 1:switch(this.touches.ONE){case hr.ROTATE:if(this.enableRotate===!1){this.state=Re.NONE;break}this._handleTouchStartRotate(i),this.state=Re.TOUCH_ROTATE;break;case hr.PAN:if(this.enablePan===!1){this.state=Re.NONE;break}this._handleTouchStartPan(i),this.state=Re.TOUCH_PAN;break;default:this.state=Re.NONE}break;case 2:switch(this.touches.TWO){case hr.DOLLY_PAN:if(this.enableZoom===!1&&this.enablePan===!1)return;this._handleTouchStartDollyPan(i),this.state=Re.TOUCH_DOLLY_PAN;break;case hr.DOLLY_ROTATE:if(this.enableZoom===!1&&this.enableRotate===!1)return;this._handleTouchStartDollyRotate(i),this.state=Re.TOUCH_DOLLY_ROTATE;break;default:this.state=Re.NONE}break;default:this.state=Re.NONE}this.state!==Re.NONE&&this.dispatchEvent(ap)}function xE(i){switch(this._trackPointer(i),this.state){case Re.TOUCH_ROTATE:if(this.enableRotate===!1)return;this._handleTouchMoveRotate(i),this.update();break;case Re.TOUCH_PAN:if(this.enablePan===!1)return;this._handleTouchMovePan(i),this.update();break;case Re.TOUCH_DOLLY_PAN:if(this.enableZoom===!1&&this.enablePan===!1)return;this._handleTouchMoveDollyPan(i),this.update();break;case Re.TOUCH_DOLLY_ROTATE:if(this.enableZoom===!1&&this.enableRotate===!1)return;this._handleTouchMoveDollyRotate(i),this.update();break;default:this.state=Re.NONE}}function yE(i){this.enabled!==!1&&i.preventDefault()}function vE(i){i.key==="Control"&&(this._controlActive=!0,this.domElement.ownerDocument.addEventListener("keyup",this._interceptControlUp,{passive:!0,capture:!0}))}function SE(i){i.key==="Control"&&(this._controlActive=!1,this.domElement.ownerDocument.removeEventListener("keyup",this._interceptControlUp,{passive:!0,capture:!0}))}De.DEFAULT_UP.set(0,0,1);var ME=/swiftshader|llvmpipe|software|basic render/i,Eu=class{constructor(t,e){this.canvas=t;let n=document.createElement("canvas").getContext("webgl2");if(!n)throw new Error("This browser has no WebGL 2, which the scene needs.");let s=n.getExtension("WEBGL_debug_renderer_info");this.renderer=s?n.getParameter(s.UNMASKED_RENDERER_WEBGL):"",this.isSoftware=ME.test(this.renderer),this.lite=e==="lite"||e!=="full"&&this.isSoftware,n.getExtension("WEBGL_lose_context")?.loseContext();let r=new Nh({canvas:t,antialias:!this.lite});r.setPixelRatio(this.lite?.75:Math.min(devicePixelRatio,2)),r.shadowMap.enabled=!this.lite,r.shadowMap.type=Pr,this.gl=r,this.scene=new Na,this.camera=new An(45,1,.02,500),this.camera.position.set(-4,-4,3),this.controls=new Tu(this.camera,t),this.controls.enableDamping=!0,this.controls.dampingFactor=.2,this.controls.zoomToCursor=!0,this.controls.addEventListener("change",()=>this.invalidate()),this.lights=new Cn,this.helpers=new Cn,this.scene.add(this.lights,this.helpers),this.makeSky(),this.before=[],this.after=[],this.cuts=[],this.draws=0,this.extent=5,this.dirty=!1,this.shadows=!0,new ResizeObserver(()=>this.resize()).observe(t.parentElement),this.resize()}resize(){let{clientWidth:t,clientHeight:e}=this.canvas.parentElement;!t||!e||(this.gl.setSize(t,e,!1),this.camera.aspect=t/e,this.camera.updateProjectionMatrix(),this.invalidate())}invalidate(){this.dirty||(this.dirty=!0,requestAnimationFrame(()=>this.draw()))}draw(){this.dirty=!1,this.controls.update();for(let e of this.before)e();let t=this.camera.position.distanceTo(this.controls.target);this.camera.near=Math.max(.004,.01*t),this.camera.far=Math.max(300,12*t,6*this.extent),this.camera.updateProjectionMatrix(),this.placeSun(t),this.sky.position.copy(this.camera.position),this.sky.scale.setScalar(.9*this.camera.far),this.gl.clippingPlanes=this.cuts,this.gl.render(this.scene,this.camera),this.gl.clippingPlanes=[],this.draws+=1;for(let e of this.after)e()}makeSky(){this.skyColours={top:{value:new Ht},horizon:{value:new Ht}};let t=new mi({side:Xn,depthWrite:!1,fog:!1,uniforms:this.skyColours,vertexShader:"varying vec3 ray;void main(){ray=position;gl_Position=projectionMatrix*modelViewMatrix*vec4(position,1.);}",fragmentShader:`uniform vec3 top,horizon;varying vec3 ray;
+        void main(){float h=normalize(ray).z;gl_FragColor=vec4(mix(horizon,top,smoothstep(0.,.6,h)),1.);
+        #include <colorspace_fragment>
+        }`});this.sky=new Mt(new hi(1,24,16),t),this.sky.frustumCulled=!1,this.sky.renderOrder=-1,this.scene.add(this.sky)}setSurroundings(t,e){this.around=t;let n=new Ht().setRGB(...t.background,Ae),s=n.clone().lerp(new Ht(15922680),.45),r=t.sky?new Ht(6001622):n.clone().lerp(new Ht(7315416),.55);this.skyColours.top.value.copy(r),this.skyColours.horizon.value.copy(s);let o=t.fog;if(o&&Array.isArray(o.colour??o.color)){let a=new Ht().setRGB(...(o.colour??o.color).slice(0,3),Ae);this.scene.fog=o.end>0?new Io(a,o.start??0,o.end):new Da(a,o.density??.01),this.skyColours.horizon.value.copy(a)}else this.scene.fog=new Io(s,Math.max(40,4*t.extent),Math.max(220,14*t.extent));this.lightArrays=e,this.makeLights()}makeLights(){let{around:t,lightArrays:e,lights:n}=this;for(let l of[...n.children])n.remove(l),l.dispose?.();let s=Math.max(...t.ambient,.12),r=l=>Math.min(l,1.05)**1.8,o=new qa(16777215,13617341,Math.PI*.92*r(s));n.add(o),this.sun=null;let a=0,c=0;t.lights.forEach((l,u)=>{if(!e.light_active[u]||c>=12)return;let h=e.light_diffuse.slice(3*u,3*u+3),d=Math.max(...h);if(!(d>0))return;c+=1;let f=new Ht().setRGB(h[0]/d,h[1]/d,h[2]/d,Ae),p=new R().fromArray(e.light_pos,3*u),_=new R().fromArray(e.light_dir,3*u).normalize(),m=Math.PI*Math.max(.15,r(s+d)-r(s)),g;if(l.kind==="directional")g=new Uo(f,m),g.userData.direction=_;else{let[x,E,S]=l.attenuation,M=3,T=m*M**2/Math.max(.05,x+E*M+S*M*M),y=E||S?2:0;g=l.kind==="spot"?new Za(f,y?T:m,0,Math.min(l.cutoff*Math.PI/180,1.5),.4,y):new Ja(f,y?T:m,0,y),g.position.copy(p),g.target&&g.target.position.copy(p).add(_)}l.shadow&&t.shadows&&this.shadows&&!this.lite&&l.kind!=="point"&&a<2&&(g.castShadow=!0,g.shadow.mapSize.set(2048,2048),g.shadow.bias=-3e-4,g.shadow.normalBias=.012,g.shadow.radius=2.5,a+=1),l.kind==="directional"&&!this.sun&&(this.sun=g),n.add(g),g.target&&n.add(g.target)}),c===0&&(this.sun=new Uo(16777215,2.2),this.sun.userData.direction=new R(.45,.6,-.9).normalize(),this.sun.castShadow=!this.lite&&this.shadows,n.add(this.sun,this.sun.target)),this.invalidate()}placeSun(t){for(let e of this.lights.children){let n=e.userData.direction;if(!n)continue;let s=Math.min(Math.max(.9*t,1.5),40,1.5*this.extent+2);e.target.position.copy(this.controls.target),e.position.copy(this.controls.target).addScaledVector(n,-3*s),e.castShadow&&(Object.assign(e.shadow.camera,{left:-s,right:s,top:s,bottom:-s,near:.1,far:7*s}),e.shadow.camera.updateProjectionMatrix())}}fit(t,e,n=.94){let s=t.getCenter(new R),r=e.clone().normalize(),o=this.fitDistance(t,r,n);this.controls.target.copy(s),this.camera.position.copy(s).addScaledVector(r,-o),this.controls.update(),this.invalidate()}fitDistance(t,e,n){let s=t.getCenter(new R),r=new R().crossVectors(e,new R(0,0,1));r.lengthSq()<1e-9&&r.set(1,0,0),r.normalize();let o=new R().crossVectors(r,e),a=Math.tan(this.camera.fov*Math.PI/360)*n,c=a*this.camera.aspect,l=.2;for(let u=0;u<8;u++){let h=new R(u&1?t.max.x:t.min.x,u&2?t.max.y:t.min.y,u&4?t.max.z:t.min.z).sub(s);l=Math.max(l,Math.abs(h.dot(r))/c-h.dot(e),Math.abs(h.dot(o))/a-h.dot(e))}return l}};var lp=[["0.1",.1],["0.25",.25],["0.5",.5],["1",1],["2",2],["5",5],["no limit",null]];function Mx(i,t){let e=(x,E,S,M)=>F("button",{id:x,title:S,"aria-label":S,onclick:M},E),n=e("play","\u275A\u275A","Pause or resume (space)",()=>vx(i)),s=F("input",{id:"count",type:"number",min:1,value:1,title:"Steps"}),r=e("step","\u25B6\u2758","Make steps and pause (n)",()=>Sx(i,+s.value||1)),o=e("reset","\u27F2","Reset to the start",()=>i.send("reset")),a=F("select",{id:"speed",title:"Highest real-time factor",onchange:()=>i.send("pace",{value:lp[a.selectedIndex][1]})},...lp.map(([x])=>F("option",{},x==="no limit"?x:`${x} \xD7`))),c=F("select",{id:"viewpoint",title:"Viewpoint",onchange:()=>wE(i,c)}),l=F("span",{id:"time"}),u=F("span",{id:"rtf"}),h=F("span",{id:"link",class:"off"},"\u25CF connecting"),d=F("span",{id:"frames"}),f=F("strong",{id:"world"}),p=F("span",{id:"seed",class:"dim",title:"Seed of all random streams"});t.append(f,p,F("span",{class:"group"},n,r,s,o),a,l,u,F("span",{class:"space"}),c,d,h),i.on("scene",x=>{f.textContent=x.world,p.textContent=`seed ${x.seed}`;let E=x.sensors.filter(yl),S=[["","View \u2026"],["first","Robots"],["all","Everything"],["top","From above"],...i.robots.slice(0,40).map(M=>[`follow:${M.name}`,`Follow ${M.name}`]),...E.slice(0,40).map(M=>[`through:${M.name}`,`Through ${M.name.split("::").at(-1)}`])];c.replaceChildren(...S.map(([M,T])=>F("option",{value:M},T)))}),i.on("state",x=>{n.textContent=x.paused?"\u25B6":"\u275A\u275A",l.textContent=`${x.time.toFixed(x.paused?3:2)} s`,u.textContent=x.paused?"paused":`${x.rtf.toFixed(2)} \xD7 real time`;let E=lp.findIndex(([,S])=>S===x.pace);document.activeElement!==a&&E>=0&&(a.selectedIndex=E)}),i.on("link",x=>{i.player||(h.textContent=x?"\u25CF live":"\u25CF ended",h.className=x?"on":"off",x||(u.textContent="no connection"))}),i.on("recording",x=>{h.textContent=`\u25CF recording ${x.recording.name}`,h.className="on"});let _=0,m=0,g=0;setInterval(()=>{document.hidden||!i.connection||(d.textContent=`${i.stage.draws-_} frames/s \xB7 ${i.stats.states-m} states/s \xB7 ${((i.connection.bytes-g)/1024).toFixed(0)} KB/s${i.stage.isSoftware?" \xB7 software":""}`,[_,m,g]=[i.stage.draws,i.stats.states,i.connection.bytes])},1e3),addEventListener("keydown",x=>{x.target.closest("input, select, textarea")||x.ctrlKey||x.metaKey||x.altKey||(x.key===" "?(x.preventDefault(),vx(i)):x.key==="n"?Sx(i,1):x.key==="f"?bE(i):x.key==="h"&&i.views.first())})}function vx(i){i.send("pause",{value:!i.state?.paused})}async function Sx(i,t){i.state?.paused||await i.send("pause",{value:!0}),i.send("step",{count:t})}function bE(i){if(i.views.followed!==null){i.views.follow(null);return}let t=i.selected?.split("::",1)[0]??i.robots[0]?.name;i.views.follow(i.bodyOf.get(t)??null)}function wE(i,t){let[e,...n]=t.value.split(":"),s=n.join(":");e==="follow"?i.views.follow(i.bodyOf.get(s)??null):e==="through"?i.views.through(i.scene.sensors.find(r=>r.name===s)):e&&i.views[e](),t.selectedIndex=0,t.blur()}var bx=[[.55,.62,-.56],[-.55,.62,-.56],[.55,-.62,-.56],[-.55,-.62,-.56],[.4,.45,-.9],[.1,.15,-1]],TE=.5,EE=.05,AE=300,CE=20,RE=20,PE=12,Au=class{constructor(t){this.app=t,this.followed=null,this.sensor=null,t.stage.before.push(()=>this.update())}strays(){let{world:t,bodyOf:e}=this.app,n=t.boxesByModel(),s=[...n.keys()],r=new Set;if(s.length<3)return r;let o=(f,p)=>new R().subVectors(f.min,p.max).max(new R().subVectors(p.min,f.max)).max(new R).length(),a=new Map(s.map(f=>[f,n.get(f).getCenter(new R)])),c=f=>[...a.values()].map(p=>p[f]).sort((p,_)=>p-_)[s.length>>1],l=new R(c("x"),c("y"),c("z")),u=f=>{let{x:p,y:_,z:m}=a.get(f).clone().sub(l);return Math.max(Math.abs(p),Math.abs(_),Math.abs(m))},h=s.sort((f,p)=>u(f)-u(p)),d=new sn;h.slice(0,Math.ceil(h.length/2)).forEach(f=>d.union(n.get(f)));for(let f of h){let p=d.getSize(new R).length();o(n.get(f),d)>Math.max(AE,CE*p)?r.add(f):!e.has(f)||n.get(f).max.z>=d.min.z-Math.max(RE,2*p)?d.union(n.get(f)):r.add(f)}return r}robotBox(t=this.strays()){let{world:e,robots:n}=this.app,s=new Set(n.map(r=>r.name).filter(r=>!t.has(r)));return e.boxOf(r=>s.has(e.linkOf(r).split("::",1)[0]))}worldBox(t=this.strays()){let{world:e}=this.app;return e.boxOf((n,s)=>!s&&!t.has(e.linkOf(n).split("::",1)[0]))}first(){let{stage:t}=this.app;this.release();let e=this.strays(),n=this.worldBox(e),s=this.robotBox(e),r=n.isEmpty()?new sn(new R(-2,-2,0),new R(2,2,1)):n;if(!(n.isEmpty()||s.isEmpty()||n.getSize(new R).length()<PE)&&this.app.hasRobots){r=s.clone();let l=r.getSize(new R),u=Math.max(.35*l.length(),1.2);r.min.x-=u,r.min.y-=u,r.max.x+=u,r.max.y+=u}let a=e.size?[`outside of the view: ${[...e].slice(0,3).join(", ")}${e.size>3?` and ${e.size-3} more`:""}`]:[],c=new R(...bx[0]);if(t.gl.info.render.triangles<4e5){let l=s.isEmpty()?this.roomPoints(e):this.robotPoints(s),u=this.clearest(r,l,1/0);if(u.share<TE&&!n.isEmpty()){let h=s.isEmpty()?(n.min.z+n.max.z)/2:s.max.z+EE,d=this.clearest(r,l,h);d.share>u.share&&(u=d,t.cuts=[new En(new R(0,0,-1),h)],a.push(`opened above z = ${h.toPrecision(3)} m`))}u.direction&&(c=u.direction)}t.fit(r,c),a.length&&this.app.report(a.join("; "))}robotPoints(t){let{min:e,max:n}=t,s=new Set(this.app.robots.map(o=>o.name)),r=[t.getCenter(new R)];for(let o of[e.x,n.x])for(let a of[e.y,n.y])r.push(new R(o,a,.7*e.z+.3*n.z));return r.map(o=>({point:o,own:s}))}roomPoints(t){let e=[...this.app.world.boxesByModel()].filter(([r])=>!t.has(r)).map(([r,o])=>({point:o.getCenter(new R),own:new Set([r]),size:o.getSize(new R).length()})).sort((r,o)=>r.size-o.size),n=e.slice(0,Math.ceil(e.length/2)),s=Math.ceil(n.length/12);return n.filter((r,o)=>o%s===0)}clearest(t,e,n){let{stage:s,world:r}=this.app,o=new Oi,a=null,c=-1;for(let l of bx){let u=new R(...l).normalize(),h=t.getCenter(new R).addScaledVector(u,-s.fitDistance(t,u,.94)),d=e.filter(({point:f,own:p})=>{let _=h.clone();_.z>n&&f.z<n&&_.lerp(f,(_.z-n)/(_.z-f.z)),o.set(_,f.clone().sub(_).normalize()),o.camera=s.camera;let m=r.pick(o);return!m||p.has(m.link.split("::",1)[0])||m.point.distanceTo(_)>f.distanceTo(_)}).length;if(d>c&&(c=d,a=u),d===e.length)break}return{direction:a,share:e.length?c/e.length:1}}all(){this.release();let t=this.worldBox();t.isEmpty()||this.app.stage.fit(t,this.app.stage.controls.target.clone().sub(this.app.stage.camera.position))}top(){this.release();let t=this.worldBox();t.isEmpty()||this.app.stage.fit(t,new R(0,.001,-1))}follow(t){if(this.sensor=null,this.app.stage.controls.enabled=!0,this.followed=t,this.last=t===null?null:new R().setFromMatrixPosition(this.app.world.bodies[t]),t!==null){let{stage:e,world:n}=this.app,s=Math.min(e.camera.position.distanceTo(this.last),3.5),r=e.camera.position.clone().sub(this.last).normalize();r.z=Math.max(r.z,.35),e.controls.target.copy(this.last),e.camera.position.copy(this.last).addScaledVector(r.normalize(),s),n.place()}this.app.emit("view"),this.app.stage.invalidate()}through(t){this.followed=null,this.sensor=t,this.app.stage.cuts=[],this.app.stage.controls.enabled=!1,this.app.emit("view"),this.app.stage.invalidate()}release(){this.app.stage.cuts=[],this.followed=this.sensor=null,this.app.stage.controls.enabled=!0,this.app.stage.camera.fov=45,this.app.stage.camera.up.set(0,0,1),this.app.emit("view")}update(){let{stage:t,world:e,sensors:n}=this.app;if(this.followed!==null&&this.last){let s=new R().setFromMatrixPosition(e.bodies[this.followed]),r=s.clone().sub(this.last);t.camera.position.add(r),t.controls.target.add(r),this.last=s}this.sensor?(this.aim(t.camera,this.sensor,t.camera.aspect),t.controls.target.copy(t.camera.position).add(new R(0,0,-1).applyQuaternion(t.camera.quaternion))):t.camera.up.set(0,0,1)}aim(t,e,n){let s=this.app.sensors.poseOf(e),r=new R,o=new R,a=new R;s.extractBasis(r,o,a),t.position.setFromMatrixPosition(s);let c=new qt().makeBasis(o.clone().negate(),a,r.clone().negate());t.quaternion.setFromRotationMatrix(c);let{width:l,height:u,hfov:h}=e.camera,d=Math.tan(Math.min(h,2.6)/2);t.fov=2*Math.atan(Math.max(d*u/l,d/n*(n<l/u?1:0)))*180/Math.PI,t.updateProjectionMatrix()}};var cp=new Map,Ct={scene:null,state:null,models:new Map,robots:[],selected:null,stats:{states:0},on(i,t){cp.set(i,[...cp.get(i)??[],t])},emit(i,t){for(let e of cp.get(i)??[])e(t)},select(i){Ct.selected=i,Ct.emit("select",i),Ct.stage.invalidate()},report(i){dp(i)}};Ct.receive=i=>Tx(i);window.simkitView=Ct;var wx;function dp(i){let t=document.getElementById("notice");t.textContent=i,t.hidden=!i,clearTimeout(wx),wx=setTimeout(()=>{t.hidden=!0},6e3)}document.getElementById("notice").hidden=!0;function Tx(i){i.kind==="state"?Ex(i):i.kind==="scene_changed"?Cx(i.revision):i.kind==="appearance"&&Ax(i),Ct.emit(`packet:${i.kind.split(":",1)[0]}`,i)}function Ex(i){if(!Ct.scene||i.revision!==Ct.scene.revision){Ct.early=i,Cx(i.revision);return}let t=Ct.state&&i.tick<Ct.state.tick;Ct.state=i,Ct.stats.states+=1,Ct.world.setPoses(i.arrays.poses),t&&Ct.layers.setPaths({}),Ct.layers.extendPaths(Ct.bodyOf),Ct.emit("state",i)}function Ax(i){i.revision===Ct.scene?.revision?Ct.world.setAppearance(i.arrays):Ct.earlyAppearance=i}var hp=!1,up=0;async function Cx(i){if(up=Math.max(up,i),!hp){hp=!0;for(let t=0;(Ct.scene?.revision??0)<up&&t<20;t++)await Rx()||await new Promise(e=>setTimeout(e,500));hp=!1}}async function Rx(){try{let i=await Ct.connection.loadScene(),t=!Ct.scene;Ct.stage.setSurroundings(i.surroundings,i.arrays),await Ct.world.load(i),Ct.scene=i,Ct.models=new Map(i.models.map(n=>[n.name,n])),Ct.bodyOf=IE(i),Ct.robots=LE(i),Ct.layers.load(),Ct.emit("scene",i),document.title=`${i.world} \u2013 simkit`;let e=Ct.early;Ct.early=null,e?.revision===i.revision&&Ex(e),Ct.earlyAppearance?.revision===i.revision&&Ax(Ct.earlyAppearance),i.recording&&t&&(Ct.player=Ct.connection.player=new bu(Ct,await gx(Ct.connection)),Ct.player.show(),Ct.emit("recording",Ct.player)),t&&Ct.views.first(),Ct.connection.ask("travel").then(n=>Ct.layers.setPaths(n)).catch(()=>{})}catch(i){return dp(`the scene cannot be loaded: ${i.message}`),!1}return Ct.stage.invalidate(),!0}function IE(i){let t=new Set(i.arrays.moving),e=new Map;for(let[n,s]of i.frames){let r=n.split("::",1)[0];t.has(s)&&!e.has(r)&&e.set(r,s)}return e}function LE(i){let t=new Set([...i.joints,...i.sensors].map(s=>s.name.split("::",1)[0])),e=i.models.filter(s=>Ct.bodyOf.has(s.name)),n=e.filter(s=>t.has(s.name));return Ct.hasRobots=n.length>0,n.length?n:e}function DE(i){let t=null;i.addEventListener("pointerdown",e=>{t=[e.clientX,e.clientY],i.focus({preventScroll:!0})}),i.addEventListener("pointerup",e=>{if(!t||Math.hypot(e.clientX-t[0],e.clientY-t[1])>4||!Ct.scene)return;let n=Ct.pickAt(e.clientX,e.clientY);Ct.clickMode?Ct.clickMode(n,e):Ct.select(n&&!n.isFloor?n.link:null)})}Ct.pickAt=(i,t)=>{let e=Ct.stage.canvas.getBoundingClientRect(),n=new Oi;return n.setFromCamera(new kt(2*(i-e.left)/e.width-1,1-2*(t-e.top)/e.height),Ct.stage.camera),Ct.world.pick(n)};Ct.groundAt=({clientX:i,clientY:t})=>{let e=Ct.stage.canvas.getBoundingClientRect(),n=new Oi;return n.setFromCamera(new kt(2*(i-e.left)/e.width-1,1-2*(t-e.top)/e.height),Ct.stage.camera),n.ray.intersectPlane(new En(new R(0,0,1),0),new R)};try{Ct.stage=new Eu(document.getElementById("canvas"),new URLSearchParams(location.search).get("quality")??"auto"),Ct.world=new Hh(Ct.stage),Ct.connection=new Fh(i=>{(!Ct.player||i.recorded)&&Tx(i)},dp,i=>Ct.emit("link",i)),Ct.layers=new Yh(Ct),Ct.views=new Au(Ct),Ct.sensors=new qh(Ct),Ct.displays=new Xh(Ct),Ct.ask=(i,t)=>Ct.connection.ask(i,t),Ct.send=(i,t)=>Ct.connection.send(i,t),Mx(Ct,document.getElementById("toolbar"));for(let[i,t]of mx){let e=t(Ct);e&&document.getElementById(i).append(e)}DE(Ct.stage.canvas),await Rx(),Ct.connection.open()}catch(i){throw document.getElementById("view").append(F("p",{class:"failure"},i.message)),i}

@@ -1,0 +1,28 @@
+// Builds the page: view_page/src -> simkit_view/view/page. `node build.mjs [FOLDER]` writes to another folder.
+import { build } from 'esbuild';
+import { copyFile, mkdir, readFile, writeFile } from 'node:fs/promises';
+import { dirname, join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+
+const here = dirname(fileURLToPath(import.meta.url));
+const out = process.argv[2] ?? join(here, '../simkit_view/view/page');
+await mkdir(out, { recursive: true });
+await build({
+  entryPoints: { app: join(here, 'src/main.js') },
+  bundle: true,
+  minify: true,
+  format: 'esm',
+  target: 'es2022',
+  legalComments: 'none',
+  outdir: out,
+});
+await build({
+  entryPoints: { app: join(here, 'src/page.css') }, bundle: true, minify: true, legalComments: 'none', outdir: out,
+});
+for (const name of ['index.html', 'icon.svg']) await copyFile(join(here, 'src', name), join(out, name));
+const licences = [];
+for (const name of ['three', 'uplot']) {
+  const { version } = JSON.parse(await readFile(join(here, 'node_modules', name, 'package.json'), 'utf8'));
+  licences.push(`${name} ${version}\n\n${(await readFile(join(here, 'node_modules', name, 'LICENSE'), 'utf8')).trim()}\n`);
+}
+await writeFile(join(out, 'LICENSES.txt'), `app.js contains these libraries.\n\n${licences.join('\n----\n\n')}`);

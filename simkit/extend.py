@@ -1,0 +1,163 @@
+"""Names for those who extend simkit: base classes of plugins, sensors and formats, their options, topics and helpers.
+
+Packs, plugins and sensors need this module, `simkit` and `simkit.msgs`. Its names stay as they are within a minor
+version. `docs/extend.md` explains each of them.
+
+    from simkit.extend import Options, OptionsOf, number
+
+    class FanOptions(Options):
+        speed: float = number(0.5, "rad/s", minimum=0.0)
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from simkit.lazy_names import lazy_attributes
+
+if TYPE_CHECKING:
+    from simkit.cli.run_options import GivenOptions, with_run_options
+    from simkit.cli.run_part import OpenRun, RunPart
+    from simkit.cli.terminal.options import argument, option
+    from simkit.cli.terminal.output import report_errors
+    from simkit.compiler import SpecBuilder
+    from simkit.diagnostics import Diagnostics, Where, did_you_mean
+    from simkit.loaders.resources.loader import Loader, LoadRequest
+    from simkit.loaders.resources.xml_reader import Document
+    from simkit.params import LARGEST
+    from simkit.plugins.base import NEVER
+    from simkit.plugins.endpoints import acts, listens, offers, publishes
+    from simkit.plugins.find_entities import find_link, find_named_joint, find_named_link
+    from simkit.plugins.joints.joint_axis import JointAxis
+    from simkit.plugins.not_deep_copied import SharedByCopies
+    from simkit.plugins.options import (
+        Options,
+        OptionsOf,
+        block,
+        blocks,
+        boolean,
+        choice,
+        integer,
+        number,
+        pose,
+        text,
+        texts,
+        vector3,
+        without_effect,
+    )
+    from simkit.plugins.publish_on_demand import publish_while_subscribed
+    from simkit.pose import Vector
+    from simkit.runtime.communication.action_server import GoalHandle
+    from simkit.scene import (
+        Box,
+        Cylinder,
+        Inertial,
+        Scene,
+        SceneCollision,
+        SceneJoint,
+        SceneLink,
+        SceneModel,
+        SceneSensor,
+        SceneVisual,
+        SceneWorld,
+        Sphere,
+    )
+    from simkit.sensors.base import Product, Sensor
+    from simkit.sensors.noise import Noise, NoiseModel, read_noise
+    from simkit.sensors.vector_sensor import VectorRule, VectorSensor
+
+__all__ = [
+    "LARGEST",
+    "NEVER",
+    "Box",
+    "Cylinder",
+    "Diagnostics",
+    "Document",
+    "GivenOptions",
+    "GoalHandle",
+    "Inertial",
+    "JointAxis",
+    "LoadRequest",
+    "Loader",
+    "Noise",
+    "NoiseModel",
+    "OpenRun",
+    "Options",
+    "OptionsOf",
+    "Product",
+    "RunPart",
+    "Scene",
+    "SceneCollision",
+    "SceneJoint",
+    "SceneLink",
+    "SceneModel",
+    "SceneSensor",
+    "SceneVisual",
+    "SceneWorld",
+    "Sensor",
+    "SharedByCopies",
+    "SpecBuilder",
+    "Sphere",
+    "Vector",
+    "VectorRule",
+    "VectorSensor",
+    "Where",
+    "acts",
+    "argument",
+    "block",
+    "blocks",
+    "boolean",
+    "choice",
+    "did_you_mean",
+    "find_link",
+    "find_named_joint",
+    "find_named_link",
+    "integer",
+    "listens",
+    "number",
+    "offers",
+    "option",
+    "pose",
+    "publish_while_subscribed",
+    "publishes",
+    "read_noise",
+    "report_errors",
+    "text",
+    "texts",
+    "vector3",
+    "with_run_options",
+    "without_effect",
+]
+
+_MODULES = {
+    "simkit.cli.run_options": ("GivenOptions", "with_run_options"),
+    "simkit.cli.run_part": ("OpenRun", "RunPart"),
+    "simkit.cli.terminal.options": ("argument", "option"),
+    "simkit.cli.terminal.output": ("report_errors",),
+    "simkit.compiler": ("SpecBuilder",),
+    "simkit.diagnostics": ("Diagnostics", "Where", "did_you_mean"),
+    "simkit.loaders.resources.loader": ("LoadRequest", "Loader"),
+    "simkit.loaders.resources.xml_reader": ("Document",),
+    "simkit.params": ("LARGEST",),
+    "simkit.plugins.base": ("NEVER",),
+    "simkit.plugins.endpoints": ("acts", "listens", "offers", "publishes"),
+    "simkit.plugins.find_entities": ("find_link", "find_named_joint", "find_named_link"),
+    "simkit.plugins.joints.joint_axis": ("JointAxis",),
+    "simkit.plugins.not_deep_copied": ("SharedByCopies",),
+    "simkit.plugins.options": (
+        "Options", "OptionsOf", "block", "blocks", "boolean", "choice", "integer", "number", "pose", "text", "texts",
+        "vector3", "without_effect",
+    ),
+    "simkit.plugins.publish_on_demand": ("publish_while_subscribed",),
+    "simkit.pose": ("Vector",),
+    "simkit.runtime.communication.action_server": ("GoalHandle",),
+    "simkit.scene": (
+        "Box", "Cylinder", "Inertial", "Scene", "SceneCollision", "SceneJoint", "SceneLink", "SceneModel",
+        "SceneSensor", "SceneVisual", "SceneWorld", "Sphere",
+    ),
+    "simkit.sensors.base": ("Product", "Sensor"),
+    "simkit.sensors.noise": ("Noise", "NoiseModel", "read_noise"),
+    "simkit.sensors.vector_sensor": ("VectorRule", "VectorSensor"),
+}  # fmt: skip
+
+__getattr__, __dir__ = lazy_attributes(__name__, _MODULES)
