@@ -1,0 +1,1 @@
+"""Pack nodes: programs for ROS run in lock-step with a simulation, without ROS."""

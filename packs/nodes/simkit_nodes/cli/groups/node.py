@@ -1,0 +1,116 @@
+"""Run a program beside a running simulation; ping and end nodes of such programs."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from typer import Option
+
+from simkit.cli.run_options import NONE_GIVEN
+from simkit.cli.terminal import options
+from simkit.cli.terminal.output import absolute_name, not_found_error, print_line, print_status, report_errors_quietly
+from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name
+from simkit.errors import InputError
+from simkit.extend import GivenOptions, argument, option, with_run_options
+
+if TYPE_CHECKING:
+    from simkit.live import Client
+
+_PROCESS = "SK-NODE-070"
+_WORDS = {"ignore_unknown_options": True, "allow_interspersed_args": False}
+
+node = typer.Typer()
+Name = Annotated[str, argument("Name of the node.", "NODE")]
+
+
+@node.command(context_settings=_WORDS)
+@report_errors_quietly
+@with_run_options("package_paths")
+def run(
+    program: Annotated[str, argument("Python file, or PACKAGE/EXECUTABLE of a workspace.", "PROGRAM")],
+    words: Annotated[
+        list[str], argument("Arguments of the program, such as --ros-args -r a:=b.", "[ARGUMENT]...")
+    ] = [],
+    sim: options.Sim = None,
+    wait: Annotated[float, option("Longest wait for a simulation that has not started yet.", "S")] = 0.0,
+    given: GivenOptions = NONE_GIVEN,
+) -> int:
+    """Run a program for ROS in a process of its own, beside a running simulation. Options come before the program."""
+    from simkit.live import connect
+    from simkit_nodes.known_nodes import KnownNode
+    from simkit_nodes.live_host import LiveHost
+    from simkit_nodes.live_program import LiveProgram
+    from simkit_nodes.node_options import NodeOptions
+    from simkit_nodes.programs import program_source
+
+    paths = given.values.get("package_paths", ())
+    source = program_source(program, paths)
+    if isinstance(source, KnownNode) and source.nothing:
+        print_status(f"note: {source.name} has no effect here: {source.nothing}")
+    with connect(sim, wait=wait) as client:
+        path = client.path
+    host = LiveHost(path, program.rpartition("/")[2].removesuffix(".py"))
+    started = LiveProgram(host, source, NodeOptions(args=tuple(words), package_paths=paths))
+    host.start(started)
+    try:
+        code = started.execute()
+    finally:
+        host.close()
+    if host.closed is not None and code:
+        raise host.closed
+    if host.closed is not None:
+        print_status(host.closed.message)
+    return code
+
+
+@node.command()
+@report_errors_quietly
+def ping(
+    node: Name,
+    count: Annotated[int, Option("--count", "-c", help="Number of pings.", min=1)] = 1,
+    sim: options.Sim = None,
+) -> None:
+    """Measure how long a program in its own process needs to respond."""
+    from simkit_nodes.live_host import PING
+
+    with connect_to_simulation(sim) as client:
+        name = _program_node(client, node)
+        for _ in range(count):
+            begun = time.perf_counter()
+            process = client.call(f"{name}/{PING}").message
+            print_line(f"{name}: process {process}, {(time.perf_counter() - begun) * 1e3:.1f} ms")
+
+
+@node.command()
+@report_errors_quietly
+def kill(
+    nodes: Annotated[list[str], argument("Names of the nodes.", "NODE...")],
+    sim: options.Sim = None,
+) -> None:
+    """End programs in their own processes, as Ctrl-C does."""
+    from simkit_nodes.live_host import KILL
+
+    with connect_to_simulation(sim) as client:
+        for name in [_program_node(client, each) for each in nodes]:
+            client.call(f"{name}/{KILL}")
+            print_line(f"{name}: ended")
+
+
+def _program_node(client: Client, node: str) -> str:
+    """Return the full name of a node of a program in its own process.
+
+    Raises:
+        InputError: there is no such node, or it is a part of the simulation.
+    """
+    from simkit_nodes.live_host import PING
+
+    name = absolute_name(node)
+    names = list(client.ask("nodes"))
+    if name not in names:
+        raise not_found_error("node", name, names, "SK-CLI-034", connection_name(client))
+    if f"{name}/{PING}" not in client.services():
+        text = f"node {name!r} runs in the process of the simulation, or in one that simkit did not start"
+        raise InputError(_PROCESS, text, help="only nodes of `simkit node run` can be pinged and ended")
+    return name

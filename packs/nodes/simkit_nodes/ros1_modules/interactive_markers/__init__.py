@@ -1,0 +1,1 @@
+"""Markers that people move, as the ROS 1 package `interactive_markers`."""
