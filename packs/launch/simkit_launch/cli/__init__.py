@@ -1,0 +1,1 @@
+"""Commands, options and diagnostic codes of the pack launch."""

@@ -1,0 +1,1 @@
+"""Processes that `simkit launch --processes` starts beside the run."""

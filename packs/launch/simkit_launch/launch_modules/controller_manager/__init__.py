@@ -1,0 +1,1 @@
+"""Package `controller_manager`, of which launch files import `launch_utils`."""

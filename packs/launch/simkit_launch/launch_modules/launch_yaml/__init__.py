@@ -1,0 +1,5 @@
+"""Names of the ROS 2 package `launch_yaml`."""
+
+from __future__ import annotations
+
+__all__: list[str] = []

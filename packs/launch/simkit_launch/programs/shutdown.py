@@ -1,0 +1,1 @@
+"""Program for the action `Shutdown` of a launch file: the run ends with it."""

@@ -1,0 +1,1 @@
+"""Programs that stand for nodes of ROS; each runs as a program of its own."""
