@@ -150,6 +150,7 @@ HEAVY = {
     "webbrowser": "only a desktop needs it",
     "websockets": "0.05 s; only servers need it",
     "xacro": "only xacro files need it",
+    "yourdfpy": "optional: the extra `second-reader`",
     "yaml": "only YAML files need it",
     "zstandard": "only bags need it",
 }
