@@ -105,6 +105,10 @@ class RgbdCamera(RenderedCamera):
         self.options = replace(old, depth_near=near, depth_far=far)
         self._view = None
 
+    def _apply_model(self) -> None:
+        super()._apply_model()
+        self._view = self._clouds_made = None
+
     def _drawn_view(self) -> View:
         if self._view is None:
             options = self.options
