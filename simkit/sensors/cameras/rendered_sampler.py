@@ -22,6 +22,7 @@ from simkit.sensors.cameras.rendering import render_thread
 from simkit.sensors.cameras.rendering.lights_and_shadows import read_lights, use_lights
 from simkit.sensors.cameras.rendering.scene_composition import Composition
 from simkit.sensors.cameras.rendering.view import DrawnView, Shot
+from simkit.sensors.particle_clouds import drawer_of_particles, has_sources
 from simkit.sensors.sample import Memory, Reading
 
 
@@ -91,7 +92,12 @@ class RenderedSampler(Sensor):
         renderer = renderer_choice.renderer_of(self.sim)
         smooth = self.options.anti_aliasing > 0
         composition = renderer.composer.compose(
-            model, data, *self._frame_in_world(data), unseen=self._hidden_geoms, smooth=smooth
+            model,
+            data,
+            *self._frame_in_world(data),
+            drawer_of_particles(self.sim, float(data.time)) if has_sources(self.sim) else None,
+            unseen=self._hidden_geoms,
+            smooth=smooth,
         )
         return functools.partial(self._expose, renderer, composition, self.shots(), self.capture_context(model, data))
 
