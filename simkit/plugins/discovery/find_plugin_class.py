@@ -8,7 +8,7 @@ import tomllib
 from collections.abc import Sequence
 from pathlib import Path
 from types import MappingProxyType
-from typing import Final
+from typing import Any, Final
 
 from simkit.diagnostics import Diagnostics, closest
 from simkit.packs import left_out_names, missing_pack_text
@@ -29,19 +29,22 @@ GAZEBO_PLUGINS: frozenset[str] = frozenset(
 """Library names of Gazebo's plugins, normalised by `normalise`."""
 
 
-def _reasons_by_name() -> dict[str, str]:
-    reasons: dict[str, str] = {}
+def _rows_by_name() -> dict[str, dict[str, Any]]:
+    rows: dict[str, dict[str, Any]] = {}
     for row in _TABLE["gz"]:
         for file_and_class in row["names"].split():
             part, _, cls = file_and_class.partition(":")
-            reasons[f"gz-sim-{part}-system"] = reasons[f"gz::sim::systems::{cls}"] = row["reason"]
+            rows[f"gz-sim-{part}-system"] = rows[f"gz::sim::systems::{cls}"] = row
     for row in _TABLE["libraries"]:
-        reasons.update(dict.fromkeys(row["names"].split(), row["reason"]))
-    return reasons
+        rows.update(dict.fromkeys(row["names"].split(), row))
+    return rows
 
 
-UNSUPPORTED_REASONS: Final = MappingProxyType(_reasons_by_name())
+UNSUPPORTED_REASONS: Final = MappingProxyType({name: row["reason"] for name, row in _rows_by_name().items()})
 """Reason by library name or gz class name; the names are normalised by `normalise`."""
+
+_NOTES: Final = frozenset(name for name, row in _rows_by_name().items() if row.get("is_note"))
+"""Names of plugins whose absence changes no command, force or reading."""
 
 
 @functools.cache
@@ -120,7 +123,8 @@ def _report_unknown(plugin: ScenePlugin, diagnostics: Diagnostics) -> None:
         why = f": {reason}" if reason else ""
         message = f"{named} is a Gazebo plugin that simkit does not support; it is ignored{why}"
         hint = "supported plugins: docs/catalogue.md; to write it in Python: docs/writing_a_plugin.md"
-        diagnostics.warning("SK-PLUGIN-002", message, plugin.where, hint)
+        report = diagnostics.note if _NOTES.intersection(names) else diagnostics.warning
+        report("SK-PLUGIN-002", message, plugin.where, hint)
         return
     spelled = plugin_kinds().written
     cores = {_core(name): spelled[name] for name in sorted(spelled, reverse=True)}

@@ -95,11 +95,17 @@ class RenderedSampler(Sensor):
             model,
             data,
             *self._frame_in_world(data),
-            drawer_of_particles(self.sim, float(data.time)) if has_sources(self.sim) else None,
+            self._particle_drawer(float(data.time)),
             unseen=self._hidden_geoms,
             smooth=smooth,
         )
         return functools.partial(self._expose, renderer, composition, self.shots(), self.capture_context(model, data))
+
+    def _particle_drawer(self, time: float) -> Callable[[mujoco.MjvScene], None] | None:
+        """Return the function that draws the particles; None without, or if the sensor reads which geom is seen."""
+        if not has_sources(self.sim) or any(shot.ids for shot in self.shots()):
+            return None
+        return drawer_of_particles(self.sim, time)
 
     def _expose(
         self, renderer: ImageRenderer, composition: Composition, shots: Sequence[Shot], context: Memory

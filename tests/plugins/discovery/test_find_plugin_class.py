@@ -108,7 +108,11 @@ def test_a_dissimilar_name_still_gets_the_closest_name() -> None:
 def test_an_unsupported_gazebo_plugin_is_reported_as_such() -> None:
     plugin = named("gz-sim-lens-flare-system", "gz::sim::systems::LensFlare")
     assert find_plugin(plugin) is None
-    assert reported(plugin) == [("SK-PLUGIN-002", "warning")]
+    assert reported(plugin) == [("SK-PLUGIN-002", "note")]
+
+
+def test_an_unsupported_plugin_with_a_function_is_a_warning() -> None:
+    assert reported(named("libMudPlugin.so")) == [("SK-PLUGIN-002", "warning")]
 
 
 def test_a_plugin_on_the_wrong_kind_of_parent_is_ignored_with_the_right_kind() -> None:
