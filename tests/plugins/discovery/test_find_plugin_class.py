@@ -112,7 +112,9 @@ def test_an_unsupported_gazebo_plugin_is_reported_as_such() -> None:
 
 
 def test_an_unsupported_plugin_with_a_function_is_a_warning() -> None:
-    assert reported(named("libMudPlugin.so")) == [("SK-PLUGIN-002", "warning")]
+    plugin = named("libMudPlugin.so")
+    assert find_plugin(plugin) is None
+    assert reported(plugin) == [("SK-PLUGIN-002", "warning")]
 
 
 def test_a_plugin_on_the_wrong_kind_of_parent_is_ignored_with_the_right_kind() -> None:
