@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.input_file import read_input
-from simkit.loaders.meshes.mesh_part import MeshFileError
+from simkit.loaders.meshes.mesh_part import MeshFileError, check_is_fetched
 from simkit.loaders.resources.project_folder import readable_folder
 from simkit.loaders.resources.uris import absolute_path, path_of_file_uri, split_rest
 from simkit.project_folder import is_top_folder
@@ -165,6 +165,7 @@ def read_pixels(source: bytes | Path) -> Pixels:
 
     try:
         content = source if isinstance(source, bytes) else read_input(source, LARGEST_COMPANION)
+        check_is_fetched(content)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             with Image.open(io.BytesIO(content), formats=_FORMATS) as image:

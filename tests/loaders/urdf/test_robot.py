@@ -426,6 +426,34 @@ def test_a_joint_that_mimics_a_fixed_joint_moves_freely_with_a_warning(load):
     assert scene.model.joints[1].axes[0].mimic is None
 
 
+def test_a_colour_without_numbers_is_an_error_only_in_the_robot_where_urdfdom_refuses_it(load):
+    colour = '<material name="m"><color>1 1 1</color></material>'
+    visual = f'<visual><geometry><sphere radius="1"/></geometry>{colour}</visual>'
+    scene, found = load(robot(link("a", visual)))
+    assert next((d.code, d.severity) for d in found if d.severity != "note") == ("SK-URDF-031", "warning")
+    assert not errors(found) and not with_code(found, "SK-URDF-026")
+    assert scene.model.links[0].visuals[0].material is None
+    with pytest.raises(simkit.LoadError, match="SK-URDF-001"):
+        simkit.load(robot(colour + link("a", visual)))
+
+
+def test_mimic_of_a_fixed_joint_has_no_effect_whatever_it_names(load):
+    text = robot(
+        link("a")
+        + link("b")
+        + link("c")
+        + link("d")
+        + joint("ab", "a", "b", "", "fixed")
+        + joint("bc", "b", "c", '<mimic joint="ab"/>', "fixed")
+        + joint("cd", "c", "d", '<mimic joint="nowhere"/>', "fixed")
+    )
+    _, found = load(text)
+    told = with_code(found, "SK-URDF-015")
+    assert [(d.severity, d.message, d.hint) for d in told] == [
+        ("warning", f"fixed joint {name!r}: <mimic> has no effect", "") for name in ("bc", "cd")
+    ]
+
+
 def test_a_gazebo_joint_that_repeats_a_joint_of_the_robot_is_left_out(load):
     extra = """<gazebo><joint name="ab" type="prismatic"><parent>a</parent><child>b</child>
       <axis><xyz>0 1 0</xyz></axis></joint></gazebo>"""
