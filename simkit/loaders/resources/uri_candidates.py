@@ -29,6 +29,7 @@ from simkit.loaders.resources.uris import (
     is_private,
     sibling_names,
 )
+from simkit.project_folder import is_top_folder
 from simkit.trusted_folders import TrustedFolders, built_workspace, join_below
 
 _MEDIA = ("Media/models", "media/models", "Media", "media")  # folders of a package that Gazebo Classic searches
@@ -198,10 +199,12 @@ class UriCandidates:
         return self._groups[project]
 
     def media_candidates(self, text: str, relative_to: Path | None) -> Iterator[Path]:
-        """Yield candidates for a relative path in the folders `Media` of search paths and packages."""
+        """Yield candidates for a relative path in the folders `Media`: of search paths, near the file, of packages."""
         if ".." not in Path(text).parts:
-            packages = map(self.trust_plain, self.packages.packages(self._around(relative_to)))
-            roots = ((root, media) for root in chain(self.paths, packages) for media in _MEDIA)
+            around = self._around(relative_to)
+            near = (folder for start in around for folder in (start, start.parent) if not is_top_folder(folder))
+            packages = map(self.trust_plain, self.packages.packages(around))
+            roots = ((root, media) for root in chain(self.paths, near, packages) for media in _MEDIA)
             yield from (join_below(root / media, text) for root, media in roots if self._has_subfolder(root, media))
 
     def _has_subfolder(self, folder: Path, name: str) -> bool:
