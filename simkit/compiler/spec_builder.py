@@ -27,7 +27,7 @@ from simkit.compiler.start_positions import place_joints, report_starts
 from simkit.compiler.state_transfer import transfer_state
 from simkit.diagnostics import Diagnostics
 from simkit.pose import Pose
-from simkit.scene import SceneJoint, SceneModel, SceneWorld
+from simkit.scene import Material, SceneJoint, SceneModel, SceneVisual, SceneWorld
 
 FileFinder = Callable[[str, Path | None], Path | None]
 
@@ -256,6 +256,17 @@ class SpecBuilder:
         if link.body_name == WORLD:
             record.world_sites.append(name)
         return name
+
+    def add_material(self, visual: SceneVisual, material: Material) -> str:
+        """Add another material for a visual, which `Visual.set_material` can show; return its name.
+
+        Args:
+            visual: visual of a model.
+            material: other description. It has a texture exactly if the visual has one.
+        """
+        record = self.records[visual.scoped.split("::")[0]]
+        self.assets.used = record.assets
+        return self._writer(record).geoms.add_material(visual, material)
 
     def add_velocity_servo(
         self, joint_scoped: str, *, axis: int = 0, max_effort: float, owner: str, kv: float | None = None
