@@ -16,7 +16,8 @@ def world(pose: str, kind: str = "contact", visual: str = "") -> str:
     return f"""<sdf version="1.6"><world name="w"><gravity>0 0 -10</gravity>
       <include><uri>model://ground_plane</uri></include><model name="leg"><pose>{pose}</pose><link name="calf">
       <inertial><mass>2</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz></inertia></inertial>
-      <collision name="foot"><geometry><box><size>0.2 0.2 0.2</size></box></geometry></collision>{visual}{SENSOR.format(kind)}</link>
+      <collision name="foot"><geometry><box><size>0.2 0.2 0.2</size></box></geometry></collision>
+      {visual}{SENSOR.format(kind)}</link>
       </model></world></sdf>"""
 
 
