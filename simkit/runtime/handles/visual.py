@@ -54,7 +54,7 @@ class Visual(Handle):
             self._engine.touch("geom_rgba")[geoms] = parts
 
     def set_material(self, name: str) -> None:
-        """Show a material that `SpecBuilder.add_material` has added for this visual."""
+        """Show a material that `SpecBuilder.add_script_material` has added for this visual."""
         geoms = list(self.geoms)
         if geoms:
             self._engine.touch("geom_matid")[geoms] = self._physics.model.material(name).id

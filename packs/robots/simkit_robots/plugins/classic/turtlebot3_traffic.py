@@ -6,18 +6,13 @@ turtlebot3_simulations, branch humble. Both plugins have no parameters and no to
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from simkit import ModelPlugin, Params, Pose
-from simkit.loaders.sdf.material_script import find_material, find_texture
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from simkit import Model
     from simkit.extend import SceneModel, SpecBuilder
-    from simkit.scene import SceneVisual
 
 _S: Final = 1_000_000_000
 _LIGHTS: Final = (("traffic_light_red", 5 * _S), ("traffic_light_yellow", _S), ("traffic_light_green", 5 * _S))
@@ -40,7 +35,7 @@ class TrafficLight(ModelPlugin):
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._materials: dict[str, list[str]] = {}
         for visual in (visual for link in scene.all_links() for visual in link.visuals):
-            names = [_add_light(visual, name, builder) for name, _ in _LIGHTS]
+            names = [builder.add_script_material(visual, name) for name, _ in _LIGHTS]
             if all(names):
                 self._materials[visual.scoped] = names
         if not self._materials:
@@ -56,25 +51,6 @@ class TrafficLight(ModelPlugin):
             self._light, self._since_ns = (self._light + 1) % len(_LIGHTS), now
             for scoped, names in self._materials.items():
                 self.sim.visual(scoped).set_material(names[self._light])
-
-
-def _add_light(visual: SceneVisual, name: str, builder: SpecBuilder) -> str:
-    """Add the material of one light for a visual and return its name in the engine; empty if there is none."""
-    look = visual.material
-    if look is None or look.texture is None:
-        return ""
-    folder = look.texture.parent
-    places = [folder.parent / "scripts", folder]
-
-    def allows(path: Path) -> bool:
-        return builder.find_file(path.name, path.parent) is not None
-
-    material = find_material(name, places, allows)
-    texture = find_texture(material, places, allows) if material is not None and material.texture else None
-    if texture is None:
-        return ""
-    builder.files_read.append(texture)
-    return builder.add_material(visual, replace(look, script=name, texture=texture))
 
 
 class TrafficBar(ModelPlugin):

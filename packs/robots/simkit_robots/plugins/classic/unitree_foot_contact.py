@@ -6,7 +6,7 @@ One deliberate difference: the header has the time and the frame of the link; Un
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -18,7 +18,6 @@ from simkit.plugins.find_entities import link_name
 
 if TYPE_CHECKING:
     from simkit.pose import Vector
-    from simkit.sensors.devices.contact import Contact
 
 _WRENCH: Final = "geometry_msgs/msg/WrenchStamped"
 _TOPIC: Final = "/visual/{}/the_force"
@@ -35,7 +34,7 @@ class UnitreeFootContact(SensorPlugin):
     endpoints = (publishes(_TOPIC.format("{sensor}"), _WRENCH),)
     only_publishes = True
 
-    def load(self, parent: Contact, params: Params) -> None:
+    def load(self, parent: Any, params: Params) -> None:
         if not hasattr(parent, "publish_states"):
             self.refuse(parent, "contact")
             return
