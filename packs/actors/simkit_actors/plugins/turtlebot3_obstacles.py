@@ -16,8 +16,7 @@ from typing import TYPE_CHECKING, Final
 
 from simkit import Params, Pose
 from simkit.plugins.drives.kinematic_motion import KinematicMotion, KinematicMover, KinematicPlugin, VelocityTarget
-from simkit.scene import Trajectory
-from simkit.scene.world import Waypoint
+from simkit.scene import Trajectory, Waypoint
 from simkit_actors.plugins.script import Track
 
 if TYPE_CHECKING:
