@@ -309,7 +309,7 @@ class SpecBuilder:
         Args:
             joint_scoped: scoped name of the joint.
             axis: index of the axis.
-            max_effort: effort limit [N·m or N]; the joint's own effort limit counts too.
+            max_effort: effort limit [N·m or N]; the joint's own effort limit counts only if the caller includes it.
             max_velocity: velocity limit [rad/s or m/s]; with the effort it gives the inertia of the drive's rotor.
             owner: name of the driver; part of the actuator's name.
             has_rotor: True if the joint may get an armature, which servos need.
@@ -334,7 +334,7 @@ class SpecBuilder:
         if not 0 <= axis < len(joint.joint_names):
             raise KeyError(f"joint {scoped!r} ({joint.type}) has no axis {axis} to drive")
         record = self.records[joint.model]
-        if axis < len(joint.scene.axes):
+        if axis < len(joint.scene.axes) and kind != "drive":
             max_effort = min(max_effort, joint.scene.axes[axis].effort)
         if max_effort == 0.0:
             message = f"{owner} drives joint {scoped}, but the joint's effort limit is 0: it never moves"

@@ -81,7 +81,7 @@ class Materials:
         if colour is not None:
             numbers = leading_numbers(colour, "rgba", 4, "red green blue alpha")
             if numbers is None and "rgba" not in colour.attributes:
-                report_missing(colour, "rgba", "red green blue alpha")
+                report_substitute(colour, "<color> has no rgba= (red green blue alpha)", "the colour is left out")
             if numbers is not None:
                 clamped = [min(1.0, max(0.0, v)) for v in numbers]
                 if clamped != list(numbers):

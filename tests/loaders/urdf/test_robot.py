@@ -359,6 +359,16 @@ def test_colours_outside_their_range_are_limited_and_extra_numbers_ignored(load)
     assert not errors(found)
 
 
+def test_a_colour_without_rgba_is_left_out_as_in_urdfdom(load):
+    visual = (
+        '<visual><geometry><sphere radius="1"/></geometry><material name="m"><color>1 1 1</color></material></visual>'
+    )
+    scene, found = load(robot(link("l", MASS + visual)))
+    assert scene.model.links[0].visuals[0].material is None
+    assert len(with_code(found, "SK-URDF-031")) == 1
+    assert not errors(found)
+
+
 def test_a_plane_is_read_as_in_pybullet_and_an_unknown_shape_is_left_out(load):
     text = link(
         "l",
