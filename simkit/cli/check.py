@@ -11,6 +11,7 @@ from typing import Annotated
 from typer import Option
 
 from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
+from simkit.cli.second_reader import Against, compare_readers
 from simkit.cli.terminal import options
 from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import print_diagnostics, report_errors, stdout_console
@@ -44,6 +45,7 @@ def check(
         Path | None, option("With --fix-inertia: corrected file to write.", "OUT", "--output", "-o")
     ] = None,
     force: options.Force = False,
+    against: Against = None,
     given: GivenOptions = NONE_GIVEN,
 ) -> int:
     """Print all problems of a file without running it."""
@@ -53,11 +55,16 @@ def check(
         return _fix_inertia(file, output, force, given.source_options().get("resource_paths", ()), json_)
     if output is not None:
         raise InputError("SK-CLI-018", "--output needs --fix-inertia")
-    diagnostics = list(check_file(file, **given.load_arguments()))
+    diagnostics, comparison = list(check_file(file, **given.load_arguments())), ""
+    if against is not None:
+        differences, comparison = compare_readers(file, against, given.source_options(), diagnostics)
+        diagnostics += differences
     if json_:
         stdout_console().file.write(json.dumps([d.as_dict() for d in diagnostics], indent=2) + "\n")
     else:
         print_diagnostics(diagnostics, verbose=True, console=stdout_console(), every=every)
+        if comparison:
+            stdout_console().print(comparison)
         stdout_console().print(_counts(diagnostics))
     bad = {"error", "warning"} if strict else {"error"}
     return 2 if any(d.severity in bad for d in diagnostics) else 0

@@ -149,6 +149,8 @@ class UriCandidates:
                     if TrustedFolders([start]).allows(near):
                         self.trusted.add(near)
                     yield join_below(near, inside)
+                elif self.allows(near, relative_to):  # a folder of models in the project or package of the file
+                    yield join_below(near, inside)
         for bundle in bundled_folders("assets"):
             yield join_below(bundle, below)
             groups = sorted(bundle.glob(f"*/{name}/")) if name.replace("_", "").isalnum() else ()

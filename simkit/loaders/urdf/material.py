@@ -81,7 +81,7 @@ class Materials:
         if colour is not None:
             numbers = leading_numbers(colour, "rgba", 4, "red green blue alpha")
             if numbers is None and "rgba" not in colour.attributes:
-                self._report_no_colour(element, colour)
+                report_substitute(colour, "<color> has no rgba= (red green blue alpha)", "the colour is left out")
             if numbers is not None:
                 clamped = [min(1.0, max(0.0, v)) for v in numbers]
                 if clamped != list(numbers):
@@ -99,13 +99,6 @@ class Materials:
             return None
         base = rgba or (1.0, 1.0, 1.0, 1.0)
         return Material(base, base, texture=path)
-
-    def _report_no_colour(self, element: Params, colour: Params) -> None:
-        """Report a `<color>` without rgba=: urdfdom refuses it in `<robot>` and accepts it in a visual."""
-        if any(element is other for other in self.draft.element.all("material")):
-            report_missing(colour, "rgba", "red green blue alpha")
-        else:
-            report_substitute(colour, "<color> has no rgba= (red green blue alpha)", "the material has no colour")
 
 
 def _has_own_look(element: Params) -> bool:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from simkit.diagnostics import Where
+from simkit.diagnostics import Diagnostics, Where
 from simkit.params import Params
 from simkit.plugins import ModelPlugin, Plugin, SensorPlugin, WorldPlugin
 from simkit.plugins.discovery.find_plugin_class import find_plugin, plugin_kinds
@@ -101,9 +101,23 @@ def test_a_dissimilar_name_gets_no_other_name() -> None:
 
 
 def test_an_unsupported_gazebo_plugin_is_reported_as_such() -> None:
-    plugin = named("gz-sim-lens-flare-system", "gz::sim::systems::LensFlare")
+    plugin = named("gz-sim-breadcrumbs-system", "gz::sim::systems::Breadcrumbs")
     assert find_plugin(plugin) is None
     assert reported(plugin) == [("SK-PLUGIN-002", "warning")]
+
+
+def test_an_unsupported_plugin_that_only_changes_pictures_is_a_note() -> None:
+    plugin = named("gz-sim-lens-flare-system", "gz::sim::systems::LensFlare")
+    assert find_plugin(plugin) is None
+    assert reported(plugin) == [("SK-PLUGIN-002", "note")]
+
+
+def test_the_plugins_of_one_family_are_reported_once() -> None:
+    found = Diagnostics()
+    for name in ("controlboard", "controlboard", "imu", "forcetorque"):
+        assert find_plugin(named(f"libgazebo_yarp_{name}.so"), diagnostics=found) is None
+    (warning,) = found
+    assert "gz-sim-joint-position-controller-system" in warning.message
 
 
 def test_a_plugin_on_the_wrong_kind_of_parent_is_ignored_with_the_right_kind() -> None:
