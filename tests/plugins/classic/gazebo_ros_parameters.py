@@ -1,7 +1,7 @@
 """Program that writes the table of the parameters that the plugins of gazebo_ros_pkgs read.
 
-The table, `simkit/plugins/classic/gazebo_ros_parameters.toml`, has the names of the elements by library and version of ROS.
-The program finds the names in the sources of a clone, in which every access has a literal name, such as
+The table, `simkit/plugins/classic/gazebo_ros_parameters.toml`, has the names of the elements by library and version of
+ROS. The program finds the names in the sources of a clone, in which every access has a literal name, such as
 `_sdf->Get<double>("update_rate")`::
 
     git clone -b ros2 https://github.com/ros-simulation/gazebo_ros_pkgs ros2

@@ -30,7 +30,11 @@ class VelocityJointTrajectoryController(PositionJointTrajectoryController):
 class EffortJointTrajectoryController(PositionJointTrajectoryController):
     """Follows trajectories by effort commands from PIDs, as the ROS 1 controller does."""
 
-    types = ("effort_controllers/JointTrajectoryController",)
+    types = (
+        "effort_controllers/JointTrajectoryController",
+        "robot_mechanism_controllers/JointTrajectoryActionController",
+        "robot_mechanism_controllers/JointSplineTrajectoryController",
+    )
     default_commands = ("effort",)
 
 
