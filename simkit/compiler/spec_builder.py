@@ -287,22 +287,33 @@ class SpecBuilder:
         return self._writer(record).geoms.add_material(visual, replace(look, script=name, texture=texture))
 
     def add_velocity_servo(
-        self, joint_scoped: str, *, axis: int = 0, max_effort: float, owner: str, kv: float | None = None
+        self,
+        joint_scoped: str,
+        *,
+        axis: int = 0,
+        max_effort: float,
+        owner: str,
+        kv: float | None = None,
+        joint_limit: bool = True,
     ) -> ActuatorRef:
         """Add a servo whose control is a velocity [rad/s or m/s].
 
         Args:
             joint_scoped: scoped name of the joint.
             axis: index of the axis.
-            max_effort: effort limit [N·m or N]; the joint's own effort limit counts too.
+            max_effort: effort limit [N·m or N].
             owner: name of the driver; part of the actuator's name.
             kv: requested gain. A load then slows the joint down. None uses the highest stable gain and integral action,
                 which compensates a constant load.
+            joint_limit: the joint's own effort limit counts too. False for the joint motors of Gazebo Classic
+                (`SetParam("fmax")`), which know only their own limit.
 
         Raises:
             KeyError: no such joint or axis.
         """
-        return self._add_actuator("velocity", joint_scoped, axis, max_effort, owner, None, kv)
+        return self._add_actuator(
+            "velocity", joint_scoped, axis, max_effort, owner, None, kv, has_joint_limit=joint_limit
+        )
 
     def add_position_servo(
         self,
@@ -357,13 +368,22 @@ class SpecBuilder:
         return self._add_actuator("motor", joint_scoped, axis, max_effort, owner, None, None)
 
     def _add_actuator(
-        self, kind: str, scoped: str, axis: int, max_effort: float, owner: str, kp: float | None, kv: float | None
+        self,
+        kind: str,
+        scoped: str,
+        axis: int,
+        max_effort: float,
+        owner: str,
+        kp: float | None,
+        kv: float | None,
+        *,
+        has_joint_limit: bool = True,
     ) -> ActuatorRef:
         joint = self.names.joint(scoped)
         if not 0 <= axis < len(joint.joint_names):
             raise KeyError(f"joint {scoped!r} ({joint.type}) has no axis {axis} to drive")
         record = self.records[joint.model]
-        if axis < len(joint.scene.axes) and kind != "drive":
+        if has_joint_limit and axis < len(joint.scene.axes) and kind != "drive":
             max_effort = min(max_effort, joint.scene.axes[axis].effort)
         if max_effort == 0.0:
             message = f"{owner} drives joint {scoped}, but the joint's effort limit is 0: it never moves"

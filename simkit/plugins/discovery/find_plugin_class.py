@@ -140,15 +140,10 @@ def _report_unknown(plugin: ScenePlugin, diagnostics: Diagnostics) -> None:
     spelled = plugin_kinds().written
     cores = {_core(name): spelled[name] for name in sorted(spelled, reverse=True)}
     near = next(filter(None, (closest(_core(name), cores) for name in names)), None)
-    if near:
-        hint = f"did you mean {cores[near]!r}?"
-    else:
-        nearest = closest(names[0] if names else "", spelled, least=0.0)
-        others = "`simkit plugin list` shows all names"
-        hint = f"the closest known name, {spelled[nearest]!r}, differs much; {others}" if nearest else ""
-    hint = f"{hint}; or install the pack that has it".removeprefix("; or ")
+    others = "to write it in Python: docs/writing_a_plugin.md; or install the pack that has it"
+    known = f"did you mean {cores[near]!r}? Else, " if near else "`simkit plugin list` shows all names; "
     message = f"unknown plugin {plugin.filename!r} (name {plugin.name!r}); it is ignored"
-    diagnostics.warning("SK-PLUGIN-001", message, plugin.where, hint)
+    diagnostics.warning("SK-PLUGIN-001", message, plugin.where, known + others)
 
 
 def _report_unsupported(plugin: ScenePlugin, known: UnsupportedPlugin | None, diagnostics: Diagnostics) -> None:
