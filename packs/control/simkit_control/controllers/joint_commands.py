@@ -39,7 +39,7 @@ class ForwardCommandController(Controller):
         interface: command interface; None if `interface_name` sets it.
     """
 
-    types = ("forward_command_controller/ForwardCommandController",)
+    types: ClassVar[tuple[str, ...]] = ("forward_command_controller/ForwardCommandController",)
     interface: ClassVar[str | None] = None
 
     def configure(self) -> None:

@@ -13,7 +13,7 @@ from simkit_control.plugins.ros2_control.joint_pids import JointPids
 class PositionJointTrajectoryController(JointTrajectoryController):
     """Follows trajectories by position commands, as the ROS 1 controller does."""
 
-    types = ("position_controllers/JointTrajectoryController",)
+    types: ClassVar[tuple[str, ...]] = ("position_controllers/JointTrajectoryController",)
     default_commands: ClassVar[tuple[str, ...]] = ("position",)
     default_states = ("position", "velocity")
     topics: ClassVar[tuple[str, ...]] = ("~/command", "~/joint_trajectory")

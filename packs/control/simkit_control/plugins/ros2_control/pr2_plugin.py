@@ -1,9 +1,9 @@
 """PR2's controller manager in Gazebo Classic: `libgazebo_ros_controller_manager.so`.
 
 The parameters, the global namespace and the joint states are those of `gazebo_ros_controller_manager.cpp` in
-pr2_simulator and of `controller_manager.cpp` in pr2_mechanism. Two differences are deliberate: a joint without an active
-controller holds its position, while PR2's joints are free until their controllers start; and the services have the types
-of ROS 2's controller manager.
+pr2_simulator and of `controller_manager.cpp` in pr2_mechanism. Two differences are deliberate. A joint without a
+controller holds its position; PR2's joints are free until their controllers start. The services have the types of
+ROS 2's controller manager.
 """
 
 from __future__ import annotations
