@@ -14,6 +14,7 @@ from typing import Any, ClassVar, TypeVar
 from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
 from simkit.number_text import is_number, parse_boolean, parse_number, range_text, without_units
 from simkit.pose import IDENTITY, Pose
+from simkit.template_texts import find_template_text
 
 T = TypeVar("T")
 LARGEST = 1e100
@@ -382,4 +383,5 @@ class Params:
 
     def _bad(self, text: str, allowed: str, where: Where) -> None:
         shown = text if len(text) <= 200 else text[:200] + "..."
-        self.diagnostics.error("SK-PARAM-002", f"found {shown}; expected {allowed}", where)
+        hint = find_template_text(text)[1]
+        self.diagnostics.error("SK-PARAM-002", f"found {shown}; expected {allowed}", where, hint)

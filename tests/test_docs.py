@@ -94,7 +94,7 @@ def test_every_command_has_its_page() -> None:
 def test_each_command_that_installs_simkit_names_the_repository() -> None:
     """No package index has the distribution; remove this test when one has it."""
     command = re.compile(r"pip install[^`\n]*?simkit-robotics(?P<rest>[^`\n]*)")
-    repository = re.compile(r"(\[[\w,{}]+\])? @ git\+")
+    repository = re.compile(r"(\[[\w,{}-]+\])? @ git\+")
     texts = [*TEXTS, ROOT / "README.md", *(ROOT / "labs").rglob("*.md"), *(ROOT / "docs").rglob("*.yml")]
     texts += [*(ROOT / "simkit").rglob("*.toml"), *(ROOT / "packs").rglob("*.toml")]
     wrong = []

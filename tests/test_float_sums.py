@@ -26,6 +26,8 @@ PACKAGES = [ROOT / "simkit", *sorted(ROOT.glob("packs/*/simkit_*"))]
 INTEGERS = {
     ("bridges/live/loopback_socket.py", "flags"): "flags of a file",
     ("cli/bag.py", "e.count for e in exports"): "messages",
+    ("testing/golden/compare/runs.py", "golden.diagnostics.get(code, 0) for code in LEFT_OUT_CODES"): "warnings",
+    ("testing/golden/compare/runs.py", "now.values()"): "warnings",
     ("cli/bag_record.py", "lost.values()"): "messages",
     ("simkit_fuel/cli/fetch.py", "resource.size or 0 for resource in new"): "bytes",
     ("cli/golden.py", "path.stat().st_size for path in out_.iterdir()"): "bytes",

@@ -59,7 +59,7 @@ SMALL_MODULES = frozenset(
         "pose",
         "process_control",
     }
-    | {"hidden_text", "json_reader", "linked_files", "project_folder"}
+    | {"hidden_text", "json_reader", "linked_files", "project_folder", "template_texts"}
     | {"extend", "lazy_names"}
     | {"run_checks", "run_fields", "run_files", "run_nodes", "run_spec", "run_values"}
     | {"progress", "registry", "save_path", "topic_logger", "trusted_folders", "version", "yaml_reader"}
@@ -150,6 +150,7 @@ HEAVY = {
     "webbrowser": "only a desktop needs it",
     "websockets": "0.05 s; only servers need it",
     "xacro": "only xacro files need it",
+    "yourdfpy": "optional: the extra `second-reader`",
     "yaml": "only YAML files need it",
     "zstandard": "only bags need it",
 }

@@ -12,6 +12,7 @@ from typing import Annotated
 from typer import Option
 
 from simkit.cli.run_options import NONE_GIVEN, GivenOptions, parse_seconds, with_run_options
+from simkit.cli.second_reader import Against, compare_readers
 from simkit.cli.terminal import options
 from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import print_diagnostics, report_errors, stdout_console
@@ -59,6 +60,7 @@ def check(
         option("For a folder: longest wall time for one file; default: 60 s.", "S", "--limit", parser=parse_seconds),
     ] = None,
     force: options.Force = False,
+    against: Against = None,
     given: GivenOptions = NONE_GIVEN,
 ) -> int:
     """Print all problems of a file without running it, or the scores of all files of a folder."""
@@ -69,11 +71,15 @@ def check(
         raise InputError("SK-CLI-018", "--fix-inertia cannot be used with --score and --html")
     if output is not None and not fix_inertia:
         raise InputError("SK-CLI-018", "--output needs --fix-inertia")
+    if against is not None and (score or html is not None or fix_inertia):
+        raise InputError("SK-CLI-018", "--against cannot be used with --score, --html and --fix-inertia")
     if html is not None:
         check_file(html, overwrite=force)
     if not fix_inertia and _is_searched(file):
         from simkit.cli.scores.score_command import check_folder
 
+        if against is not None:
+            raise InputError("SK-CLI-018", "--against needs one file, not a folder")
         return check_folder(
             file, given.load_arguments(), effect_of, run_options=list(_run_options(given)), jobs=jobs, limit=limit,
             html=html, json_=json_, strict=strict, every=every,
@@ -86,11 +92,16 @@ def check(
         from simkit.cli.scores.score_command import show_score
 
         return show_score(file, given.load_arguments(), effect_of, html=html, json_=json_, strict=strict)
-    diagnostics = list(find_problems(file, **given.load_arguments()))
+    diagnostics, comparison = list(find_problems(file, **given.load_arguments())), ""
+    if against is not None:
+        differences, comparison = compare_readers(file, against, given.source_options(), diagnostics)
+        diagnostics += differences
     if json_:
         stdout_console().file.write(json.dumps([d.as_dict() for d in diagnostics], indent=2) + "\n")
     else:
         print_diagnostics(diagnostics, verbose=True, console=stdout_console(), every=every)
+        if comparison:
+            stdout_console().print(comparison)
         stdout_console().print(_counts(diagnostics))
     bad = {"error", "warning"} if strict else {"error"}
     return 2 if any(d.severity in bad for d in diagnostics) else 0

@@ -27,7 +27,14 @@ from simkit.loaders.resources.loader import Loader, LoadRequest, MeshReader, Mjc
 from simkit.loaders.resources.model_folder import model_file
 from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.loaders.resources.uris import access_problem, sibling_names
-from simkit.loaders.resources.xml_reader import ALLOWED_FORMATS, Document, foreign_root_hint, parse_file, parse_text
+from simkit.loaders.resources.xml_reader import (
+    ALLOWED_FORMATS,
+    Document,
+    foreign_root_hint,
+    parse_file,
+    parse_text,
+    report_template_texts,
+)
 from simkit.loaders.xacro import needs_expansion
 from simkit.pose import Pose
 from simkit.registry import Kinds
@@ -116,7 +123,10 @@ def find_document(
     is_uri = isinstance(source, str) and "://" in source and "<" not in source
     read = _document_of_uri if is_uri else _document
     document = read(source, resolver, diagnostics)
-    if document is None or not needs_expansion(document):
+    if document is None:
+        return None, False
+    if not needs_expansion(document):
+        report_template_texts(document, diagnostics)
         return document, False
     from simkit.loaders.xacro.expansion import expand  # 5 ms, and most files are not xacro
 

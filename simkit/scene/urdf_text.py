@@ -8,22 +8,27 @@ from pathlib import Path
 from simkit.params import Params
 
 
-def urdf_text(root: Params) -> str:
-    """Return the URDF of a robot after the expansion of xacro; relative file names become `file://` URIs."""
-    return '<?xml version="1.0"?>\n' + "\n".join(_lines(root, 0)) + "\n"
+def urdf_text(root: Params, *, absolute: bool = True) -> str:
+    """Return the URDF of a robot after the expansion of xacro.
+
+    Args:
+        root: root element.
+        absolute: true to write relative file names as `file://` URIs.
+    """
+    return '<?xml version="1.0"?>\n' + "\n".join(_lines(root, 0, absolute)) + "\n"
 
 
-def _lines(element: Params, depth: int) -> list[str]:
+def _lines(element: Params, depth: int, absolute: bool) -> list[str]:
     indent = "  " * depth
     attributes = "".join(
-        f' {name}="{escape(_file_uri(element, value) if name == "filename" else value)}"'
+        f' {name}="{escape(_file_uri(element, value) if absolute and name == "filename" else value)}"'
         for name, value in element.attributes.items()
     )
     opening = f"{indent}<{element.name}{attributes}"
     text = escape(element.value, quote=False)
     if not element.children:
         return [f"{opening}>{text}</{element.name}>" if text else f"{opening}/>"]
-    inner = [line for child in element.children for line in _lines(child, depth + 1)]
+    inner = [line for child in element.children for line in _lines(child, depth + 1, absolute)]
     return [f"{opening}>{text}", *inner, f"{indent}</{element.name}>"]
 
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from simkit.testing.golden.check import check_golden
     from simkit.testing.golden.compare.runs import compare
     from simkit.testing.golden.store import write_golden
+    from simkit.testing.run_record.left_out import count_left_out, log_left_out, newly_left_out
     from simkit.testing.run_record.run_recorder import record_run
     from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
@@ -24,7 +25,10 @@ __all__ = [
     "Watch",
     "check_golden",
     "compare",
+    "count_left_out",
     "explain",
+    "log_left_out",
+    "newly_left_out",
     "open_scenario",
     "record_run",
     "run_scenario",
@@ -37,6 +41,7 @@ _MODULES = {
     "simkit.testing.golden.check": ("check_golden",),
     "simkit.testing.golden.compare.runs": ("compare",),
     "simkit.testing.golden.store": ("write_golden",),
+    "simkit.testing.run_record.left_out": ("count_left_out", "log_left_out", "newly_left_out"),
     "simkit.testing.run_record.run_recorder": ("record_run",),
     "simkit.testing.scenarios.scenario_run": ("open_scenario", "run_scenario"),
 }

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
+import logging
 import math
 import pickle
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -451,3 +453,39 @@ def test_on_reset_draws_the_same_numbers_before_the_first_reset() -> None:
 def test_the_options_of_an_environment_have_one_list_of_names() -> None:
     names = [field.name for field in dataclasses.fields(simkit.gym.EnvironmentSpec) if field.name != "run"]
     assert list(EnvironmentOptions.__annotations__) == [*names, "overrides", "seed", "render_mode", "size"]
+
+
+TYPO = "<plugin name='drive' filename='gz-sim-joint-controller-system'><joint_name>{}</joint_name></plugin>"
+
+
+@pytest.mark.leaves_out
+def test_an_environment_tells_what_its_world_runs_without(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    file = tmp_path / "cart.sdf"
+    file.write_text(CART.replace("</model></world>", TYPO.format("silde") + "</model></world>"), encoding="utf-8")
+    name = "plugin 'drive' (gz-sim-joint-controller-system) of 'cart'"
+    with caplog.at_level(logging.WARNING, "simkit"):
+        env = simkit.gym.make(file, observation="/eye", action=SLIDE)
+    assert env.metadata["left_out"] == {name: 1} and f"the world runs without {name}" in caplog.text
+    env.reset(seed=1)
+    env.step([0.0])
+    clone = env.clone()
+    assert clone.metadata["left_out"] == {name: 1}
+    clone.close()
+    env.close()
+
+
+@pytest.mark.leaves_out
+def test_an_episode_whose_values_leave_out_a_plugin_is_an_error(tmp_path: Path) -> None:
+    file = tmp_path / "cart.sdf.xacro"
+    head = '<xacro:arg name="joint" default="slide"/>'
+    text = CART.replace('<sdf version="1.9">', f'<sdf version="1.9" xmlns:xacro="http://ros.org/wiki/xacro">{head}')
+    text = text.replace("</model></world>", TYPO.format("$(arg joint)") + "</model></world>")
+    file.write_text(text, encoding="utf-8")
+    env = simkit.gym.make(
+        file, observation="/eye", action=SLIDE, randomise={"xacro.joint": ["slide"] * 20 + ["silde"]}, seed=1
+    )
+    assert env.metadata["left_out"] == {}
+    env.reset(options={"values": {"xacro.joint": "slide"}})
+    with pytest.raises(simkit.InputError, match=r"SK-GYM-006.*is without plugin 'drive'"):
+        env.reset(options={"values": {"xacro.joint": "silde"}})
+    env.close()

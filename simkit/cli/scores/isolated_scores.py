@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from multiprocessing.connection import Connection
     from multiprocessing.process import BaseProcess
 
-STOPPED: Final = "SK-CLI-066"
+STOPPED: Final = "SK-CLI-061"
 MEMORY: Final = 6 << 30
 """Limit of the address space of a child process [bytes]."""
 _KEPT_MEMORY: Final = 3 << 29  # resident memory [bytes] above which a process is replaced after a file

@@ -60,13 +60,13 @@ def check_folder(
     """Print the scores of all files of a folder, and write their page; return the exit code.
 
     Raises:
-        InputError: SK-CLI-067 the folder has no file that can be checked.
+        InputError: SK-CLI-062 the folder has no file that can be checked.
     """
     found = find_files(Path(folder))
     if not found.files:
         others = ", ".join(f"{len(files)} × {kind.title}" for kind, files in found.others.items())
         message = f"{folder} has no world, model or robot" + (f"; it has {others}" if others else "")
-        raise InputError("SK-CLI-067", message)
+        raise InputError("SK-CLI-062", message)
     limits = ScoreLimits(jobs or min(usable_cores(), _MOST_JOBS), limit or USUAL_LIMIT)
     options = ScoreOptions(effect_of, details=False, picture=0 if html is None else _SMALL_PICTURE, passes=1)
     paths = [os.path.join(folder, name) for name in found.files]  # noqa: PTH118 - keeps `./` of the argument

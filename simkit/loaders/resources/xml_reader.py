@@ -10,10 +10,11 @@ from typing import Final
 from xml.parsers import expat
 
 from simkit import progress
-from simkit.diagnostics import Diagnostics, Where
+from simkit.diagnostics import Diagnostics, Where, shorten
 from simkit.input_file import FileTooLargeError, read_input
 from simkit.params import Params
 from simkit.scene.simkit_elements import PREFIX
+from simkit.template_texts import find_template_text
 
 ALLOWED_FORMATS: Final = "a world or model file is XML that begins with <sdf>, <robot> (URDF, xacro) or <mujoco> (MJCF)"
 
@@ -99,6 +100,8 @@ MAX_BYTES = 256 * 1024 * 1024
 MAX_DEPTH = 200
 MAX_ELEMENTS = 3_000_000
 _PLAIN_AMPERSAND = re.compile(rb"(<!\[CDATA\[.*?\]\]>)|&(?!#?\w+;)", re.DOTALL)
+_MAYBE_TEMPLATE = re.compile(rb"\$[({]|\{[{%]|__[A-Z]|@[A-Z]")
+_MOST_TEMPLATE_TEXTS = 3
 _DECLARATION = re.compile(rb"<\?xml\b[^?]*\?>")
 
 
@@ -268,6 +271,23 @@ def _parse_lenient_text(data: bytes, builder: _TreeBuilder) -> Params | None:
         return builder.read(data)
     except (expat.ExpatError, _RefusedDocument, LookupError, ValueError):
         return None
+
+
+def report_template_texts(document: Document, diagnostics: Diagnostics) -> None:
+    """Warn of texts in a file that a launch file, xacro or a template engine was to fill in."""
+    if not _MAYBE_TEMPLATE.search(document.text):
+        return
+    found: dict[str, tuple[Where, str]] = {}
+    stack = [document.root]
+    while stack:
+        element = stack.pop()
+        stack += reversed(element.children)
+        for text in (*element.attributes.values(), element.value):
+            unfilled, advice = find_template_text(text)
+            if unfilled:
+                found.setdefault(unfilled, (element.where, advice))
+    for text, (where, advice) in list(found.items())[:_MOST_TEMPLATE_TEXTS]:
+        diagnostics.warning("SK-XML-006", f"the text {shorten(text, 60)!r} was not filled in", where, advice)
 
 
 def parse_file(path: Path, diagnostics: Diagnostics, *, keep_space: bool = False) -> Document | None:

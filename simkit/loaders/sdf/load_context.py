@@ -12,7 +12,7 @@ from simkit.diagnostics import Diagnostic, Diagnostics, Where, did_you_mean
 from simkit.loaders.resources.loader import Loader, LoadRequest, MeshReader, MjcfParser
 from simkit.loaders.resources.model_folder import NEWEST_SDF, sdf_version
 from simkit.loaders.resources.uri_resolver import Resolver
-from simkit.loaders.resources.xml_reader import Document, parse_file
+from simkit.loaders.resources.xml_reader import Document, parse_file, report_template_texts
 from simkit.loaders.sdf.entity_names import Repeated, named_elements
 from simkit.loaders.sdf.frames import Frame, Scope, pose_base
 from simkit.loaders.sdf.version_upgrade import modernise, nest_flattened_models
@@ -136,7 +136,9 @@ class Workspace:
             self.diagnostics.error("SK-SDF-016", f"includes are nested deeper than {MAX_INCLUDE_DEPTH}", where)
             return None
         if path not in self._documents:
-            self._documents[path] = parse_file(path, self.diagnostics)
+            self._documents[path] = document = parse_file(path, self.diagnostics)
+            if document is not None:
+                report_template_texts(document, self.diagnostics)
         document = self._documents[path]
         if document is None:
             return None

@@ -9,16 +9,16 @@ from simkit.diagnostics import did_you_mean
 from simkit.params import LARGEST, Params
 from simkit.pose import IDENTITY, Pose
 from simkit.scene.geometry import Vec3, vec3
+from simkit.template_texts import find_template_text
 
 FARTHEST = 1e15  # [m]; sums of larger poses overflow
-_XACRO_HINT = "this looks like unexpanded xacro: load the .xacro file itself"
 
 
 def report_bad_value(element: Params, attribute: str, allowed: str) -> None:
     """Record an error for an invalid value."""
     text = element.attributes.get(attribute, "")
     shown = text if len(text) <= 60 else text[:57] + "..."
-    hint = _XACRO_HINT if "${" in text or "$(" in text else ""
+    hint = find_template_text(text)[1]
     element.error("SK-URDF-013", f'<{element.name} {attribute}="{shown}">: expected {allowed}', hint)
 
 
@@ -155,6 +155,6 @@ def extension_numbers(element: Params, count: int) -> Sequence[float] | None:
     if len(finite) == len(parts) == count:
         return finite
     allowed = "a number" if count == 1 else f"{count} numbers"
-    hint = _XACRO_HINT if "${" in extension_text(element) else ""
+    hint = find_template_text(extension_text(element))[1]
     element.error("SK-URDF-013", f"<{element.name}> is {extension_text(element)!r}; expected {allowed}", hint)
     return None

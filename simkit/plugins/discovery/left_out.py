@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 CODE: Final = "SK-LOAD-013"
 DRIVE_CODE: Final = "SK-LOAD-014"
 """Code for a plugin that drives joints: without it, the robot does not follow its commands."""
-CODES: Final = (CODE, DRIVE_CODE)
 _HINT: Final = "correct the errors above; with --strict they stop the run"
 _VERBS: Final = {
     "publishes": "nothing is published on",

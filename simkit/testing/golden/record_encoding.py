@@ -241,6 +241,7 @@ def encode_record(record: RunRecord) -> tuple[JsonObject, bytes]:
         },
         "sources": dict(record.sources),
         "diagnostics": dict(record.diagnostics),
+        **({} if record.left_out is None else {"left_out": dict(record.left_out)}),
     }
     return about, packer.block(inner)
 
@@ -259,6 +260,7 @@ def decode_record(stored: JsonMapping, data: bytes, scenario: RunSpec) -> RunRec
     environment = {str(k): str(v) for k, v in stored.get("environment", {}).items() if k in ENVIRONMENT_VARIABLES}
     if not all(map(str.isprintable, environment.values())):  # no variable can have a zero byte
         raise PackingError("an environment variable has an invalid character")
+    left_out = stored.get("left_out")
     unpacker = Unpacker(data)
     inner = unpacker.about
     if not scenario.world:
@@ -275,6 +277,7 @@ def decode_record(stored: JsonMapping, data: bytes, scenario: RunSpec) -> RunRec
         {str(k): int(v) for k, v in stored["diagnostics"].items()},
         str(stored["end"]),
         environment=environment,
+        left_out=None if left_out is None else {str(k): int(v) for k, v in left_out.items()},
     )
 
 

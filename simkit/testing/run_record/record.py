@@ -154,6 +154,8 @@ class RunRecord:
         fields: Fields of the compiled model by entity name (`geom robot::wheel::collision size`).
         sources: SHA-256 of the files of the run by name: meshes, pictures, parameter files and the code of plugins.
         diagnostics: Codes reported during loading, with their counts.
+        left_out: Names of the sensors, plugins and controllers without which the world ran, with their numbers; None
+            for a stored record of an older version.
         end: End of the run: "duration", "until", …, or the text of an error.
         simulation: Simulation of the run, which is still open; None for a stored record.
         checks: Results of the scenario's checks; for a new run only.
@@ -170,6 +172,7 @@ class RunRecord:
     fields: Mapping[str, Array] = field(default_factory=dict)
     sources: Mapping[str, str] = field(default_factory=dict)
     diagnostics: Mapping[str, int] = field(default_factory=dict)
+    left_out: Mapping[str, int] | None = field(default_factory=dict, kw_only=True)
     end: str = "duration"
     simulation: Simulation | None = None
     checks: tuple[CheckResult, ...] = ()

@@ -21,6 +21,7 @@ from simkit.recording.bags.bag_contents import matches_topic
 from simkit.recording.message_taps import MessageQueue, TopicTaps
 from simkit.run_spec import RunSpec
 from simkit.testing.run_record.fingerprint import fingerprint, source_hashes
+from simkit.testing.run_record.left_out import count_left_out
 from simkit.testing.run_record.message_recorder import MessageRecorder, message_recorder_for
 from simkit.testing.run_record.record import RunRecord, Stream
 from simkit.testing.run_record.state_recorder import StateRecorder, fields_of_model
@@ -211,6 +212,7 @@ class RunRecorder:
             end,
             self._sim,
             environment=_environment(self._sim),
+            left_out=count_left_out(self._sim.diagnostics),
         )
 
     def _receiver_of(self, topic: str, type_name: str) -> Callable[[object], None] | None:

@@ -10,6 +10,8 @@ import pytest
 import simkit
 from simkit.run_spec import RunSpec
 from simkit.testing.golden.compare.runs import compare
+from simkit.testing.golden.record_encoding import decode_record, encode_record
+from simkit.testing.run_record.record import RunRecord
 from simkit.testing.run_record.run_recorder import record_run
 
 pytestmark = pytest.mark.leaves_out
@@ -111,12 +113,47 @@ def test_a_run_without_faulty_plugins_has_the_same_bits() -> None:
     assert states[0] == states[1]
 
 
+def recorded(file: Path, *plugins: str) -> RunRecord:
+    """Record a short run of the robot with some plugins."""
+    file.write_text(model("".join(plugins)), encoding="utf-8")
+    run = record_run(RunSpec(str(file), duration=0.01, model_world="none"))
+    assert run.simulation is not None
+    run.simulation.close()
+    return run
+
+
 def test_a_golden_check_fails_if_a_plugin_is_newly_left_out(tmp_path: Path) -> None:
     file = tmp_path / "robot.sdf"
-    file.write_text(model(ODOMETRY.format("fast")), encoding="utf-8")
-    run = record_run(RunSpec(str(file), duration=0.01, model_world="none"))
-    assert run.diagnostics["SK-LOAD-013"] == 1
+    golden, run = recorded(file, DRIVE.format("axle")), recorded(file, DRIVE.format("axel"))
+    first = compare(golden, run).differences[0]
+    assert first.kind == "left out"
+    drive = "plugin 'drive' (gz-sim-joint-controller-system) of 'robot'"
+    assert first.words == f"the world runs without {drive}, which the golden run had ({file}:1: SK-LOAD-014)"
     assert not compare(run, run).differences
-    golden = replace(run, diagnostics={})
-    assert ["left out" in d.words for d in compare(golden, run).differences] == [True]
-    assert not compare(run, golden).differences
+    mended = compare(run, golden)
+    assert "left out" not in [d.kind for d in mended.differences] and f"{drive} is no longer left out" in mended.notes
+
+
+def test_another_plugin_that_is_left_out_fails_a_golden_check_too(tmp_path: Path) -> None:
+    file = tmp_path / "robot.sdf"
+    golden = recorded(file, DRIVE.format("axel"), ODOMETRY.format(50))
+    run = recorded(file, DRIVE.format("axle"), ODOMETRY.format("fast"))
+    assert sum(golden.left_out.values()) == sum(run.left_out.values()) == 1  # type: ignore[union-attr]
+    found = [d.field for d in compare(golden, run).differences if d.kind == "left out"]
+    assert found == ["plugin 'odometry' (gz-sim-odometry-publisher-system) of 'robot'"]
+
+
+def test_a_plugin_whose_library_has_a_typo_fails_a_golden_check(tmp_path: Path) -> None:
+    file = tmp_path / "robot.sdf"
+    golden = recorded(file, ODOMETRY.format(50))
+    run = recorded(file, ODOMETRY.format(50).replace("odometry-publisher", "odometry-publsher"))
+    assert [d.kind for d in compare(golden, run).differences][:1] == ["left out"]
+
+
+def test_a_stored_golden_run_keeps_what_is_left_out_and_an_older_one_is_compared_by_number(tmp_path: Path) -> None:
+    run = recorded(tmp_path / "robot.sdf", DRIVE.format("axel"))
+    stored, data = encode_record(run)
+    assert decode_record(stored, data, run.scenario).left_out == run.left_out
+    older = replace(run, left_out=None)
+    assert not compare(older, run).differences
+    assert [d.kind for d in compare(replace(older, diagnostics={}), run).differences] == ["left out"]

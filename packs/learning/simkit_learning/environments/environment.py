@@ -18,7 +18,7 @@ from simkit.diagnostics import shorten
 from simkit.errors import ArgumentTypeError, InputError, SimulationDiverged
 from simkit.plugins.discovery.python_plugins import copied_plugins
 from simkit.scene.overrides import override_texts
-from simkit.testing import open_scenario
+from simkit.testing import count_left_out, log_left_out, newly_left_out, open_scenario
 from simkit.testing.conditions.binder import bind
 from simkit.testing.conditions.bound_expression import is_scalar
 from simkit.testing.conditions.parser import parse
@@ -346,6 +346,7 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
         _check_unused(spec.run.plugins)
         run = replace(spec.run, overrides=overrides, plugins=copied_plugins(spec.run.plugins))
         self.sim = open_scenario(run)
+        self._check_left_out()
         self._loaded_overrides = overrides
         self.steps = round(spec.control_period / self.sim.timestep)
         if self.steps < 1 or abs(self.steps * self.sim.timestep - spec.control_period) > 1e-9:
@@ -358,6 +359,17 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
         except BaseException:
             self.sim.close()
             raise
+
+    def _check_left_out(self) -> None:
+        """Store and log what the world runs without; a later world may not lack more."""
+        now = count_left_out(self.sim.diagnostics)
+        if "left_out" not in self.metadata:
+            self.metadata["left_out"] = now
+            log_left_out(now)
+        if names := newly_left_out(self.metadata["left_out"], now):
+            self.sim.close()
+            text = f"with the values {self.values} the world is without {', '.join(names)}, which it had before"
+            raise invalid(text, "remove these values from randomise, or correct the world", "SK-GYM-006")
 
     def _bind_when_possible(self) -> None:
         """Bind, after the nodes of the run had time to create their topics, such as those of spawned controllers."""

@@ -33,7 +33,7 @@ from simkit_learning.sweeps.result_store import (
 )
 from simkit_learning.sweeps.result_table import write_tables
 from simkit_learning.sweeps.row_runner import SweepTask
-from simkit_learning.sweeps.sweep import check_sweep, description_of, keep_runs
+from simkit_learning.sweeps.sweep import begin_runs, description_of, keep_runs
 from simkit_learning.sweeps.sweep_spec import INVALID, SweepSpec, name_problems, raise_problems
 
 if TYPE_CHECKING:
@@ -97,7 +97,7 @@ def optimise_sweep(
     store.begin(fingerprint, trials * len(seeds), description)
     with locked_blocks(folder, store.blocks):
         finished = {row["run"]: row for row in store.rows()}
-        runner = check_sweep(spec)
+        spec, runner = begin_runs(spec, store)
         most = min(_TOGETHER, trials) * len(seeds)
         with make_executor(spec, jobs, cluster, most, runner, always_processes=always_processes) as executor:
             with progress.task("searching", trials) as task:

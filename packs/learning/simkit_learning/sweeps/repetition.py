@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final, TypedDict
 
@@ -116,7 +116,7 @@ def repeat_run(
         text = f"{source} describes another sweep than {folder}"
         raise InputError(OTHER_SWEEP, text, help="undo the changes of the file or the world, or pass --file")
     stored = next((row for row in store.block_rows(number // store.size) if row["run"] == number), None)
-    runner = RowRunner(spec)
+    runner = RowRunner(replace(spec, left_out=store.description.get("left_out")))
     row = spec.design.row(number)
     try:
         repeated = runner.run(row) if bundle is None else runner.keep(row, bundle.absolute())

@@ -15,7 +15,7 @@ from __future__ import annotations
 import errno
 import json
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from io import RawIOBase
 from pathlib import Path
@@ -26,6 +26,7 @@ from simkit.errors import InputError
 from simkit.input_file import read_failure, read_input, read_input_text
 from simkit.json_reader import parse_json
 from simkit.output_file import open_regular
+from simkit.testing import newly_left_out
 from simkit.writers.atomic_output import write_atomically
 from simkit_learning.sweeps.parameter_space import ParameterValue, Scalar
 
@@ -50,6 +51,7 @@ class SweepDescription(TypedDict, total=False):
         sampled: names of the parameters with distributions.
         file: absolute path of the sweep file; empty for a sweep made in Python.
         search: metric whose best value is searched; missing for other sweeps.
+        left_out: names of the sensors, plugins and controllers without which the runs were made, with their numbers.
         format, fingerprint, count, block: see `ResultStore`.
     """
 
@@ -64,6 +66,7 @@ class SweepDescription(TypedDict, total=False):
     sampled: list[str]
     file: str
     search: str
+    left_out: dict[str, int]
     format: int
     fingerprint: str
     count: int
@@ -174,7 +177,9 @@ class ResultStore:
         try:
             description = parse_json(read_input_text(self.folder / _DESCRIPTION, _LARGEST_FILE, inside=self.folder))
             self.count, self.size = int(description["count"]), int(description["block"])
-            if description["format"] != _FORMAT or self.size < 1:
+            left_out = description.get("left_out", {})
+            is_counted = isinstance(left_out, dict) and all(isinstance(count, int) for count in left_out.values())
+            if description["format"] != _FORMAT or self.size < 1 or not is_counted:
                 raise ValueError
         except (OSError, ValueError, KeyError, TypeError):
             hint = "name the folder that `simkit sweep SWEEP.yaml -o DIR` wrote"
@@ -208,6 +213,29 @@ class ResultStore:
         content: SweepDescription = {
             "format": _FORMAT, "fingerprint": fingerprint, "count": count, "block": self.size, **description
         }  # fmt: skip
+        if "left_out" in self.description:
+            content["left_out"] = self.description["left_out"]
+        self._describe(content)
+
+    def check_left_out(self, left_out: Mapping[str, int]) -> None:
+        """Store what the worlds of the sweep run without, or compare it with what the stored runs had.
+
+        Raises:
+            InputError: SK-SWEEP-003 the stored runs had other sensors, plugins or controllers.
+        """
+        self.open()  # another part of the sweep may have stored it
+        before = self.description.get("left_out")
+        if before is None:
+            self._describe({**self.description, "left_out": dict(left_out)})
+            return
+        problems = [f"is now without {name}, which the stored runs had" for name in newly_left_out(before, left_out)]
+        problems += [f"now has {name}, which the stored runs lacked" for name in newly_left_out(left_out, before)]
+        if problems:
+            text = f"{self.folder} has the results of another sweep: the world {'; it '.join(problems)}"
+            raise InputError(OTHER_SWEEP, text, help="name another folder with -o, or undo the change")
+
+    def _describe(self, content: SweepDescription) -> None:
+        path = self.folder / _DESCRIPTION
         write_atomically(path, (json.dumps(content, indent=1) + "\n").encode(), follow_link=False)
         self.description = content
 

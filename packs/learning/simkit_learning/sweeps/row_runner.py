@@ -17,7 +17,7 @@ from simkit.recording import Recorder
 from simkit.runtime.engine.snapshot import state_hash
 from simkit.scene.overrides import apply_overrides as apply_to_scene
 from simkit.scene.overrides import check_used, value_text
-from simkit.testing import Watch, open_scenario, run_scenario
+from simkit.testing import Watch, count_left_out, newly_left_out, open_scenario, run_scenario
 from simkit.testing.scenarios.scenario_run import ScenarioResult
 from simkit_learning.sweeps.design import SweepRow
 from simkit_learning.sweeps.metrics import RunMetrics
@@ -31,6 +31,7 @@ from simkit_verification.testing.bundles.manifest import CHECK, Failure, failure
 _STATUS: Final = {0: "ok", 1: "error", 2: "invalid", 3: "diverged", 4: "plugin", 5: "failed"}
 CHECKS_FAILED: Final = "SK-SWEEP-006"
 CRASHED: Final = "SK-SWEEP-007"
+LEFT_OUT: Final = "SK-SWEEP-012"
 _LONGEST_MESSAGE: Final = 500
 
 
@@ -107,10 +108,13 @@ class RowRunner:
 
     Args:
         spec: sweep.
+
+    Attributes:
+        left_out: what the worlds of the sweep run without; None before the first world, if the sweep does not say it.
     """
 
     def __init__(self, spec: SweepSpec) -> None:
-        self._spec = spec
+        self._spec, self.left_out = spec, spec.left_out
         self._sim: Simulation | None = None
         self._key: object = None
 
@@ -209,7 +213,16 @@ class RowRunner:
         self._sim = sim = open_scenario(replace(spec, plugins=copied_plugins(spec.plugins)))
         self._key = key
         check_used(sim.diagnostics)
+        self._check_left_out(sim)
         return sim
+
+    def _check_left_out(self, sim: Simulation) -> None:
+        """Raise InputError if the world of a run lacks a plugin that the other runs have."""
+        now = count_left_out(sim.diagnostics)
+        self.left_out = now if self.left_out is None else self.left_out
+        if names := newly_left_out(self.left_out, now):
+            text = f"the world of this run is without {', '.join(names)}, which other runs have"
+            raise InputError(LEFT_OUT, text, help="load the world with the values of this run to see the reason")
 
     def _measure(self, spec: RunSpec, sim: Simulation, result: RowResult) -> None:
         with RunMetrics(sim, self._spec.row_metrics(result.row)) as metrics:

@@ -7,7 +7,7 @@ import tempfile
 import time
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Final, cast
@@ -18,6 +18,7 @@ from simkit.errors import InputError
 from simkit.install_command import install_command
 from simkit.msgs.data_frames import DataFrame
 from simkit.run_spec import FilePath
+from simkit.testing import log_left_out
 from simkit.testing.scenarios.code_permission import permit_code
 from simkit_learning.sweeps.design import Design, Sampling, SweepRow
 from simkit_learning.sweeps.executor import Executor, make_executor
@@ -246,7 +247,7 @@ def run_sweep(
         missing = sum(len(store.missing(block)) for block in blocks)
         simulated = 0.0
         if missing:
-            runner = check_sweep(spec)
+            spec, runner = begin_runs(spec, store)
             runs = (run for block in blocks for run in store.missing(block))
             tasks = (SweepTask(spec.design.row(run)) for run in runs)
             with make_executor(spec, jobs, cluster, missing, runner, always_processes=always_processes) as executor:
@@ -292,6 +293,20 @@ def description_of(spec: SweepSpec) -> SweepDescription:
         "sampled": [name for space in design.distributions for name in space.names],
         "file": str(spec.run.file.absolute()) if spec.run.file is not None else "",
     }
+
+
+def begin_runs(spec: SweepSpec, store: ResultStore) -> tuple[SweepSpec, RowRunner]:
+    """Check a sweep on its world; return it with what its worlds run without, and a runner with a loaded world.
+
+    Raises:
+        InputError: problems of the sweep, as in `check_sweep`; SK-SWEEP-003 the stored runs had other plugins.
+    """
+    runner = check_sweep(spec)
+    with runner.closed_on_error():
+        left_out = runner.left_out or {}
+        store.check_left_out(left_out)
+        log_left_out(left_out)
+    return replace(spec, left_out=left_out), runner
 
 
 def check_sweep(spec: SweepSpec) -> RowRunner:

@@ -117,6 +117,8 @@ class SweepSpec:
         keep: runs whose bundle and bag are kept.
         bag_topics: patterns of the topics in the bags of kept runs; empty for no bags.
         files: check of the files that variables name, for the sweep of a file; None for a sweep made in Python.
+        left_out: names of the sensors, plugins and controllers without which the world of the sweep runs, with their
+            numbers; a run that lacks more than these fails. None before the world is loaded.
         is_warm: True if a worker resets its world between runs instead of loading it again; the results are the same.
     """
 
@@ -126,6 +128,7 @@ class SweepSpec:
     keep: Keep = KEEP.default
     bag_topics: tuple[str, ...] = ()
     is_warm: bool = True
+    left_out: Mapping[str, int] | None = None
     files: ReadableFiles | None = None
 
     def __post_init__(self) -> None:

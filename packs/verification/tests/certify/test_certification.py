@@ -16,7 +16,7 @@ from simkit.cli import app
 from simkit.errors import InputError
 from simkit.memory_error import OutOfMemory
 from simkit_verification.testing.certify import Certificate, Difference, certify
-from simkit_verification.testing.certify.certificate import streams_hash
+from simkit_verification.testing.certify.certificate import conclusion_text, streams_hash
 from simkit_verification.testing.certify.certification import _code_at_timeout, _outcome_of_stopped_process
 from simkit_verification.testing.certify.outcome import RunOutcome
 from simkit_verification.testing.certify.variations import VARIATIONS, choose_variations
@@ -54,10 +54,14 @@ def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("simkit_verification.testing.certify.certify", functools.partial(certify, apart=False))
 
 
-def certified(folder: Path, body: str, names: str = "elsewhere", *, apart: bool = False) -> Certificate:
-    """Certify a plugin with this `before_step` in the reference run and in other variations."""
+def certified(folder: Path, body: str, names: str = "elsewhere", *, apart: bool = False, load: str = "") -> Certificate:
+    """Certify a plugin with this `before_step` in the reference run and in other variations.
+
+    The lines `load` are added to the plugin's method of this name.
+    """
     (folder / "w.sdf").write_text(WORLD)
-    (folder / "mine.py").write_text(HEAD + PUSH + "".join(f"        {line}\n" for line in body.splitlines()))
+    head = HEAD.replace("    def before_step", f"{load}    def before_step")
+    (folder / "mine.py").write_text(head + PUSH + "".join(f"        {line}\n" for line in body.splitlines()))
     scenario = RunSpec(world=str(folder / "w.sdf"), duration=0.1, options={"plugin_paths": [folder]})
     ways = [way for way in VARIATIONS if way.name in ("as it is", names)]
     return certify(scenario, variations=ways, apart=apart)
@@ -120,6 +124,26 @@ def test_a_world_change_without_an_effect_on_outputs_is_a_note(tmp_path: Path) -
     assert made.passed
     (note,) = made.notes
     assert "'m::mine'" in note and "(seen)" in note and "no output differs" in note
+
+
+@pytest.mark.leaves_out
+def test_a_certificate_names_the_plugin_that_every_run_leaves_out(tmp_path: Path) -> None:
+    drive = "<plugin name='drive' filename='gz-sim-joint-controller-system'><joint_name>axel</joint_name></plugin>"
+    (tmp_path / "w.sdf").write_text(WORLD.replace('<plugin filename="mine:Mine" name="mine"/>', drive))
+    made = certify(RunSpec(world=str(tmp_path / "w.sdf"), duration=0.01), variations=VARIATIONS[:2], apart=False)
+    name = "plugin 'drive' (gz-sim-joint-controller-system) of 'm'"
+    assert made.passed and made.to_dict()["left_out"] == {name: 1}
+    assert f"not certified, because the world runs without it: {name}" in conclusion_text(made)
+
+
+@pytest.mark.leaves_out
+def test_a_plugin_that_only_one_process_leaves_out_fails_the_certificate(tmp_path: Path) -> None:
+    fault = (
+        "        if os.environ['PYTHONHASHSEED'] != '0':\n            params.error('SK-MINE-001', 'another process')\n"
+    )
+    made = certified(tmp_path, "pass", apart=True, load=fault)
+    (found,) = made.differences
+    assert not made.passed and found.words == "only the world of this run is without plugin 'mine' (mine:Mine) of 'm'"
 
 
 def test_the_same_error_at_the_same_tick_is_no_difference(tmp_path: Path) -> None:

@@ -10,8 +10,9 @@ if TYPE_CHECKING:
     from simkit.testing.run_record.record import RunRecord
 
 DifferenceKind = Literal[
-    "value", "bits", "count", "time", "missing", "extra", "text", "picture", "statistics", "state", "model", "end"
-]
+    "value", "bits", "count", "time", "missing", "extra", "text", "picture", "statistics", "state", "model", "end",
+    "left out",
+]  # fmt: skip
 CauseKind = Literal["model", "file", "code", "version", "scenario", "input"]
 
 

@@ -11,12 +11,14 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from simkit.plugins.discovery.left_out import CODES as LEFT_OUT_CODES
+from simkit.diagnostics import Where
 from simkit.testing.golden.compare.difference import Comparison, Difference, DifferenceKind
 from simkit.testing.golden.compare.streams import StreamPair, begin_time, compare_stream
 from simkit.testing.golden.compare.tolerances import joint_unit, quantity_text, time_text, tolerance_of
 from simkit.testing.golden.compare.world_edits import field_edits
 from simkit.testing.run_record.fingerprint import RAY_TRACER, fingerprint_differences
+from simkit.testing.run_record.left_out import CODES as LEFT_OUT_CODES
+from simkit.testing.run_record.left_out import newly_left_out
 from simkit.testing.run_record.record import RunRecord, States, Stream
 
 _TINY: Final = 1e-9  # smallest scale of a quantity, so that tiny motions are not reported as large relative differences
@@ -231,7 +233,8 @@ def compare(golden: RunRecord, run: RunRecord, *, exact: bool | None = None) -> 
         if physics is not None:
             comparison.differences.append(physics)
     _compare_ends(golden, run, comparison)
-    comparison.differences.sort(key=lambda d: (d.kind != "end", d.time, d.topic))
+    _compare_left_out(golden, run, comparison)
+    comparison.differences.sort(key=lambda d: (d.kind != "left out", d.kind != "end", d.time, d.topic))
     if run.scenario.model and not comparison.differences:
         _compare_worlds(golden, run, comparison)
     _note_diagnostics(golden, run, comparison)
@@ -377,15 +380,31 @@ def _is_same_value(a: object, b: object) -> bool:
     return a == b
 
 
+def _compare_left_out(golden: RunRecord, run: RunRecord, found: Comparison) -> None:
+    """Report what the new run left out and the golden run had; fewer than in the golden run are only noted."""
+    now = run.left_out or {}
+    if golden.left_out is None:  # an older version stored no names
+        count = sum(golden.diagnostics.get(code, 0) for code in LEFT_OUT_CODES)
+        names, gone = list(now) if sum(now.values()) > count else [], []
+    else:
+        names, gone = newly_left_out(golden.left_out, now), newly_left_out(now, golden.left_out)
+    for name in names:
+        words = f"the world runs without {name}, which the golden run had{_reason_for(name, run)}"
+        found.differences.append(Difference("", name, "left out", 0.0, math.nan, "", words, "nothing more left out"))
+    found.notes += [f"{name} is no longer left out" for name in gone]
+
+
+def _reason_for(name: str, run: RunRecord) -> str:
+    """Return the place of the warning with this name, which stands beside the reason in the output of the load."""
+    reported = () if run.simulation is None else run.simulation.diagnostics
+    found = next((item for item in reported if item.code in LEFT_OUT_CODES and name in item.message), None)
+    return "" if found is None else f" ({Where(found.file, found.line)}: {found.code})"
+
+
 def _note_diagnostics(golden: RunRecord, run: RunRecord, found: Comparison) -> None:
     for code in sorted(golden.diagnostics.keys() | run.diagnostics.keys()):
         counts = golden.diagnostics.get(code, 0), run.diagnostics.get(code, 0)
-        if code in LEFT_OUT_CODES and counts[1] > counts[0]:
-            words = f"{counts[1]} sensors or plugins are left out ({code}); in the golden run {counts[0]}"
-            found.differences.append(
-                Difference("", "", "model", 0.0, float(counts[1] - counts[0]), "", words, "as many, or fewer")
-            )
-        elif counts[0] != counts[1]:
+        if counts[0] != counts[1]:
             found.notes.append(f"loading reports {code} {counts[1]} times; in the golden run {counts[0]} times")
 
 

@@ -78,8 +78,11 @@ def headline(verdict: Verdict) -> str:
 
 
 def first_difference(comparison: Comparison) -> Difference | None:
-    """Return the first difference of a topic; sensor readings are more informative than state values."""
-    of_topics = (difference for difference in comparison.differences if difference.topic)
+    """Return the first part that is left out, else the first difference of a topic, else any.
+
+    A part that is left out explains the other differences; readings of sensors say more than values of the state.
+    """
+    of_topics = (d for d in comparison.differences if d.topic or d.kind == "left out")
     return next(of_topics, comparison.differences[0] if comparison.differences else None)
 
 

@@ -83,6 +83,14 @@ class Certificate:
     fingerprint: dict[str, str] = field(default_factory=dict)
 
     @property
+    def left_out(self) -> dict[str, int]:
+        """Names of the sensors, plugins and controllers without which the first run was made, with their numbers.
+
+        The certificate says nothing about these.
+        """
+        return self.rows[0].outcome.left_out
+
+    @property
     def passed(self) -> bool:
         """True if all runs gave exactly the same results."""
         return not self.differences
@@ -103,6 +111,7 @@ class Certificate:
             "streams": self.rows[0].streams,
             "topics": topics,
             "fingerprint": self.fingerprint,
+            "left_out": self.left_out,
             "runs": [_certificate_row(row) for row in self.rows],
             "differences": [_difference_dict(difference) for difference in self.differences],
             "notes": self.notes,
@@ -179,6 +188,7 @@ def conclusion_text(certificate: Certificate) -> list[str]:
             lines.append(f"every run ended with: {first.end}")
     else:
         lines.append(f"{len(certificate.differences)} of {len(certificate.rows) - 1} runs differ from the first")
+    lines += [f"not certified, because the world runs without it: {name}" for name in certificate.left_out]
     lines += [_relative_paths(f"note: {note}") for note in certificate.notes]
     shown = ", ".join(f"{name} {value}" for name, value in certificate.fingerprint.items() if value)
     return [*lines, f"on: {shown}"]

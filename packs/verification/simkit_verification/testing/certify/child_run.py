@@ -16,7 +16,7 @@ from simkit.extend import Sensor
 from simkit.memory_error import OutOfMemory
 from simkit.msgs import Message
 from simkit.runtime.engine.snapshot import state_hash
-from simkit.testing import open_scenario, run_scenario
+from simkit.testing import count_left_out, open_scenario, run_scenario
 from simkit.testing.run_record.fingerprint import fingerprint
 from simkit.testing.scenarios.scenario_file import read_scenario
 from simkit.testing.scenarios.scenario_run import ScenarioCommands
@@ -211,6 +211,7 @@ class _ChildRun:
             outcome.sources[plugin_title(plugin)] = _class_source(plugin)
         has_images = any("Image" in h.type_name for h in outcome.heard.values())
         outcome.fingerprint = fingerprint(sim if has_images else None)
+        outcome.left_out = count_left_out(sim.diagnostics)
         if self._call_recorder is not None:
             outcome.events = self._call_recorder.events
 

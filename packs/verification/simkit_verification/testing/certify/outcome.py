@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.errors import SimkitError
+from simkit.testing import newly_left_out
 
 STACK_FILE: Final = "stack"
 """File to which `faulthandler` writes the stack trace of a process that is stopped at its limit."""
@@ -99,6 +100,7 @@ class RunOutcome:
         remembered: Plugin -> hashes of its attributes at the end.
         sources: Plugin or sensor -> file, first line and last line of its class.
         fingerprint: Fingerprint of the machine.
+        left_out: Names of the sensors, plugins and controllers without which the world ran, with their numbers.
         events: Recorded plugin calls; empty if the calls were not recorded.
         seconds: Wall time of the run [s].
     """
@@ -119,6 +121,7 @@ class RunOutcome:
     remembered: dict[str, dict[str, int]] = field(default_factory=dict)
     sources: dict[str, tuple[str, int, int]] = field(default_factory=dict)
     fingerprint: dict[str, str] = field(default_factory=dict)
+    left_out: dict[str, int] = field(default_factory=dict)
     events: list[PluginCall] = field(default_factory=list)
     seconds: float = 0.0
 
@@ -176,12 +179,22 @@ def differences(one: RunOutcome, other: RunOutcome) -> list[OutcomeDifference]:
         *_latest_differences(one, other),
     ]
     last = max(one.ticks, other.ticks) + 1
-    return sorted(unsorted, key=lambda f: last if f.tick is None else f.tick)
+    return [*_left_out_differences(one, other), *sorted(unsorted, key=lambda f: last if f.tick is None else f.tick)]
 
 
 def first_tick(differences: list[OutcomeDifference]) -> int | None:
     """Return the earliest tick of all differences; None if no difference has a tick."""
     return min((f.tick for f in differences if f.tick is not None), default=None)
+
+
+def _left_out_differences(one: RunOutcome, other: RunOutcome) -> list[OutcomeDifference]:
+    """Return what only one of the two worlds has; it is the cause of the other differences."""
+    pairs = ((one.left_out, other.left_out, "this run"), (other.left_out, one.left_out, "the first run"))
+    return [
+        OutcomeDifference(f"only the world of {run} is without {name}")
+        for before, now, run in pairs
+        for name in newly_left_out(before, now)
+    ]
 
 
 def _physics_differences(one: RunOutcome, other: RunOutcome) -> list[OutcomeDifference]:
