@@ -25,7 +25,7 @@ from simkit.cli.terminal.output import JsonObject
 from simkit.diagnostics import Diagnostic, Diagnostics, shorten
 from simkit.errors import SimkitError
 from simkit.plugins.discovery.find_plugin_class import find_plugin
-from simkit.plugins.discovery.left_out import CODES
+from simkit.plugins.discovery.left_out import CODE, DRIVE_CODE
 from simkit.recording.pictures.frames import Look
 from simkit.recording.run_picture import save_picture
 from simkit.run_fields import LoadArguments
@@ -42,6 +42,7 @@ Status = Literal["runs", "refused", "part"]
 _WORTH: Final[dict[State, Fraction]] = {"used": Fraction(1), "approximated": Fraction(1, 2), "left out": Fraction(0)}
 _OWNER: Final = re.compile(r"^\w+ '[^']*'(?: of '[^']*')?: ")
 _FILE_IN_PACKAGE: Final = re.compile(r"^((?:model|package)://[^/\s]+)/\S+")
+_SEARCHED: Final = re.compile(r"; searched [^;]*")
 _LONGEST: Final = 140  # characters of what is missing
 _NO_LINK: Final = "SK-URDF-008"
 
@@ -96,7 +97,7 @@ class ScoredPart:
 
 @dataclass(frozen=True)
 class Remedy:
-    """What would make a file whole.
+    """Remedy of a problem, which would make a file whole.
 
     Attributes:
         text: remedy.
@@ -166,7 +167,7 @@ EffectOf = Callable[[str, str], str]
 
 @dataclass(frozen=True)
 class ScoreOptions:
-    """What a score contains, beside the numbers.
+    """Contents of a score, beside the numbers.
 
     Attributes:
         effect_of: effects of diagnostics.
@@ -212,13 +213,14 @@ def refused_score(shown: str, found: Sequence[Diagnostic], options: ScoreOptions
     if errors and not is_part:
         # an error about something that is missing is the cause of errors such as a model without a link
         first = next((item for item in errors if options.effect_of(item.code, "warning") == "left out"), errors[0])
-        reason = first.message.split("; searched ")[0]
+        reason = _without_places(first.message)
         if len(errors) > 1:
             reason += f" (and {len(errors) - 1} more error{'s' if len(errors) > 2 else ''})"
     remedies: dict[tuple[str, str], Remedy] = {}
     for item in errors:
-        new = Remedy(item.hint, item.message, [], None)
-        remedies.setdefault((item.hint, item.message), new).places.append(_place(item))
+        message = _without_places(item.message)
+        new = Remedy(item.hint, message, [], None)
+        remedies.setdefault((item.hint, message), new).places.append(_place(item))
     return FileScore(
         shown, "part" if is_part else "refused", 0, reason,
         remedies=[] if is_part else list(remedies.values()),
@@ -309,7 +311,7 @@ def _remedies(faulty: Iterable[ScoredPart]) -> list[Remedy]:
     for row in faulty:
         causes = _causes([Diagnostic(**item) for item in row.problems])
         main = next((item for item in causes if item.hint), causes[0])
-        key = main.hint, main.message
+        key = main.hint, _without_places(main.message)
         points[key] = points.get(key, 0.0) + row.points
         places.setdefault(key, {}).setdefault(_place(main))
     ordered = sorted(points, key=lambda key: -points[key])
@@ -320,7 +322,12 @@ def _remedies(faulty: Iterable[ScoredPart]) -> list[Remedy]:
 
 def _causes(items: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
     """Return the diagnostics without those that only say that something is left out because of the others."""
-    return [item for item in items if item.code not in CODES] or items
+    return [item for item in items if item.code not in (CODE, DRIVE_CODE)] or items
+
+
+def _without_places(message: str) -> str:
+    """Return a message without the list of the folders that were searched."""
+    return _SEARCHED.sub("", message)
 
 
 def _missing_text(item: Diagnostic) -> str:
