@@ -93,6 +93,7 @@ class Code:
         without: reason for the missing example.
         effect: what a warning or note of this code means for the score of a file; empty for the usual effect of the
             severity.
+        note_effect: the same for the notes of a code that has warnings too; empty for none.
     """
 
     code: str
@@ -102,16 +103,13 @@ class Code:
     example: Example | None = None
     without: str = ""
     effect: Effect | Literal[""] = ""
+    note_effect: Effect | Literal[""] = ""
 
     def effect_of(self, severity: str) -> Effect:
-        """Return the effect of a diagnostic with this code: by default, a warning means something approximated.
-
-        A code with warnings and notes states the effect of its warnings; its notes have none.
-        """
-        has_both = "warning" in self.severity and "note" in self.severity
-        if self.effect and not (has_both and severity == "note"):
-            return self.effect
-        return "approximated" if severity == "warning" else "none"
+        """Return the effect of a diagnostic with this code; without an entry, a warning means an approximation."""
+        if severity == "note" and "warning" in self.severity:
+            return self.note_effect or "none"
+        return self.effect or ("approximated" if severity == "warning" else "none")
 
 
 @dataclass(frozen=True, slots=True)
@@ -234,8 +232,9 @@ def _fault_of_code(name: str, path: Path, entry: JsonValue) -> str:
     missing = [key for key in ("severity", "meaning") if key not in entry]
     if missing:
         return f"{missing[0]!r} is missing"
-    if entry.get("effect", "none") not in _EFFECTS:
-        return f"effect {entry['effect']!r}; expected {', '.join(sorted(_EFFECTS))}"
+    for key in ("effect", "note_effect"):
+        if entry.get(key, "none") not in _EFFECTS:
+            return f"{key} {entry[key]!r}; expected {', '.join(sorted(_EFFECTS))}"
     wrong = set(entry["severity"].split(", ")) - _SEVERITIES
     if wrong:
         return f"severity {sorted(wrong)[0]!r}; expected {', '.join(sorted(_SEVERITIES))}"
