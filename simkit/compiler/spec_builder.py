@@ -341,9 +341,7 @@ class SpecBuilder:
         model = self.records[self.names.joint(ref.joint).model].scene
         if owner != ref.owner:
             text = f"plugins {ref.owner!r} and {owner!r} drive the same joints of {model.scoped!r}"
-            hint = (
-                "remove one of them; if one is of Gazebo Classic and one of Gazebo, each simulator loads only its own"
-            )
+            hint = "remove one of them; Gazebo Classic and Gazebo each load only their own"
             self.diagnostics.warning("SK-JOINT-019", f"{text}; the last command of either counts", model.where, hint)
 
     def _add_actuator(
