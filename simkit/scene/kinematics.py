@@ -73,8 +73,8 @@ def _motion(joint: SceneJoint, positions: Sequence[float]) -> Pose:
         if travel:
             motion = motion @ Pose(_scaled(axis.xyz_world, travel))
         if kind != "t":
-            rotation = _rotation(joint.pose_world, axis.xyz_world, position)
-            motion = motion @ rotation
+            turn = _rotation(joint.pose_world, axis.xyz_world, position)
+            motion = motion @ turn
     return motion
 
 

@@ -224,3 +224,17 @@ def test_the_first_of_two_equal_joints_is_used(tmp_path: Path) -> None:
     with opened(tmp_path, arm(hardware("position") + f'<joint name="j1">{interfaces(("effort",))}</joint>')) as sim:
         assert "names joint 'j1' again" in reported_messages(sim, "SK-CONTROL-004")[0]
         assert states(sim)["arm_controller"] == "active"
+
+
+@pytest.mark.parametrize(("plugin", "is_free"), [("gazebo_ros2_control", True), ("gz_ros2_control-system", False)])
+def test_gazebo_classic_sets_the_position_of_a_joint_whose_effort_limit_is_0(
+    tmp_path: Path, plugin: str, is_free: bool
+) -> None:
+    """Gazebo Classic sets positions and needs no effort; the servo of gz stays within the limit."""
+    robot = cart(interfaces(("position",)), effort=0.0).replace("libgazebo_ros2_control", f"lib{plugin}")
+    with opened(tmp_path, robot, slide("position_controllers/JointGroupPositionController")) as sim:
+        command(sim, "group", 0.5)
+        sim.run(2.0)
+        assert float(sim.joint("cart::slide").position) == pytest.approx(0.5 if is_free else 0.0, abs=2e-3)
+        (message,) = reported_messages(sim, "SK-JOINT-011")
+        assert ("is unlimited" in message) == is_free

@@ -22,16 +22,17 @@ from simkit.loaders.resources.ros_packages import enclosing_package
 from simkit.loaders.resources.uri_candidates import UriCandidates
 from simkit.loaders.resources.uris import (
     absolute_path,
+    folder_of_name,
     format_searched,
     is_existing,
     is_file,
     is_folder,
     is_path_of_other_machine,
     is_relocated,
-    other_case_hint,
     package_uri,
     path_of_file_uri,
     sibling_names,
+    similar_name_hint,
     split_rest,
 )
 from simkit.project_folder import is_top_folder
@@ -106,6 +107,7 @@ class Resolver(UriCandidates):
         self._failures.clear()
         self._errors.clear()
         self._subfolders.clear()
+        self._groups.clear()
 
     def around(self, folder: Path | None) -> Resolver:
         """Return a resolver with the folder of the loaded file as its base, unless this resolver already has a base."""
@@ -163,7 +165,8 @@ class Resolver(UriCandidates):
         if path is not None:
             known = with_known_scheme(uri)
             if known != uri:
-                diagnostics.warning("SK-URI-004", f"{uri}: unknown scheme, {known} is used", where)
+                unknown, used = (text.partition("://")[0] for text in (uri, known))
+                diagnostics.warning("SK-URI-004", f"unknown scheme {unknown}://; {used}:// is used instead", where)
             if self._is_elsewhere(known, path, relative_to):
                 message = f"{uri} does not exist; {path} is used instead"
                 diagnostics.note("SK-URI-010", message, where)
@@ -192,7 +195,8 @@ class Resolver(UriCandidates):
             message = f"{uri}: unknown scheme; known are model, package, file, https"
             return "SK-URI-004", message, did_you_mean(scheme, (*_SCHEMES, "https"))
         name = rest.split("/")[0]
-        near = did_you_mean(name, self._nearby_names(relative_to)) if scheme in ("model", "package") else ""
+        is_unknown = scheme in ("model", "package") and folder_of_name(places, rest) is None
+        near = did_you_mean(name, self._nearby_names(relative_to)) if is_unknown else ""
         above = self._hint_above(uri, relative_to)
         folder, tried = self.find_package(name, relative_to) if scheme == "package" else (None, [])
         if scheme == "package" and folder is None:
@@ -200,7 +204,7 @@ class Resolver(UriCandidates):
             hint = above or f"give its folder, --package-path {name}=DIR, or its workspace, --package-path DIR"
             return "SK-URI-009", message, f"{near} or {hint}" if near and not above else hint
         message = f"{uri} is not found{format_searched(places)}"
-        return "SK-URI-001", message, above or near or other_case_hint(places) or _PATH_HINT
+        return "SK-URI-001", message, above or near or similar_name_hint(places) or _PATH_HINT
 
     def _hint_above(self, uri: str, relative_to: Path | None) -> str:
         """Suggest the folder above the file of a URI in which its file or folder exists; empty if there is none."""

@@ -8,6 +8,7 @@ from itertools import islice
 from pathlib import Path
 from urllib.parse import unquote
 
+from simkit.diagnostics import did_you_mean
 from simkit.project_folder import is_top_folder
 from simkit.trusted_folders import OutsideError, join_below
 
@@ -92,8 +93,12 @@ def format_searched(places: list[Path] | None) -> str:
     return "; searched " + ", ".join(shown) + more
 
 
-def other_case_hint(places: list[Path] | None) -> str:
-    """Suggest a file whose name differs from a searched path only in upper and lower case; empty if there is none."""
+def similar_name_hint(places: list[Path] | None) -> str:
+    """Suggest a file beside a searched path with a similar name; empty if there is none.
+
+    A name that differs only in upper and lower case comes first.
+    """
+    similar = ""
     for place in (places or [])[:_MOST_LISTED]:
         try:
             with os.scandir(place.parent) as entries:
@@ -103,7 +108,21 @@ def other_case_hint(places: list[Path] | None) -> str:
         for name in names:
             if name.casefold() == place.name.casefold():
                 return f"did you mean {name!r}? Upper and lower case differ"
-    return ""
+        similar = similar or did_you_mean(place.name, names)
+    return similar
+
+
+def folder_of_name(places: list[Path] | None, rest: str) -> Path | None:
+    """Return the folder of the model or package in a URI, if one of the searched paths is in it.
+
+    Args:
+        places: searched paths.
+        rest: the part of the URI after `model://` or `package://`.
+    """
+    name, *inside = [part for part in unquote(rest).split("/") if part] or [""]
+    depth = len(inside)
+    folders = (place.parents[depth - 1] for place in places or [] if 0 < depth <= len(place.parents))
+    return next((folder for folder in folders if folder.name == name and is_folder(folder)), None)
 
 
 def access_problem(path: Path) -> str:

@@ -110,3 +110,34 @@ def test_the_help_names_the_folder_above_the_file_that_has_what_is_missing(
     assert [problem.hint for problem in found] == [
         f"it is in {tmp_path / folder}: add --resource-path {tmp_path / folder}"
     ]
+
+
+@pytest.mark.parametrize(
+    ("uri", "help_text"),
+    [
+        ("model://shop/meshes/shelf.dae", "did you mean 'shelf2.dae'?"),
+        ("model://shop/meshes/door.dae", "--resource-path"),
+        ("model://shops/meshes/door.dae", "did you mean 'shop'?"),
+    ],
+)
+def test_the_help_suggests_another_model_only_if_the_model_of_the_uri_is_not_there(
+    tmp_path: Path, uri: str, help_text: str
+) -> None:
+    for name in ("models/shop/meshes/shelf2.dae", "models/shop_with_roof/meshes/door.dae"):
+        _write(tmp_path / name)
+    found = Diagnostics()
+    resolver = Resolver([tmp_path / "models"])
+    resolver.resolve(uri, Where(None, 1), found, tmp_path)
+    (problem,) = found
+    assert problem.code == "SK-URI-001"
+    assert help_text in problem.hint
+
+
+def test_an_unknown_scheme_has_the_same_message_for_each_uri(tmp_path: Path) -> None:
+    """Equal messages are shown once, with all their lines."""
+    for name in ("a.dae", "b.dae"):
+        _write(tmp_path / "shop" / name)
+    found = Diagnostics()
+    for line, name in enumerate(("a.dae", "b.dae"), 1):
+        Resolver([tmp_path]).resolve(f"models://shop/{name}", Where("w.sdf", line), found, None)
+    assert [d.message for d in found] == ["unknown scheme models://; model:// is used instead"] * 2

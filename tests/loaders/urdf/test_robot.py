@@ -359,6 +359,16 @@ def test_colours_outside_their_range_are_limited_and_extra_numbers_ignored(load)
     assert not errors(found)
 
 
+def test_a_colour_without_rgba_is_left_out_as_in_urdfdom(load):
+    visual = (
+        '<visual><geometry><sphere radius="1"/></geometry><material name="m"><color>1 1 1</color></material></visual>'
+    )
+    scene, found = load(robot(link("l", MASS + visual)))
+    assert scene.model.links[0].visuals[0].material is None
+    assert len(with_code(found, "SK-URDF-031")) == 1
+    assert not errors(found)
+
+
 def test_a_plane_is_read_as_in_pybullet_and_an_unknown_shape_is_left_out(load):
     text = link(
         "l",
@@ -424,6 +434,23 @@ def test_a_joint_that_mimics_a_fixed_joint_moves_freely_with_a_warning(load):
     assert not errors(found)
     assert with_code(found, "SK-URDF-015")[0].severity == "warning"
     assert scene.model.joints[1].axes[0].mimic is None
+
+
+def test_mimic_of_a_fixed_joint_has_no_effect_whatever_it_names(load):
+    text = robot(
+        link("a")
+        + link("b")
+        + link("c")
+        + link("d")
+        + joint("ab", "a", "b", "", "fixed")
+        + joint("bc", "b", "c", '<mimic joint="ab"/>', "fixed")
+        + joint("cd", "c", "d", '<mimic joint="nowhere"/>', "fixed")
+    )
+    _, found = load(text)
+    told = with_code(found, "SK-URDF-015")
+    assert [(d.severity, d.message, d.hint) for d in told] == [
+        ("warning", f"fixed joint {name!r}: <mimic> has no effect", "") for name in ("bc", "cd")
+    ]
 
 
 def test_a_gazebo_joint_that_repeats_a_joint_of_the_robot_is_left_out(load):

@@ -58,6 +58,7 @@ class ControlPlugin(ModelPlugin):
         files: parameter files of the controllers.
         is_ros_1: true for the plugin of ROS 1.
         manager_class: class of the manager.
+        set_without_effort: command interfaces for which Gazebo sets the state of a joint, so that no effort limit acts.
     """
 
     reads_at_load = ("inertial", "axes")  # gains follow from the inertias at the joints
@@ -73,6 +74,7 @@ class ControlPlugin(ModelPlugin):
     drives = True
     reads_parameter_files = True
     is_ros_1: ClassVar[bool] = False
+    set_without_effort: ClassVar[frozenset[str]] = frozenset()
     manager_class: ClassVar[type[ControllerManager]] = ControllerManager
     manager: ControllerManager
     hardware: Hardware
@@ -100,6 +102,7 @@ class ControlPlugin(ModelPlugin):
         self.before_step_rate = self.read_rate(params, builder)
         refs = [ref for record in builder.records.values() for ref in record.actuators]
         self._earlier = {ref.name for ref in refs}
+        self.hardware.lift_zero_efforts(self.set_without_effort, builder, self.name)
         self.hardware.prepare(builder, self.name, self.read_pids())
 
     # ------------------------------------------------------------------ the plugin's element and its files
@@ -332,6 +335,8 @@ class GazeboRos2Control(ControlPlugin):
 
     filenames = ("libgazebo_ros2_control.so",)
 
+    set_without_effort = frozenset((POSITION, VELOCITY))
+
     def prevails(self, joint: HardwareJoint, other: ActuatorRef, *, is_later: bool) -> bool:
         """Check whether this plugin moves the joint; see `ControlPlugin.prevails`.
 
@@ -351,6 +356,7 @@ class GazeboRosControl(ControlPlugin):
     filenames = ("libgazebo_ros_control.so",)
 
     is_ros_1 = True
+    set_without_effort = frozenset((POSITION,))  # the motor of a velocity command has the effort limit as its fmax
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._default_to_model_namespace(scene.name, params)

@@ -129,6 +129,24 @@ class Hardware(SharedByCopies):
         self.actuated = JointActuators.prepare(builder, owner, driven, pids)
         self._sources = np.full(len(driven), -1, np.intp)
 
+    def lift_zero_efforts(self, interfaces: frozenset[str], builder: SpecBuilder, owner: str) -> None:
+        """Remove the effort limit 0 of joints whose position or velocity Gazebo sets without an effort.
+
+        Args:
+            interfaces: command interfaces that Gazebo applies without an effort.
+            builder: builder of the MuJoCo specification; it receives a warning for each joint.
+            owner: name of the plugin, for messages.
+        """
+        for name, joint in self.joints.items():
+            if joint.max_effort == 0.0 and (direct := [i for i in joint.command_interfaces if i in interfaces]):
+                message = (
+                    f"{owner} drives joint {joint.scoped}, whose effort limit is 0: the effort is unlimited, "
+                    f"because Gazebo Classic sets the {direct[0]} of the joint"
+                )
+                where = builder.names.joint(joint.scoped).scene.where
+                builder.diagnostics.warning("SK-JOINT-011", message, where, "give <limit> a positive effort")
+                self.joints[name] = replace(joint, max_effort=math.inf)
+
     def _couple_mimics(self, builder: SpecBuilder) -> None:
         """Couple mimic joints in the engine if their mimic relation is only in the hardware description."""
         for joint in self.joints.values():

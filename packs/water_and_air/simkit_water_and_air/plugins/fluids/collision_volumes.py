@@ -11,8 +11,8 @@ import numpy.typing as npt
 from simkit.extend import Diagnostics, SceneCollision, SceneLink, SharedByCopies, Vector
 from simkit.linear_algebra import matmul
 from simkit.loaders.meshes.mesh_part import join_parts
-from simkit.scene import Geometry, Mesh, Polyline
-from simkit_water_and_air.plugins.fluids.submerged_volume import Solid, Triangles, solid_of
+from simkit.scene import Cylinder, Geometry, Mesh, Polyline
+from simkit_water_and_air.plugins.fluids.submerged_volume import Polyhedron, Solid, Triangles, solid_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,9 +49,10 @@ class HullFactory(SharedByCopies):
 
     def hulls(self, link: SceneLink) -> list[Hull]:
         """Return one hull for each collision of a link; collisions without a volume have none."""
-        return [hull for collision in link.collisions if (hull := self._hull(collision)) is not None]
+        return [hull for collision in link.collisions if (hull := self.hull(collision)) is not None]
 
-    def _hull(self, collision: SceneCollision) -> Hull | None:
+    def hull(self, collision: SceneCollision) -> Hull | None:
+        """Return the hull of a collision; None if it has no volume."""
         shape = collision.geometry
         if shape not in self._solids:
             self._solids[shape] = solid_of(shape, lambda other: self._triangles(other, collision))
@@ -94,3 +95,32 @@ def _surface(shape: Geometry, collision: SceneCollision) -> tuple[Vector, npt.ND
     if not isinstance(shape, Mesh) or shape.missing:
         return np.zeros((0, 3)), np.zeros((0, 3), int)
     return join_parts(load_mesh(shape, Diagnostics(), collision.where))
+
+
+def link_size(link: SceneLink) -> Vector:
+    """Return the size of the box around a link's collisions, along the axes of the link [m], shape (3,).
+
+    A round shape counts as the ball around it, except a cylinder.
+    """
+    factory, bounds = HullFactory(lambda _: None), []
+    for collision in link.collisions:
+        hull = factory.hull(collision)
+        if hull is not None:
+            bounds.append(_bounds(hull, collision.geometry))
+    if not bounds:
+        return np.zeros(3)
+    corners = np.array(bounds)
+    size: Vector = corners[:, 1].max(axis=0) - corners[:, 0].min(axis=0)
+    return size
+
+
+def _bounds(hull: Hull, shape: Geometry) -> tuple[Vector, Vector]:
+    """Return the corners of the box around a hull, in the axes of the link [m]."""
+    if isinstance(hull.solid, Polyhedron):
+        points = hull.origin + matmul(hull.solid.corners.reshape(-1, 3), hull.axes.T)
+        return points.min(axis=0), points.max(axis=0)
+    half = np.full(3, hull.reach)
+    if isinstance(shape, Cylinder):
+        along = np.abs(hull.axes[:, 2])
+        half = shape.length / 2 * along + shape.radius * np.sqrt(np.maximum(0.0, 1.0 - along * along))
+    return hull.centre - half, hull.centre + half

@@ -1,0 +1,1 @@
+"""Communication between robots by radio and sound."""

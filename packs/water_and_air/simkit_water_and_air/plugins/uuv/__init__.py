@@ -1,0 +1,1 @@
+"""Plugins of uuv_simulator and dave for underwater vehicles in Gazebo Classic."""

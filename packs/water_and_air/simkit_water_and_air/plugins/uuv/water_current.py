@@ -1,0 +1,27 @@
+"""Velocity of the water on a topic, for the plugins of uuv_simulator that move in it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from simkit.plugins.one_time_warnings import are_usable
+
+if TYPE_CHECKING:
+    from simkit.msgs import Message
+
+TWIST: Final = "geometry_msgs/msg/TwistStamped"
+VECTOR: Final = "geometry_msgs/msg/Vector3"
+CURRENT_TYPES: Final = (TWIST, VECTOR)
+"""Types of messages with the velocity of the water [m/s], in world axes."""
+
+
+def current_of(message: Message) -> tuple[float, float, float] | None:
+    """Return the velocity in a message of one of `CURRENT_TYPES`; None if a number is NaN or infinite."""
+    vector = message.twist.linear if hasattr(message, "twist") else message
+    velocity = float(vector.x), float(vector.y), float(vector.z)
+    return velocity if are_usable(*velocity) else None
+
+
+def absolute_topic(name: str) -> str:
+    """Return the topic for a name of Gazebo's transport, which has no namespace of its own."""
+    return "/" + name.strip("/")
