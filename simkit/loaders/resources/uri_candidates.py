@@ -20,7 +20,8 @@ from simkit.loaders.resources.fuel_cache import (
 from simkit.loaders.resources.install_rules import installed_sources
 from simkit.loaders.resources.project_folder import readable_folder
 from simkit.loaders.resources.ros_packages import PackageIndex, enclosing_package
-from simkit.loaders.resources.uris import absolute_path, is_existing, is_folder, is_link, is_private
+from simkit.loaders.resources.uris import absolute_path, is_existing, is_folder, is_link, is_private, sibling_names
+from simkit.project_folder import enclosing_project
 from simkit.trusted_folders import TrustedFolders, built_workspace, join_below
 
 _MEDIA = ("Media/models", "media/models", "Media", "media")  # folders of a package that Gazebo Classic searches
@@ -50,6 +51,7 @@ class UriCandidates:
         self._projects: dict[Path, list[Path]] = {}  # folder of a file -> folder, project and package
         self._locks: dict[Path | None, dict[str, LockEntry]] = {}
         self._lock_problems: list[Diagnostic] = []
+        self._parts: dict[Path, list[Path]] = {}  # project -> the project and the folders in it
         self._subfolders: dict[tuple[str, Path], bool] = {}  # name of a folder, folder above it -> it exists
 
     # ------------------------------------------------------------------ access
@@ -112,6 +114,7 @@ class UriCandidates:
         yield from self._model_candidates(name, inside, relative_to)
         yield from self._package_candidates(name, inside, relative_to)
         yield from self._models_of_packages(name, inside, relative_to)
+        yield from self._models_of_project(name, inside, relative_to)
 
     def all_packages(self, name: str, inside: str, relative_to: Path | None) -> Iterator[Path]:
         """Yield all candidates for `package://name/inside`."""
@@ -162,6 +165,22 @@ class UriCandidates:
             if is_folder(folder) and not is_private(folder):
                 self.trust_plain(package)
                 yield join_below(folder, inside)
+
+    def _models_of_project(self, name: str, inside: str, relative_to: Path | None) -> Iterator[Path]:
+        """Yield candidates for `model://name/...` in the folders `models` of the file's project and of its subfolders.
+
+        A project without ROS packages names these folders in its environment variables or in its README.
+        """
+        for folder in self._around(relative_to):
+            project = enclosing_project(folder)
+            if project is None:
+                continue
+            if project not in self._parts:
+                inner = sorted(project / subfolder for subfolder in sibling_names(project / "any"))
+                self._parts[project] = [project, *(part for part in inner if not is_link(part))]
+            for part in self._parts[project]:
+                if self._has_subfolder(part, "models") and is_folder(model := join_below(part / "models", name)):
+                    yield join_below(model, inside)
 
     def media_candidates(self, text: str, relative_to: Path | None) -> Iterator[Path]:
         """Yield candidates for a relative path in the folders `Media` of search paths and packages."""
