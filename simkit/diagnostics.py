@@ -180,8 +180,15 @@ def closest(name: str, allowed: Iterable[str], least: float = 0.6) -> str | None
     return _closest(name, tuple(sorted({n for n in names if len(n) <= _LONGEST_NAME})), least)
 
 
+def _without_style(name: str) -> str:
+    return name.lower().replace("_", "").replace("-", "")
+
+
 @functools.lru_cache(maxsize=256)  # a file often repeats one misspelling a hundred times; a search takes 3 ms
 def _closest(name: str, names: tuple[str, ...], least: float) -> str | None:
+    same = [n for n in names if n != name and _without_style(n) == _without_style(name)]
+    if same:  # distortion_k1 means distortionK1 and not distortionT1, which is as similar
+        return same[0]
     matches = difflib.get_close_matches(name, names, n=1, cutoff=least)
     if not matches:
         folded = {n.lower(): n for n in names}

@@ -16,6 +16,8 @@ from pathlib import Path
 from simkit.linked_files import hide_linked_text, is_below
 
 TEXT_LIMIT = 8 << 20  # [bytes] of a text file that a person writes: YAML, a script, Python code
+GIT_LFS_POINTER = b"version https://git-lfs"  # start of a file whose content Git LFS has not fetched
+GIT_LFS_TEXT = "a pointer of Git LFS; the content was not fetched (git lfs pull)"
 PIPE_TIMEOUT = 10.0  # [s] without data from the writer of a pipe
 
 

@@ -90,6 +90,13 @@ def test_unread_elements_are_reported_except_foreign_prefixes():
     assert problems(p) == [("SK-PARAM-003", "did you mean 'radius'?"), ("SK-PARAM-003", "")]
 
 
+def test_a_name_in_another_style_is_closer_than_one_with_another_letter():
+    p = block("<distortion_k1>0</distortion_k1>")
+    p.number("distortionT1", 0.0), p.number("distortionK1", 0.0)
+    p.report_unread("SK-PARAM-003", "plugin 'q'")
+    assert problems(p) == [("SK-PARAM-003", "did you mean 'distortionK1'?")]
+
+
 READER = """
 class Reader:
     def load(self, params):

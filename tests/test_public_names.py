@@ -30,7 +30,7 @@ BY_THEIR_NAMES = {
 PUBLIC_MODULES = {f"simkit.{name}" for name in (*simkit._PUBLIC_MODULES, *BY_THEIR_NAMES)}
 
 PRIVATE_IMPORTS = {
-    "actors": 8,
+    "actors": 9,
     "authoring": 20,
     "control": 28,
     "fuel": 20,

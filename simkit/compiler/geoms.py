@@ -341,6 +341,18 @@ class GeomWriter:
             if kind == mujoco.mjtGeom.mjGEOM_PLANE and visual.material is not None and visual.material.double_sided:
                 self._add(parent, owner, pose @ primitive.pose @ _OVER, type=kind, size=size, **drawn)
 
+    def add_material(self, visual: SceneVisual, material: Material) -> str:
+        """Add the material that a visual has if its description changes, and return its name in the engine.
+
+        Args:
+            visual: visual whose own material has a texture, or none.
+            material: other description.
+        """
+        visual = replace(visual, material=material)
+        pixels = self._pixels(material, visual.where)
+        part = shape_geometry.textured_triangles(visual.geometry) if pixels is not None else None
+        return str(self._visual_settings(visual, part, pixels)["material"])
+
     def _add_visual_part(
         self, parent: GeomParent, owner: GeomOwner, visual: SceneVisual, part: MeshPart, pixels: Pixels | None
     ) -> None:

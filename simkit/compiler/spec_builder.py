@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -26,8 +26,9 @@ from simkit.compiler.servo_gains import add_actuator, add_armature, add_drive_ar
 from simkit.compiler.start_positions import place_joints, report_starts
 from simkit.compiler.state_transfer import transfer_state
 from simkit.diagnostics import Diagnostics
+from simkit.loaders.sdf.material_script import find_material, find_texture
 from simkit.pose import Pose
-from simkit.scene import SceneJoint, SceneModel, SceneWorld
+from simkit.scene import SceneJoint, SceneModel, SceneVisual, SceneWorld
 
 FileFinder = Callable[[str, Path | None], Path | None]
 
@@ -257,23 +258,62 @@ class SpecBuilder:
             record.world_sites.append(name)
         return name
 
+    def add_script_material(self, visual: SceneVisual, name: str) -> str:
+        """Add another material for a visual, which `Visual.set_material` can show.
+
+        Args:
+            visual: visual of a model, whose material has a texture.
+            name: name of a material with a texture, in a script beside that of the visual.
+
+        Returns:
+            Name of the material in the engine; empty if there is no such material.
+        """
+        look = visual.material
+        if look is None or look.texture is None:
+            return ""
+        folder = look.texture.parent
+        places = [folder.parent / "scripts", folder]
+
+        def allows(path: Path) -> bool:
+            return self.find_file(path.name, path.parent) is not None
+
+        material = find_material(name, places, allows)
+        texture = find_texture(material, places, allows) if material is not None and material.texture else None
+        if texture is None:
+            return ""
+        self.files_read.append(texture)
+        record = self.records[visual.scoped.split("::")[0]]
+        self.assets.used = record.assets
+        return self._writer(record).geoms.add_material(visual, replace(look, script=name, texture=texture))
+
     def add_velocity_servo(
-        self, joint_scoped: str, *, axis: int = 0, max_effort: float, owner: str, kv: float | None = None
+        self,
+        joint_scoped: str,
+        *,
+        axis: int = 0,
+        max_effort: float,
+        owner: str,
+        kv: float | None = None,
+        joint_limit: bool = True,
     ) -> ActuatorRef:
         """Add a servo whose control is a velocity [rad/s or m/s].
 
         Args:
             joint_scoped: scoped name of the joint.
             axis: index of the axis.
-            max_effort: effort limit [N·m or N]; the joint's own effort limit counts too.
+            max_effort: effort limit [N·m or N].
             owner: name of the driver; part of the actuator's name.
             kv: requested gain. A load then slows the joint down. None uses the highest stable gain and integral action,
                 which compensates a constant load.
+            joint_limit: the joint's own effort limit counts too. False for the joint motors of Gazebo Classic
+                (`SetParam("fmax")`), which know only their own limit.
 
         Raises:
             KeyError: no such joint or axis.
         """
-        return self._add_actuator("velocity", joint_scoped, axis, max_effort, owner, None, kv)
+        return self._add_actuator(
+            "velocity", joint_scoped, axis, max_effort, owner, None, kv, has_joint_limit=joint_limit
+        )
 
     def add_position_servo(
         self,
@@ -328,13 +368,22 @@ class SpecBuilder:
         return self._add_actuator("motor", joint_scoped, axis, max_effort, owner, None, None)
 
     def _add_actuator(
-        self, kind: str, scoped: str, axis: int, max_effort: float, owner: str, kp: float | None, kv: float | None
+        self,
+        kind: str,
+        scoped: str,
+        axis: int,
+        max_effort: float,
+        owner: str,
+        kp: float | None,
+        kv: float | None,
+        *,
+        has_joint_limit: bool = True,
     ) -> ActuatorRef:
         joint = self.names.joint(scoped)
         if not 0 <= axis < len(joint.joint_names):
             raise KeyError(f"joint {scoped!r} ({joint.type}) has no axis {axis} to drive")
         record = self.records[joint.model]
-        if axis < len(joint.scene.axes) and kind != "drive":
+        if has_joint_limit and axis < len(joint.scene.axes) and kind != "drive":
             max_effort = min(max_effort, joint.scene.axes[axis].effort)
         if max_effort == 0.0:
             message = f"{owner} drives joint {scoped}, but the joint's effort limit is 0: it never moves"

@@ -20,6 +20,7 @@ _KINDS: Final = {
     "actuator": mujoco.mjtObj.mjOBJ_ACTUATOR,
     "tendon": mujoco.mjtObj.mjOBJ_TENDON,
     "cam": mujoco.mjtObj.mjOBJ_CAMERA,
+    "mat": mujoco.mjtObj.mjOBJ_MATERIAL,
 }
 """Kinds of elements by the prefixes of MuJoCo's model fields."""
 
@@ -83,6 +84,11 @@ def copy_rows_by_name(
             _, width = JOINT_WIDTHS.get(int(old.jnt_type[i]), (1, 1))
             a, b = int(old.jnt_dofadr[i]), int(new.jnt_dofadr[j])
             target[b : b + width] = source[a : a + width]
+        return
+    if field == "geom_matid":  # the rows are ids of materials, which have names, too
+        materials = {-1: -1, **dict(_pair_by_name("mat", old.nmat, old, new))}
+        for i, j in _pair_by_name("geom", len(source), old, new):
+            target[j] = materials.get(int(source[i]), target[j])
         return
     for i, j in _pair_by_name(field.split("_")[0], len(source), old, new):
         target[j] = source[i]

@@ -144,7 +144,8 @@ class _CompiledBuilder:
 
     def _existing(self, kind: str, joint: str, *, axis: int = 0, max_effort: float, **options: Any) -> ActuatorRef:
         axes = self._builder.names.joint(joint).scene.axes
-        effort = min(max_effort, axes[axis].effort) if axis < len(axes) else max_effort
+        is_limited = options.get("joint_limit", True) and axis < len(axes)
+        effort = min(max_effort, axes[axis].effort) if is_limited else max_effort
         gains = (options.get("kp"), options.get("kv"))
         for ref in self.left:
             if (ref.kind, ref.joint, ref.axis, ref.max_effort, (ref.kp, ref.kv)) == (kind, joint, axis, effort, gains):

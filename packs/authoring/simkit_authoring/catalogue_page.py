@@ -20,7 +20,7 @@ This page is generated from the plugin classes; do not edit it. A file may use a
 `lib….so`, `ignition-gazebo…`, a version number, a folder before the name. `simkit plugin info NAME` lists the
 parameters of a plugin.
 
-If a file uses an unsupported plugin, simkit reports a warning (`SK-PLUGIN-002`) with the reason below, and the world
+If a file uses an unsupported plugin, simkit reports it (`SK-PLUGIN-002`) with the reason below, and the world
 runs without the plugin. For an unknown name, the warning (`SK-PLUGIN-001`) suggests the closest known name. You can
 write a missing plugin [in Python](writing_a_plugin.md).
 """

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.input_file import read_input
-from simkit.loaders.meshes.mesh_part import MeshFileError
+from simkit.loaders.meshes.mesh_part import MeshFileError, check_is_fetched
 from simkit.loaders.resources.project_folder import readable_folder
 from simkit.loaders.resources.uris import absolute_path, path_of_file_uri, split_rest
 from simkit.project_folder import is_top_folder
@@ -28,6 +28,7 @@ LARGEST_PIXELS: Final = 1 << 26
 LARGEST_TEXTURE: Final = 2048
 MOST_NOTES: Final = 20
 _MANIFESTS: Final = ("model.config", "package.xml", "manifest.xml")
+_PNG: Final = b"\x89PNG\r\n\x1a\n"
 _FORMATS: Final = ("PNG", "JPEG", "TGA", "BMP", "GIF", "TIFF", "WEBP", "DDS", "PPM")
 
 Pixels = npt.NDArray[np.uint8]
@@ -165,17 +166,37 @@ def read_pixels(source: bytes | Path) -> Pixels:
 
     try:
         content = source if isinstance(source, bytes) else read_input(source, LARGEST_COMPANION)
+        check_is_fetched(content)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            with Image.open(io.BytesIO(content), formats=_FORMATS) as image:
+            with Image.open(io.BytesIO(_essential_content(content)), formats=_FORMATS) as image:
                 if image.width * image.height > LARGEST_PIXELS:
                     raise MeshFileError(f"is {image.width}×{image.height} pixels, which is too large")
                 image.draft("RGB", (LARGEST_TEXTURE, LARGEST_TEXTURE))
                 return _rgb(image)
     except MeshFileError:
         raise
+    except Image.UnidentifiedImageError:  # its text has an address in memory
+        raise MeshFileError("is not a readable picture (unknown format)") from None
     except Exception as problem:  # noqa: BLE001 -- a decoder of broken data may raise anything
         raise MeshFileError(f"is not a readable picture ({_short(str(problem) or type(problem).__name__)})") from None
+
+
+def _essential_content(content: bytes) -> bytes:
+    """Return a picture without the chunks of a PNG file that do not change its pixels; other formats unchanged.
+
+    Pillow refuses a PNG file with a wrong checksum in such a chunk, while Gazebo's reader only warns.
+    """
+    if not content.startswith(_PNG):
+        return content
+    kept, start = [_PNG], len(_PNG)
+    while start + 8 <= len(content):
+        end = start + 12 + int.from_bytes(content[start : start + 4], "big")
+        name = content[start + 4 : start + 8]
+        if name[:1].isupper() or name == b"tRNS":
+            kept.append(content[start:end])
+        start = end
+    return b"".join(kept)
 
 
 def _rgb(image: PilImage) -> Pixels:

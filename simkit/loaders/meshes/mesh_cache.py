@@ -51,7 +51,7 @@ def content_digest(*values: object) -> str:
     return digest.hexdigest()[:20]
 
 
-FORMAT: Final = "simkit mesh 5"
+FORMAT: Final = "simkit mesh 6"
 """Version of the conversions; change it whenever a reader returns different numbers for the same file."""
 
 _SELF_CONTAINED: Final = {".stl", ".glb", ".ply"}

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.diagnostics import Diagnostics, Severity, Where
+from simkit.input_file import GIT_LFS_POINTER, GIT_LFS_TEXT
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
@@ -190,6 +191,12 @@ def unique_rows(rows: Indices) -> tuple[Indices, Ints]:
     rank = np.empty_like(order)
     rank[order] = np.arange(len(order))
     return rows[first[order]], rank[np.asarray(inverse).reshape(-1)].astype(np.int32)
+
+
+def check_is_fetched(content: bytes) -> None:
+    """Raise MeshFileError if a file of a mesh or an image has only the pointer that Git LFS replaces by the content."""
+    if content.startswith(GIT_LFS_POINTER):
+        raise MeshFileError(f"is {GIT_LFS_TEXT}")
 
 
 def report_once(

@@ -31,6 +31,7 @@ from simkit.loaders.meshes.mesh_part import (
     Ints,
     MeshFileError,
     MeshPart,
+    check_is_fetched,
     numbers_of,
     report_once,
 )
@@ -41,9 +42,10 @@ SUFFIXES: Final = (".dae", ".stl", ".obj", ".gltf", ".glb", ".ply", ".off")
 
 
 def load_mesh(mesh: Mesh, diagnostics: Diagnostics, where: Where) -> list[MeshPart]:
-    """Return the scaled mesh of a geometry; empty, with an error recorded, if the file cannot be used.
+    """Return the scaled mesh of a geometry; empty, with a diagnostic, if the file cannot be used.
 
-    A problem of a file is reported once, however often the file is used.
+    An unreadable file is a warning, like a missing one, because Gazebo also continues without it. A problem of a file
+    is reported once, however often the file is used.
     """
     progress.set_item(mesh.file.name)
     try:
@@ -52,7 +54,8 @@ def load_mesh(mesh: Mesh, diagnostics: Diagnostics, where: Where) -> list[MeshPa
         converted = convert_file(mesh.file)
         parts = _submesh(list(converted.parts), mesh.submesh) if mesh.submesh else list(converted.parts)
     except MeshFileError as problem:
-        report_once(diagnostics, "error", "SK-MESH-001", f"{mesh.uri}: {problem}", where)
+        message = f"{mesh.uri}: {problem}; the shape is left out of drawing and contacts"
+        report_once(diagnostics, "warning", "SK-MESH-001", message, where)
         return []
     for text in converted.notes:
         report_once(diagnostics, "warning", "SK-MESH-012", f"{mesh.uri}: {text}", where)
@@ -115,6 +118,7 @@ def _converted(file: Path, _version: tuple[int, int]) -> ConvertedMesh:
 
 
 def _convert(file: Path, content: bytes) -> ConvertedMesh:
+    check_is_fetched(content)
     companions = Companions(file)
     try:
         parts = _read(file.suffix.lower(), content, companions)

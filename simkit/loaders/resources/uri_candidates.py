@@ -8,7 +8,7 @@ from pathlib import Path
 
 from simkit.diagnostics import Diagnostic
 from simkit.errors import LoadError
-from simkit.loaders.resources.bundled_models import bundled_folders
+from simkit.loaders.resources.bundled_models import builtin_model, bundled_folders
 from simkit.loaders.resources.fuel_cache import (
     LOCK_NAME,
     LockEntry,
@@ -20,8 +20,16 @@ from simkit.loaders.resources.fuel_cache import (
 from simkit.loaders.resources.install_rules import installed_sources
 from simkit.loaders.resources.project_folder import readable_folder
 from simkit.loaders.resources.ros_packages import PackageIndex, enclosing_package
-from simkit.loaders.resources.uris import absolute_path, is_existing, is_folder, is_link, is_private, sibling_names
-from simkit.project_folder import enclosing_project
+from simkit.loaders.resources.uris import (
+    absolute_path,
+    is_existing,
+    is_file,
+    is_folder,
+    is_link,
+    is_private,
+    sibling_names,
+)
+from simkit.project_folder import enclosing_project, is_top_folder
 from simkit.trusted_folders import TrustedFolders, built_workspace, join_below
 
 _MEDIA = ("Media/models", "media/models", "Media", "media")  # folders of a package that Gazebo Classic searches
@@ -51,7 +59,7 @@ class UriCandidates:
         self._projects: dict[Path, list[Path]] = {}  # folder of a file -> folder, project and package
         self._locks: dict[Path | None, dict[str, LockEntry]] = {}
         self._lock_problems: list[Diagnostic] = []
-        self._parts: dict[Path, list[Path]] = {}  # project -> the project and the folders in it
+        self._groups: dict[Path, list[Path]] = {}  # project -> its folders of models
         self._subfolders: dict[tuple[str, Path], bool] = {}  # name of a folder, folder above it -> it exists
 
     # ------------------------------------------------------------------ access
@@ -113,8 +121,8 @@ class UriCandidates:
         """Yield all candidates for `model://name/inside`."""
         yield from self._model_candidates(name, inside, relative_to)
         yield from self._package_candidates(name, inside, relative_to)
-        yield from self._models_of_packages(name, inside, relative_to)
         yield from self._models_of_project(name, inside, relative_to)
+        yield from self._models_of_packages(name, inside, relative_to)
 
     def all_packages(self, name: str, inside: str, relative_to: Path | None) -> Iterator[Path]:
         """Yield all candidates for `package://name/inside`."""
@@ -141,6 +149,8 @@ class UriCandidates:
                     if TrustedFolders([start]).allows(near):
                         self.trusted.add(near)
                     yield join_below(near, inside)
+                elif self.allows(near, relative_to):  # a folder of models in the project or package of the file
+                    yield join_below(near, inside)
         for bundle in bundled_folders("assets"):
             yield join_below(bundle, below)
             groups = sorted(bundle.glob(f"*/{name}/")) if name.replace("_", "").isalnum() else ()
@@ -157,9 +167,14 @@ class UriCandidates:
             yield join_below(self.trust_plain(folder), inside)
 
     def _models_of_packages(self, name: str, inside: str, relative_to: Path | None) -> Iterator[Path]:
-        """Yield candidates for `model://name/...` in the folders `models` of packages, which packages export."""
+        """Yield candidates for `model://name/...` in the folders `models` of packages, which packages export.
+
+        A model that simkit has, such as `ground_plane`, is not taken from packages elsewhere.
+        """
+        beside = {self._trust_around(folder)[1].parent for folder in self._around(relative_to)}
+        is_own = builtin_model(f"model://{name}") is not None
         for package in self.packages.packages(self._around(relative_to)):
-            if not self._has_subfolder(package, "models"):
+            if not self._has_subfolder(package, "models") or (is_own and package.parent not in beside):
                 continue
             folder = join_below(package / "models", name)
             if is_folder(folder) and not is_private(folder):
@@ -167,26 +182,34 @@ class UriCandidates:
                 yield join_below(folder, inside)
 
     def _models_of_project(self, name: str, inside: str, relative_to: Path | None) -> Iterator[Path]:
-        """Yield candidates for `model://name/...` in the folders `models` of the file's project and of its subfolders.
+        """Yield candidates for `model://name/...` in the folders `models` of the project and of the folders in it.
 
-        A project without ROS packages names these folders in its environment variables or in its README.
+        The launch files or the README of such a project add these folders to GAZEBO_MODEL_PATH.
         """
-        for folder in self._around(relative_to):
-            project = enclosing_project(folder)
-            if project is None:
-                continue
-            if project not in self._parts:
-                inner = sorted(project / subfolder for subfolder in sibling_names(project / "any"))
-                self._parts[project] = [project, *(part for part in inner if not is_link(part))]
-            for part in self._parts[project]:
-                if self._has_subfolder(part, "models") and is_folder(model := join_below(part / "models", name)):
-                    yield join_below(model, inside)
+        for project in dict.fromkeys(self._trust_around(folder)[1] for folder in self._around(relative_to)):
+            for place in self._model_groups(project):
+                if is_folder(folder := join_below(place, name)):
+                    yield join_below(folder, inside)
+
+    def _model_groups(self, project: Path) -> list[Path]:
+        """Return the folders `models` of a project and of its folders, and the groups of models in the first."""
+        if project not in self._groups:
+            top = project / "models"
+            below = sorted(top / name for name in sibling_names(top / "any"))
+            groups = [folder for folder in below if is_folder(folder) and not is_file(folder / "model.config")]
+            is_project = enclosing_project(project) == project  # not just the folder above a file
+            others = sorted(project / name / "models" for name in sibling_names(project / "any") if is_project)
+            others = [folder for folder in others if not is_link(folder.parent) and is_folder(folder)]
+            self._groups[project] = [*([top, *groups] if below else []), *others]
+        return self._groups[project]
 
     def media_candidates(self, text: str, relative_to: Path | None) -> Iterator[Path]:
-        """Yield candidates for a relative path in the folders `Media` of search paths and packages."""
+        """Yield candidates for a relative path in the folders `Media`: of search paths, near the file, of packages."""
         if ".." not in Path(text).parts:
-            packages = map(self.trust_plain, self.packages.packages(self._around(relative_to)))
-            roots = ((root, media) for root in chain(self.paths, packages) for media in _MEDIA)
+            around = self._around(relative_to)
+            near = (folder for start in around for folder in (start, start.parent) if not is_top_folder(folder))
+            packages = map(self.trust_plain, self.packages.packages(around))
+            roots = ((root, media) for root in chain(self.paths, near, packages) for media in _MEDIA)
             yield from (join_below(root / media, text) for root, media in roots if self._has_subfolder(root, media))
 
     def _has_subfolder(self, folder: Path, name: str) -> bool:

@@ -107,7 +107,7 @@ class Resolver(UriCandidates):
         self._failures.clear()
         self._errors.clear()
         self._subfolders.clear()
-        self._parts.clear()
+        self._groups.clear()
 
     def around(self, folder: Path | None) -> Resolver:
         """Return a resolver with the folder of the loaded file as its base, unless this resolver already has a base."""

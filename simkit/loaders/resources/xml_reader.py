@@ -11,7 +11,7 @@ from xml.parsers import expat
 
 from simkit import progress
 from simkit.diagnostics import Diagnostics, Where, shorten
-from simkit.input_file import FileTooLargeError, read_input
+from simkit.input_file import GIT_LFS_POINTER, GIT_LFS_TEXT, FileTooLargeError, read_input
 from simkit.params import Params
 from simkit.scene.simkit_elements import PREFIX
 from simkit.template_texts import find_template_text
@@ -36,7 +36,7 @@ _FOREIGN_SIGNATURES: Final[tuple[tuple[bytes, str], ...]] = (
     (b"#ROSBAG", "a ROS 1 bag"),
     (b"SQLite format 3", "an SQLite file, perhaps a ROS 2 bag"),
     (b"%PDF", "a PDF document"),
-    (b"version https://git-lfs", "a pointer of Git LFS; the content was not fetched (git lfs pull)"),
+    (GIT_LFS_POINTER, GIT_LFS_TEXT),
     (b"#!", "a script"),
 )
 _FOREIGN_ROOTS: Final = {

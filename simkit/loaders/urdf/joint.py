@@ -181,26 +181,25 @@ def _mimic(draft: RobotDraft, joint: JointDraft) -> Mimic | None:
         return None
     leader = text_attribute(element, "joint")
     multiplier, offset = number_attribute(element, "multiplier", 1.0), number_attribute(element, "offset", 0.0)
-    message, report = "", element.error
     if not leader:
         report_missing(element, "joint", "the name of a joint", f"joint {joint.name!r}")
         return None
     if leader in draft.faulty_joints:
         return None
-    if leader not in draft.joints:
-        message = f"joint {joint.name!r} mimics {leader!r}, which does not exist; it moves freely"
-        report = element.warning
-    elif draft.joints[leader].type in _NO_MIMIC:
-        message = f"joint {joint.name!r} mimics {leader!r}, a {draft.joints[leader].type} joint; it moves freely"
-        report = element.warning
-    elif joint.type in _NO_MIMIC:
+    if joint.type in _NO_MIMIC:
         element.warning("SK-URDF-015", f"{joint.type} joint {joint.name!r}: <mimic> has no effect")
         return None
-    elif leader == joint.name or _is_in_mimic_ring(draft, joint.name):
-        message = f"joint {joint.name!r} mimics itself"
-    if message:
+    if leader not in draft.joints:
         moving = [n for n, j in draft.joints.items() if j.type not in _NO_MIMIC]
-        report("SK-URDF-015", message, did_you_mean(leader, moving))
+        message = f"joint {joint.name!r} mimics {leader!r}, which does not exist; it moves freely"
+        element.warning("SK-URDF-015", message, did_you_mean(leader, moving))
+        return None
+    if draft.joints[leader].type in _NO_MIMIC:
+        message = f"joint {joint.name!r} mimics {leader!r}, a {draft.joints[leader].type} joint; it moves freely"
+        element.warning("SK-URDF-015", message)
+        return None
+    if leader == joint.name or _is_in_mimic_ring(draft, joint.name):
+        element.error("SK-URDF-015", f"joint {joint.name!r} mimics itself")
         return None
     return Mimic(draft.own(leader), 0, multiplier, offset)
 

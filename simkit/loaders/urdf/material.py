@@ -44,7 +44,7 @@ class Materials:
         for link in self.draft.links.values():
             for visual in link.all("visual"):
                 inside = visual.child("material")
-                if inside is not None and (inside.has("color") or inside.has("texture")):
+                if inside is not None and _has_own_look(inside):
                     name = text_attribute(inside, "name")
                     if name not in self.named:
                         self._define(name, inside)
@@ -62,7 +62,7 @@ class Materials:
             return self.named[name]
         if name.startswith("Gazebo/") and (known := gazebo_colours(name)):
             return Material(known["diffuse"], known["diffuse"])
-        if name and name not in self._unknown and name not in self._lines:
+        if name and name not in self._unknown and name not in self._lines and not _has_own_look(element):
             self._unknown.add(name)
             message = f"material {name!r} is not defined; a mesh keeps its own colours, a shape is drawn white"
             element.warning("SK-URDF-026", message, did_you_mean(name, [*self.named, *gazebo_materials()]))
@@ -99,6 +99,10 @@ class Materials:
             return None
         base = rgba or (1.0, 1.0, 1.0, 1.0)
         return Material(base, base, texture=path)
+
+
+def _has_own_look(element: Params) -> bool:
+    return element.has("color") or element.has("texture")
 
 
 def extended_material(extension: Params, written: Material | None, draft: RobotDraft) -> Material | None:

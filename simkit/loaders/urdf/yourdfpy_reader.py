@@ -9,6 +9,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
+import numpy as np
+
 from simkit.float_sum import float_sum
 from simkit.loaders.urdf.robot_reading import MOVING, Part, RobotReading, Value, limit_values, mimic_text
 from simkit.scene.model import MOST_LEADERS
@@ -53,7 +55,9 @@ def yourdfpy_reading(text: bytes) -> RobotReading:
     def frames(positions: Mapping[str, float]) -> dict[str, tuple[float, ...]]:
         with _silent():
             try:
-                urdf.update_cfg({name: _position(name, laws, positions, MOST_LEADERS) for name in moving})
+                # yourdfpy 0.0.59 needs numbers of NumPy
+                every = {name: np.float64(_position(name, laws, positions, MOST_LEADERS)) for name in moving}
+                urdf.update_cfg(every)
                 return {name: _pose_numbers(urdf.get_transform(name, urdf.base_link)) for name in urdf.link_map}
             except Exception as error:  # noqa: BLE001 - for example, a link that no joint connects to the root
                 raise _read_error(error) from None

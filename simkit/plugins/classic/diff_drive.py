@@ -221,7 +221,9 @@ class GazeboRosDiffDrive(CommandedDrive):
         self._canonical = scene.canonical_link
         for joint in (joint for pair in zip(*wheels.values(), strict=False) for joint in pair):
             self._joints.append(joint.scoped)
-            servo = builder.add_velocity_servo(joint.scoped, max_effort=options.max_wheel_torque, owner=self.name)
+            servo = builder.add_velocity_servo(
+                joint.scoped, max_effort=options.max_wheel_torque, owner=self.name, joint_limit=False
+            )
             self._servos.append(servo)
 
     def load(self, parent: Model, params: Params) -> None:

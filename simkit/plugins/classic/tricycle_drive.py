@@ -14,6 +14,7 @@ differences to Gazebo Classic:
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING
 
 from simkit.params import Params
@@ -136,9 +137,10 @@ class GazeboRosTricycleDrive(CommandedDrive):
         if steering is None or len(wheels) != 3:
             return
         torque, owner = options.max_wheel_torque, self.name
-        self._motor = builder.add_velocity_servo(wheels[0].scoped, max_effort=torque, owner=owner)
+        add_motor = partial(builder.add_velocity_servo, max_effort=torque, owner=owner, joint_limit=False)
+        self._motor = add_motor(wheels[0].scoped)
         if options.max_steering_speed > 0:
-            self._steering = builder.add_velocity_servo(steering.scoped, max_effort=torque, owner=owner)
+            self._steering = add_motor(steering.scoped)
         else:
             self._steering = builder.add_position_servo(steering.scoped, max_effort=math.inf, owner=owner)
 

@@ -6,6 +6,7 @@ import functools
 import re
 import tomllib
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import Final
@@ -29,19 +30,37 @@ GAZEBO_PLUGINS: frozenset[str] = frozenset(
 """Library names of Gazebo's plugins, normalised by `normalise`."""
 
 
-def _reasons_by_name() -> dict[str, str]:
-    reasons: dict[str, str] = {}
-    for row in _TABLE["gz"]:
-        for file_and_class in row["names"].split():
-            part, _, cls = file_and_class.partition(":")
-            reasons[f"gz-sim-{part}-system"] = reasons[f"gz::sim::systems::{cls}"] = row["reason"]
-    for row in _TABLE["libraries"]:
-        reasons.update(dict.fromkeys(row["names"].split(), row["reason"]))
-    return reasons
+@dataclass(frozen=True)
+class UnsupportedPlugin:
+    """Reason why simkit does not support a plugin.
+
+    Attributes:
+        reason: clause that describes the plugin or what to use instead.
+        is_decoration: true if only pictures differ without the plugin.
+        family: name of the family of plugins that a file reports once; empty for a plugin of its own.
+    """
+
+    reason: str
+    is_decoration: bool = False
+    family: str = ""
 
 
-UNSUPPORTED_REASONS: Final = MappingProxyType(_reasons_by_name())
-"""Reason by library name or gz class name; the names are normalised by `normalise`."""
+def _unsupported_by_name() -> dict[str, UnsupportedPlugin]:
+    found: dict[str, UnsupportedPlugin] = {}
+    for row in (*_TABLE["gz"], *_TABLE["libraries"]):
+        plugin = UnsupportedPlugin(row["reason"], row.get("is_decoration", False), row.get("family", ""))
+        for name in row["names"].split():
+            part, is_system, cls = name.partition(":") if row in _TABLE["gz"] else (name, "", "")
+            names = (f"gz-sim-{part}-system", f"gz::sim::systems::{cls}") if is_system else (name,)
+            found.update(dict.fromkeys(names, plugin))
+    return found
+
+
+UNSUPPORTED: Final = MappingProxyType(_unsupported_by_name())
+"""Unsupported plugins with a reason, by library name or gz class name; the names are normalised by `normalise`."""
+
+UNSUPPORTED_REASONS: Final = MappingProxyType({name: plugin.reason for name, plugin in UNSUPPORTED.items()})
+"""Reason by library name or gz class name."""
 
 
 @functools.cache
@@ -114,26 +133,33 @@ def _report_unknown(plugin: ScenePlugin, diagnostics: Diagnostics) -> None:
         message = f"plugin {plugin.filename!r} (name {plugin.name!r}) {need}; it is ignored"
         diagnostics.warning("SK-PLUGIN-001", message, plugin.where, advice)
         return
-    reason = next((UNSUPPORTED_REASONS[name] for name in names if name in UNSUPPORTED_REASONS), None)
-    if reason is not None or GAZEBO_PLUGINS.intersection(names):
-        named = f"plugin {plugin.filename!r} (name {plugin.name!r})"
-        why = f": {reason}" if reason else ""
-        message = f"{named} is a Gazebo plugin that simkit does not support; it is ignored{why}"
-        hint = "supported plugins: docs/catalogue.md; to write it in Python: docs/writing_a_plugin.md"
-        diagnostics.warning("SK-PLUGIN-002", message, plugin.where, hint)
+    unsupported = next((UNSUPPORTED[name] for name in names if name in UNSUPPORTED), None)
+    if unsupported is not None or GAZEBO_PLUGINS.intersection(names):
+        _report_unsupported(plugin, unsupported, diagnostics)
         return
     spelled = plugin_kinds().written
     cores = {_core(name): spelled[name] for name in sorted(spelled, reverse=True)}
     near = next(filter(None, (closest(_core(name), cores) for name in names)), None)
-    if near:
-        hint = f"did you mean {cores[near]!r}?"
-    else:
-        nearest = closest(names[0] if names else "", spelled, least=0.0)
-        others = "`simkit plugin list` shows all names"
-        hint = f"the closest known name, {spelled[nearest]!r}, differs much; {others}" if nearest else ""
-    hint = f"{hint}; or install the pack that has it".removeprefix("; or ")
+    others = "to write it in Python: docs/writing_a_plugin.md; or install the pack that has it"
+    known = f"did you mean {cores[near]!r}? Else, " if near else "`simkit plugin list` shows all names; "
     message = f"unknown plugin {plugin.filename!r} (name {plugin.name!r}); it is ignored"
-    diagnostics.warning("SK-PLUGIN-001", message, plugin.where, hint)
+    diagnostics.warning("SK-PLUGIN-001", message, plugin.where, known + others)
+
+
+def _report_unsupported(plugin: ScenePlugin, known: UnsupportedPlugin | None, diagnostics: Diagnostics) -> None:
+    hint = "supported plugins: docs/catalogue.md; to write it in Python: docs/writing_a_plugin.md"
+    named = f"plugin {plugin.filename!r} (name {plugin.name!r})"
+    if known is not None and known.is_decoration:
+        diagnostics.note("SK-PLUGIN-002", f"{named} is left out: {known.reason}", plugin.where)
+        return
+    message = f"{named} is a Gazebo plugin that simkit does not support; it is ignored"
+    if known is not None and known.family:
+        message = f"the plugins of {known.family} are ignored: {known.reason}"
+        if any(item.message == message for item in diagnostics):
+            return
+    elif known is not None:
+        message += f": {known.reason}"
+    diagnostics.warning("SK-PLUGIN-002", message, plugin.where, hint)
 
 
 def _core(name: str) -> str:

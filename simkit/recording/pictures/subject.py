@@ -82,7 +82,9 @@ def find_subject(sim: Simulation, traces: Iterable[tuple[str, Points]], room_siz
     seen = np.concatenate([np.zeros((0, 3)), *(points for name, points in traces if name not in left_out)])
     points = np.concatenate((boxes.reshape(-1, 3), seen))
     room = walls.reshape(-1, 3)
-    if len(boxes) and (not len(room) or _size(np.concatenate((points, room))) > room_size * _size(points)):
+    is_scene = not any(_is_robot(sim, name) for name in moving)  # objects at rest, such as furniture
+    limit = math.inf if is_scene and not len(seen) else room_size
+    if len(boxes) and (not len(room) or _size(np.concatenate((points, room))) > limit * _size(points)):
         room = np.zeros((0, 3))
     if not len(points) and not len(room):
         middle, radius = np.array(sim.mj_model.stat.center), max(float(sim.mj_model.stat.extent) / 4, _LEAST)
@@ -137,6 +139,12 @@ def _moving_models(sim: Simulation) -> set[str]:
         for link in sim.engine.names.links.values()
         if not link.static and (model := sim.models.get(link.model)) is not None and not model.static
     }
+
+
+def _is_robot(sim: Simulation, name: str) -> bool:
+    """Check whether a model has joints, sensors or plugins."""
+    scenes = sim.models[name].scene.all_models()
+    return any(model.joints or model.plugins or any(link.sensors for link in model.links) for model in scenes)
 
 
 def _ground(sim: Simulation) -> float:

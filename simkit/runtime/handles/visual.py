@@ -53,6 +53,12 @@ class Visual(Handle):
         if geoms:
             self._engine.touch("geom_rgba")[geoms] = parts
 
+    def set_material(self, name: str) -> None:
+        """Show a material that `SpecBuilder.add_script_material` has added for this visual."""
+        geoms = list(self.geoms)
+        if geoms:
+            self._engine.touch("geom_matid")[geoms] = self._physics.model.material(name).id
+
     @property
     def pose(self) -> Pose:
         """Pose of the visual's frame in the world."""

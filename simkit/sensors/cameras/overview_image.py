@@ -23,6 +23,7 @@ from simkit.sensors.cameras.rendering import render_thread
 from simkit.sensors.cameras.rendering.lights_and_shadows import Sphere, suns_of
 from simkit.sensors.cameras.rendering.scene_composition import Composition
 from simkit.sensors.cameras.rendering.view import Colours, Depths, DrawnView, Shot, View, look_at
+from simkit.sensors.particle_clouds import drawer_of_particles, has_sources
 from simkit.sensors.values_with_expiry import temporary_values
 
 Distances = npt.NDArray[np.float32]
@@ -98,10 +99,13 @@ def render_view(
         near = max(near, float(position[2]) - ceiling)
     view = View(width, height, -wide, wide, -half, half, near, distance + 50.0 * extent)
     is_dark = model.nlight == 0
+    draw_particles = drawer_of_particles(sim, sim.time) if has_sources(sim) else None
 
     def prepare(scene: mujoco.MjvScene) -> None:
         if is_dark:
             _add_headlight(scene)
+        if draw_particles is not None:
+            draw_particles(scene)
         if decorate is not None:
             decorate(scene)
 

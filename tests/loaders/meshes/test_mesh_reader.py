@@ -76,7 +76,7 @@ def test_scale_mirrors_without_turning_the_mesh_inside_out(dae):
     assert trimesh.Trimesh(vertices, faces).volume == pytest.approx(2.0 * 0.0254**3, rel=1e-6)
 
 
-def test_a_submesh_is_known_by_its_node_and_a_missing_one_is_an_error(dae):
+def test_a_submesh_is_known_by_its_node_and_a_missing_one_is_left_out(dae):
     assert len(load_mesh(Mesh(dae, "t.dae", submesh="part"), Diagnostics(), NOWHERE)) == 1
     centred = load_mesh(Mesh(dae, "t.dae", submesh="part", center=True), Diagnostics(), NOWHERE)[0].vertices
     np.testing.assert_allclose(centred.min(axis=0), -centred.max(axis=0))
@@ -86,12 +86,21 @@ def test_a_submesh_is_known_by_its_node_and_a_missing_one_is_an_error(dae):
     assert "'part'" in next(iter(found)).message
 
 
-def test_a_broken_file_is_an_error_and_not_a_traceback(tmp_path):
+def test_a_broken_file_is_left_out_with_a_warning(tmp_path):
     file = tmp_path / "bad.stl"
     file.write_bytes(b"solid nothing")
     found = Diagnostics()
     assert load_mesh(Mesh(file, "bad.stl"), found, NOWHERE) == []
-    assert [d.code for d in found] == ["SK-MESH-001"]
+    assert [(d.code, d.severity) for d in found] == [("SK-MESH-001", "warning")]
+
+
+@pytest.mark.parametrize("suffix", [".dae", ".obj", ".stl", ".glb"])
+def test_a_pointer_of_git_lfs_in_place_of_a_mesh_is_named(tmp_path, suffix):
+    file = tmp_path / f"body{suffix}"
+    file.write_bytes(b"version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 141935\n")
+    found = Diagnostics()
+    assert load_mesh(Mesh(file, file.name), found, NOWHERE) == []
+    assert "is a pointer of Git LFS; the content was not fetched (git lfs pull)" in next(iter(found)).message
 
 
 def test_the_cache_gives_the_same_and_does_without(dae, own_mesh_cache, monkeypatch):
@@ -239,14 +248,14 @@ def test_equal_meshes_are_stored_once(make, compiled, dae):
     assert compiled(*models).model.nmesh == 1
 
 
-def test_a_mesh_without_file_is_an_error_with_a_code(make, tmp_path):
+def test_a_collision_with_an_unreadable_mesh_is_left_out_of_a_world_that_compiles(make, tmp_path):
     found = Diagnostics()
     SpecBuilder(make.world(make.solid("m", Mesh(tmp_path / "no.stl", "no.stl"))), found)
-    assert found.has_errors
+    assert not found.has_errors
     assert next(iter(found)).code == "SK-MESH-001"
 
 
-def test_a_mesh_with_coordinates_beyond_all_reach_is_an_error(make, tmp_path):
+def test_a_mesh_with_coordinates_beyond_all_reach_is_left_out(make, tmp_path):
     (tmp_path / "far.obj").write_text("v 1e300 0 0\nv 1 0 1e300\nv 0 1 0\nv 0 0 1e38\nf 1 2 3\nf 1 2 4\n")
     diagnostics = Diagnostics()
     load_mesh(Mesh(tmp_path / "far.obj", "far.obj"), diagnostics, NOWHERE)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import resource
 import struct
@@ -10,6 +11,7 @@ import zlib
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from simkit.diagnostics import NOWHERE, Diagnostics
 from simkit.loaders.meshes.companion_files import read_pixels
@@ -113,6 +115,19 @@ def test_a_picture_that_would_unpack_to_gigabytes_is_refused_by_its_header(tmp_p
     converted = convert_file(textured_obj(tmp_path, "bomb.png"))
     assert [p.texture for p in converted.parts] == [None]
     assert len(converted.notes) == 1
+
+
+def test_a_wrong_checksum_beside_the_pixels_of_a_picture_does_no_harm():
+    file = io.BytesIO()
+    Image.new("RGB", (2, 1), (10, 20, 30)).save(file, "PNG")
+    content = file.getvalue()
+    chunk = struct.pack(">I", 3) + b"iCCP" + b"abc" + b"\0\0\0\0"
+    assert read_pixels(content[:33] + chunk + content[33:]).tolist() == [[[10, 20, 30]] * 2]
+
+
+def test_the_message_about_an_unknown_picture_is_the_same_in_each_run():
+    with pytest.raises(MeshFileError, match=r"^is not a readable picture \(unknown format\)$"):
+        read_pixels(b"no picture")
 
 
 def test_text_in_a_picture_that_unpacks_to_gigabytes_does_no_harm():

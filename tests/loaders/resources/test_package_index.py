@@ -241,6 +241,42 @@ def test_a_model_in_the_folder_models_beside_a_world_without_a_package_is_found(
         assert [model.name for model in sim.world.models] == ["table"]
 
 
+@pytest.mark.parametrize("place", ["task/Media/models", "task/worlds/media"])
+def test_a_relative_file_is_found_in_a_media_folder_beside_a_world_without_a_package(write, place):
+    write("league/.git/HEAD", "")
+    write(f"league/{place}/m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    mesh = '<visual name="v"><geometry><mesh><uri>file://m.obj</uri></mesh></geometry></visual>'
+    model = f'<model name="m"><static>true</static><link name="l">{mesh}</link></model>'
+    world = write("league/task/worlds/w.sdf", f'<sdf version="1.9"><world name="w">{model}</world></sdf>')
+    with simkit.load(world) as sim:
+        assert [d.code for d in sim.diagnostics if d.code.startswith("SK-URI")] == ["SK-URI-010"]
+
+
+@pytest.mark.parametrize("place", ["models", "models/team"])
+def test_a_model_of_the_repository_is_found_from_a_world_deeper_in_it(write, place):
+    write("ws/league/.git/HEAD", "")
+    write(f"ws/league/{place}/table/model.config", "<model><sdf version='1.9'>model.sdf</sdf></model>")
+    model = '<sdf version="1.9"><model name="table"><link name="l"/></model></sdf>'
+    write(f"ws/league/{place}/table/model.sdf", model)
+    world = '<sdf version="1.9"><world name="w"><include><uri>model://table</uri></include></world></sdf>'
+    with simkit.load(write("ws/league/worlds/team/w.sdf", world)) as sim:
+        assert [model.name for model in sim.world.models] == ["table"]
+
+
+@pytest.mark.parametrize("place, links", [("ws/other/plant", 1), ("ws/league/plant", 2)])
+def test_a_ground_plane_of_another_repository_does_not_replace_the_built_in_one(write, package, place, links):
+    write("ws/league/.git/HEAD", "")
+    package("ws/league/worlds")
+    package(place)
+    config = "<model><sdf version='1.9'>model.sdf</sdf></model>"
+    write(f"{place}/models/ground_plane/model.config", config)
+    model = '<model name="ground_plane"><static>true</static><link name="a"/><link name="b"/></model>'
+    write(f"{place}/models/ground_plane/model.sdf", f'<sdf version="1.9">{model}</sdf>')
+    world = '<sdf version="1.9"><world name="w"><include><uri>model://ground_plane</uri></include></world></sdf>'
+    with simkit.load(write("ws/league/worlds/worlds/w.sdf", world)) as sim:
+        assert len(sim.model("ground_plane").links) == links
+
+
 @pytest.mark.parametrize("folder", ["Media/models", "media"])
 def test_a_relative_file_is_found_in_the_media_folder_of_the_package(write, used, package, folder):
     package("ws/src/mine/robot")

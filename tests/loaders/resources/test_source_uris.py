@@ -47,3 +47,21 @@ def test_a_mesh_with_an_unknown_scheme_is_left_out() -> None:
     mesh = "<visual name='v'><geometry><mesh><uri>zip://box.dae</uri></mesh></geometry></visual>"
     with simkit.load(BOX.replace('<link name="l"/>', f"<link name='l'>{mesh}</link>")) as sim:
         assert [d.code for d in sim.diagnostics if d.severity == "warning"] == ["SK-URI-004"]
+
+
+def test_a_world_finds_a_model_in_a_group_of_models_of_its_package(tmp_path: Path) -> None:
+    """A group is a folder without a `model.config`; outside of a package it is not read."""
+    world = tmp_path / "package" / "worlds" / "course.world"
+    model = tmp_path / "package" / "models" / "course" / "bar" / "model.sdf"
+    for file in (world, model):
+        file.parent.mkdir(parents=True, exist_ok=True)
+    model.write_text(BOX, encoding="utf-8")
+    world.write_text(
+        "<sdf version='1.9'><world name='w'><include><uri>model://course/bar</uri></include></world></sdf>",
+        encoding="utf-8",
+    )
+    with pytest.raises(simkit.LoadError, match="model://course/bar"):
+        simkit.load(world)
+    (tmp_path / "package" / "package.xml").write_text("<package><name>package</name></package>", encoding="utf-8")
+    with simkit.load(world) as sim:
+        assert sim.model("box").name == "box"

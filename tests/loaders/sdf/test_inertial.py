@@ -178,3 +178,18 @@ def test_the_unit_of_a_collada_file_is_applied(tmp_path):
     inertial, _ = mass_of(path)
     assert inertial.mass == pytest.approx(W / 6, rel=1e-6)
     np.testing.assert_allclose(inertial.com, (0.25,) * 3, rtol=1e-6)
+
+
+def test_an_inertia_that_is_not_a_number_is_a_warning_in_a_static_model_and_else_an_error(tmp_path):
+    inertial = "<inertial><mass>0</mass><inertia><ixx>nan</ixx><iyy>nan</iyy><izz>nan</izz></inertia></inertial>"
+    shape = collision("<box><size>1 1 1</size></box>")
+    model = (
+        f'<sdf version="1.9"><model name="m"><static>true</static><link name="l">{inertial}{shape}</link></model></sdf>'
+    )
+    path = tmp_path / "m.sdf"
+    path.write_text(model)
+    found = mass_of(path)[1]
+    assert {(d.severity, d.code) for d in found if d.line == 1} >= {("warning", "SK-PARAM-002")}
+    assert not [d for d in found if d.severity == "error"]
+    path.write_text(model.replace("<static>true</static>", ""))
+    assert [d for d in mass_of(path)[1] if d.severity == "error" and "<ixx>nan</ixx>" in d.message]

@@ -436,6 +436,23 @@ def test_a_joint_that_mimics_a_fixed_joint_moves_freely_with_a_warning(load):
     assert scene.model.joints[1].axes[0].mimic is None
 
 
+def test_mimic_of_a_fixed_joint_has_no_effect_whatever_it_names(load):
+    text = robot(
+        link("a")
+        + link("b")
+        + link("c")
+        + link("d")
+        + joint("ab", "a", "b", "", "fixed")
+        + joint("bc", "b", "c", '<mimic joint="ab"/>', "fixed")
+        + joint("cd", "c", "d", '<mimic joint="nowhere"/>', "fixed")
+    )
+    _, found = load(text)
+    told = with_code(found, "SK-URDF-015")
+    assert [(d.severity, d.message, d.hint) for d in told] == [
+        ("warning", f"fixed joint {name!r}: <mimic> has no effect", "") for name in ("bc", "cd")
+    ]
+
+
 def test_a_gazebo_joint_that_repeats_a_joint_of_the_robot_is_left_out(load):
     extra = """<gazebo><joint name="ab" type="prismatic"><parent>a</parent><child>b</child>
       <axis><xyz>0 1 0</xyz></axis></joint></gazebo>"""

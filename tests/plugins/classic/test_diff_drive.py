@@ -241,3 +241,14 @@ def test_other_step_lengths_give_the_same_path() -> None:
             moved = sim.model("rover").pose.position - start
         assert moved[0] == pytest.approx(0.6, abs=0.02), step
         assert abs(moved[1]) < 2e-3, step
+
+
+def test_the_effort_limit_of_a_joint_does_not_bound_its_wheel_motor() -> None:
+    text = world(GROUND, rover(classic_drive())).replace("</axis>", "<limit><effort>0</effort></limit></axis>")
+    assert "<effort>0</effort>" in text
+    with simkit.load(text) as sim:  # ODE's joint motor has its own limit, fmax
+        assert not [d for d in sim.diagnostics if d.code == "SK-JOINT-011"]
+        sim.run(0.5)
+        sim.publish("/cmd_vel", TWIST)
+        sim.run(3.0)
+        assert sim.model("rover").pose.position[0] == pytest.approx(0.9, abs=0.02)

@@ -54,8 +54,17 @@ def test_the_room_around_a_robot_is_shown_whole_and_a_landscape_is_not() -> None
     near, far = ("wall", "0.7 0 0.5", "0.1 1 1", True), ("hill", "90 0 5", "10 10 10", True)
     with simkit.load(world(robot, near)) as sim:
         assert len(find_subject(sim, []).points) == 16
-    with simkit.load(world(robot, near, far)) as sim:
+    sensor = '<sensor name="s" type="imu"/></link>'
+    with simkit.load(world(robot, near, far).replace("</link>", sensor, 1)) as sim:
         np.testing.assert_allclose(np.ptp(find_subject(sim, []).points, axis=0), (1, 1, 1))
+
+
+def test_objects_at_rest_without_a_robot_do_not_decide_the_frame() -> None:
+    puck, hall = ("puck", "2 0 0", "0.04 0.04 0.02", False), ("wall", "6 0 0.5", "0.1 9 1", True)
+    with simkit.load(world(puck, hall)) as sim:
+        np.testing.assert_allclose(np.ptp(find_subject(sim, []).points, axis=0), (4.07, 9, 1.01))
+        path = [("puck", np.array([(2.0, 0.0, 0.0), (2.1, 0.0, 0.0)]))]
+        assert np.ptp(find_subject(sim, path).points, axis=0)[1] < 0.1, "what moves is the subject"
 
 
 def test_a_world_without_robots_is_framed_without_its_floor() -> None:
