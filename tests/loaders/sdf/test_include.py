@@ -196,6 +196,16 @@ def test_missing_includes_are_warnings_in_a_world_with_others(load, write):
     assert [d.line for d in found if d.severity == "error"] == [2, 3, 4, 5]
 
 
+def test_a_model_of_missing_includes_only_is_left_out_of_a_world(load, write):
+    root = write("models/box/model.sdf", BOX).parents[1]
+    box = "<include><uri>model://box</uri></include>"
+    chair = "<model name='chair'><include><uri>model://chair</uri></include></model>"
+    world = f"<sdf version='1.9'><world name='w'>{box}{chair}<model name='room'>{chair}</model></world></sdf>"
+    scene, found = load(world, (root,))
+    assert [m.name for m in scene.world.models] == ["box"]
+    assert [(d.code, d.severity) for d in found if d.severity != "note"] == [("SK-URI-001", "warning")]
+
+
 def test_a_missing_include_of_a_bare_model_is_an_error(load, write):
     root = write("models/box/model.sdf", BOX).parents[1]
     includes = "<include><uri>model://box</uri></include><include><uri>model://lamp</uri></include>"
