@@ -213,6 +213,17 @@ def test_a_missing_include_of_a_bare_model_is_an_error(load, write):
     assert [d.code for d in found if d.severity == "error"] == ["SK-URI-001"]
 
 
+def test_a_model_is_found_although_a_package_has_its_name(load, write):
+    root = write("project/robot_lamp/package.xml", "<package><name>robot_lamp</name></package>").parents[1]
+    write("project/.git/HEAD", "")
+    write("project/robot_lamp/models/lamp/model.sdf", BOX)
+    write("project/world/package.xml", "<package><name>world</name></package>")
+    world = "<sdf version='1.9'><world name='w'><include><uri>model://lamp</uri></include></world></sdf>"
+    scene, found = load(write("project/world/worlds/w.sdf", world))
+    assert [m.name for m in scene.world.models] == ["box"], [str(d) for d in found]
+    assert root.is_dir()
+
+
 def test_a_name_alone_is_the_model_of_that_name(load, write):
     write("project/models/platform/model.sdf", "<sdf version='1.9'><model name='p'><link name='l'/></model></sdf>")
     write("project/models/platform/model.config", "<model><sdf version='1.9'>model.sdf</sdf></model>")
