@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import gc
+import os
 import signal
+import tempfile
 from collections.abc import Iterator
 
 import pytest
@@ -19,9 +21,24 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def _base_folder(tmp_path_factory: pytest.TempPathFactory) -> None:
-    """Create the folder of all tests before a test changes the place of temporary files."""
+def _own_folders(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Give the tests of this process, and the processes that they start, a folder of their own for sockets.
+
+    Otherwise a client without the name of a simulation also finds those of other test processes of the same user.
+    The folder of all tests is created before, because it is in the folder of temporary files. The path is short: that
+    of a socket has room for about 100 bytes.
+    """
     tmp_path_factory.getbasetemp()
+    if os.name != "posix":
+        yield
+        return
+    place = tempfile.TemporaryDirectory(prefix="sk", dir="/tmp", ignore_cleanup_errors=True)
+    with place as folder, pytest.MonkeyPatch.context() as patch:
+        for name in ("XDG_RUNTIME_DIR", "TMPDIR"):
+            patch.setenv(name, folder)
+        patch.setattr(tempfile, "tempdir", None)
+        patch.delenv("SIMKIT_SIM", raising=False)
+        yield
 
 
 @pytest.hookimpl(hookwrapper=True)

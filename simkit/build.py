@@ -33,6 +33,7 @@ from simkit.plugins.discovery.make_instances import (
     report_unread,
 )
 from simkit.plugins.gz.sensors import with_sensors_colours
+from simkit.plugins.joints.hold_joints import HoldJoints
 from simkit.pose import Pose
 from simkit.run_spec import (
     EMPTY_SPACE,
@@ -89,6 +90,7 @@ def load(
     renderer: RendererName | None = None,
     remap: NamedValues | None = None,
     start_controllers: bool = True,
+    hold_joints: bool = False,
 ) -> Simulation:
     """Load a world or a single model and return a simulation that is ready to step.
 
@@ -125,6 +127,7 @@ def load(
             They count for plugins and sensors; scripts and nodes use the new names.
         start_controllers: start the controllers of robots with ros2_control when they are loaded. With False, they
             wait for spawners, as in ROS.
+        hold_joints: hold each joint that no plugin drives at its initial position, with the effort limit of the joint.
 
     Returns:
         Simulation at t = 0.
@@ -142,6 +145,7 @@ def load(
         seed=seed, plugin_paths=plugin_paths, plugins=plugins, strict=strict, overrides=overrides, sleep=sleep,
         on_error=on_error, spawn=spawn, params_files=params_files, change_world=change_world, model_world=model_world,
         interfaces=interfaces, renderer=renderer, remap=remap, start_controllers=start_controllers,
+        hold_joints=hold_joints,
     )  # fmt: skip
     import_mujoco()
     options: LoadOptions = {
@@ -150,6 +154,7 @@ def load(
         "params_files": params_files, "strict": strict, "sleep": sleep, "render_thread": render_thread,
         "on_error": on_error, "interfaces": tuple(interfaces), "renderer": renderer,
         "remap": named_values(remap, "--remap") or (), "start_controllers": start_controllers,
+        "hold_joints": hold_joints,
     }  # fmt: skip
     run = RunSpec(
         os.fspath(source), seed=seed, overrides=tuple(overrides), spawn=tuple(spawn), plugins=tuple(plugins),
@@ -290,7 +295,8 @@ def _compiled_structure(
     builder = SpecBuilder(
         world, diagnostics, find_file=reader.find_file, parameter_files=parameter_files, files_read=files_read
     )
-    parts = make_all_parts(world, builder, diagnostics, reader.plugin_folders, run.plugins, reader.left_out)
+    plugins = (*run.plugins, HoldJoints()) if run.options["hold_joints"] else run.plugins
+    parts = make_all_parts(world, builder, diagnostics, reader.plugin_folders, plugins, reader.left_out)
     has_controls = parameter_files or any(model.controls for top in world.models for model in top.all_models())
     if has_controls and not diagnostics.has_errors:  # `parts` does not contain plugins whose parameters have errors
         from simkit.plugins.run_parameter_files import report_unused_control
@@ -360,6 +366,19 @@ def check(source: Source, **arguments: Unpack[LoadArguments]) -> Diagnostics:
         source: see `load`.
         arguments: further arguments of `load`.
     """
+    return check_and_visit(source, lambda *_: None, **arguments)
+
+
+def check_and_visit(
+    source: Source, visit: Callable[[Simulation, Diagnostics], None], **arguments: Unpack[LoadArguments]
+) -> Diagnostics:
+    """Return every problem of a file like `check`, and call a function with the loaded simulation and the problems.
+
+    Args:
+        source: see `load`.
+        visit: function for the simulation, which is closed afterwards; not called for a file with errors.
+        arguments: further arguments of `load`.
+    """
     from simkit.compiler.lint import lint_world
 
     diagnostics = Diagnostics()
@@ -367,6 +386,7 @@ def check(source: Source, **arguments: Unpack[LoadArguments]) -> Diagnostics:
         with load(source, **arguments) as simulation:
             diagnostics.extend(simulation.diagnostics)
             diagnostics.extend(lint_world(simulation.world, simulation.engine.compiled))
+            visit(simulation, diagnostics)
     except LoadError as error:
         diagnostics.extend(error.diagnostics)
     except PluginError as error:

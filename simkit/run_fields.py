@@ -45,6 +45,7 @@ class LoadOptions(SourceOptions, total=False):
     renderer: RendererName | None
     remap: NamedValues
     start_controllers: bool
+    hold_joints: bool
 
 
 class LoadArguments(LoadOptions, total=False):
@@ -255,6 +256,12 @@ LOAD_FIELDS: Final = _load_options(
     RunField(
         "strict", Flag(), packed="never", default=False,  # a packed world was accepted
         option=CommandOption("--strict", "", "Treat warnings as errors.", "world"),
+    ),
+    RunField(
+        "hold_joints", Flag(), key="hold_joints", packed="first", default=False,
+        option=CommandOption(
+            "--hold-joints", "", "Hold each joint that no plugin drives at its initial position.", "world"
+        ),
     ),
     RunField("sleep", Flag(), packed="first", default=True),
     RunField("start_controllers", Flag(), key="start_controllers", packed="first", default=True),

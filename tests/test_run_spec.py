@@ -74,7 +74,8 @@ def test_a_bundle_has_seed_overrides_and_options(world: Path) -> None:
     with open_bundle(path) as bundle:
         spec = bundle.manifest.run_spec
     assert (spec.seed, spec.overrides) == (7, ("ball::l.inertial.mass=2",))
-    assert spec.options == {"base": "fixed", "sleep": True, "on_error": "disable", "start_controllers": True}
+    expected = {"base": "fixed", "sleep": True, "on_error": "disable", "start_controllers": True, "hold_joints": False}
+    assert spec.options == expected
 
 
 def test_a_run_ends_at_its_timeout_else_its_duration(world: Path) -> None:

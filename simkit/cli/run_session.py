@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from simkit.cli.run_loop import Interrupts, RunLoop
 from simkit.cli.run_part import OpenRun, RunPart
@@ -30,6 +30,10 @@ if TYPE_CHECKING:
     from simkit.recording.topic_counts import TopicCount, TopicCounter
     from simkit.runtime import Simulation
     from simkit.runtime.world_control import Program
+
+
+_TOLD_AGAIN: Final = (LEFT_OUT_DRIVE, "SK-CONTROL-013")
+"""Codes of drives and controllers that were left out."""
 
 
 def print_summary(
@@ -276,17 +280,19 @@ class Session:
     def _report_new_warnings(self) -> None:
         """Print the warnings that the run has caused, such as ignored commands; disabled plugins are logged at once.
 
-        A drive that was left out is told again, because the user waits for a motion.
+        A drive or controller that was left out is told again, because the user waits for a motion.
         """
         warnings = [d for d in self.sim.diagnostics if d.severity == "warning"]
-        new_warnings = [d for d in warnings if d not in self._printed or d.code == LEFT_OUT_DRIVE]
+        new_warnings = [d for d in warnings if d not in self._printed or d.code in _TOLD_AGAIN]
         print_diagnostics([d for d in new_warnings if d.code != "SK-PLUGIN-020"], verbose=True)
 
     def _report_fallen_models(self) -> None:
-        """Warn of models that fell out of the world."""
+        """Warn of models that fell out of the world, and of robots that folded without a drive."""
         from simkit.runtime.fallen_models import find_fallen_models
+        from simkit.runtime.folded_models import find_folded_models
 
         diagnostics = find_fallen_models(self.sim)
+        diagnostics.extend(find_folded_models(self.sim))
         print_diagnostics(diagnostics, verbose=True)
         add_diagnostics(diagnostics)
 

@@ -298,6 +298,9 @@ class SpecBuilder:
     ) -> ActuatorRef:
         """Add a servo whose control is a velocity [rad/s or m/s].
 
+        A joint axis has one velocity motor, as in Gazebo: two drivers of one axis share the servo of the first one, and
+        the last command counts.
+
         Args:
             joint_scoped: scoped name of the joint.
             axis: index of the axis.
@@ -311,6 +314,12 @@ class SpecBuilder:
         Raises:
             KeyError: no such joint or axis.
         """
+        if kv is None:
+            refs = self.records[self.names.joint(joint_scoped).model].actuators
+            shared = (r for r in refs if (r.kind, r.joint, r.axis, r.kv) == ("velocity", joint_scoped, axis, None))
+            if (ref := next(shared, None)) is not None:
+                self._report_shared(ref, owner)
+                return ref
         return self._add_actuator(
             "velocity", joint_scoped, axis, max_effort, owner, None, kv, has_joint_limit=joint_limit
         )
@@ -366,6 +375,14 @@ class SpecBuilder:
     ) -> ActuatorRef:
         """Add an actuator whose control is an effort [N·m or N]; raise KeyError for an unknown joint or axis."""
         return self._add_actuator("motor", joint_scoped, axis, max_effort, owner, None, None)
+
+    def _report_shared(self, ref: ActuatorRef, owner: str) -> None:
+        """Warn that two plugins drive the same joints; the message is the same for all joints, so it appears once."""
+        model = self.records[self.names.joint(ref.joint).model].scene
+        if owner != ref.owner:
+            text = f"plugins {ref.owner!r} and {owner!r} drive the same joints of {model.scoped!r}"
+            hint = "remove one of them; Gazebo Classic and Gazebo each load only their own"
+            self.diagnostics.warning("SK-JOINT-019", f"{text}; the last command of either counts", model.where, hint)
 
     def _add_actuator(
         self,
@@ -431,6 +448,9 @@ class SpecBuilder:
             starts = place_joints(model, data, names.joints.values())
             report_starts(names.joints.values(), starts, self.diagnostics)
             report_lights(model, self.diagnostics, self.world.where)
+            if starts:
+                first.qpos[:] = data.qpos
+                mujoco.mj_kinematics(model, first)
             report_overlaps(model, first, names, self.diagnostics, self.world.where)
         for text in dict.fromkeys(str(w.message) for w in engine_warnings):
             if not mjcf_attachment.is_expected_warning(text):

@@ -23,6 +23,8 @@ _SYSTEMS = {
     "navsat": "NavSat",
     "logical-camera": "LogicalCamera",
     "cpu-lidar": "CpuLidar",
+    "particle-emitter": "ParticleEmitter",
+    "particle-emitter2": "ParticleEmitter2",
     "dvl": "DopplerVelocityLogSystem",
 }
 _OF_SENSORS = ("Ray", "GpuRay", "Camera", "DepthCamera", "MultiCamera", "Contact", "ImuSensor", "Sonar")

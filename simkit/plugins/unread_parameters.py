@@ -6,11 +6,17 @@ import functools
 import inspect
 import re
 import sys
+import tomllib
+from pathlib import Path
 from types import ModuleType
+from typing import Final
 
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
 from simkit.plugins.options import option_types_of
+from simkit.plugins.plugin_names import normalise
+
+_GAZEBO_ROS: Final = Path(__file__).parent / "classic" / "gazebo_ros_parameters.toml"
 
 # Calls that read a name, as in `params.number("gain")`. The methods from `find_element` on are those of gz systems.
 _READ_NAME = re.compile(
@@ -66,6 +72,12 @@ def report_unread(params: Params, owner: str, reader: object) -> None:
             hint = suggestion
         elif element.name in _known_names(reader):
             hint = f"the plugin reads <{element.name}> only with other options, or later"
+        elif _is_of_another_plugin(element.name, reader):
+            text += ": it belongs to other plugins of gazebo_ros, and Gazebo's plugin does not read it either"
+            params.diagnostics.note(
+                "SK-PARAM-003", text, element.where, did_you_mean(element.name, _known_names(reader))
+            )
+            continue
         else:
             hint = did_you_mean(element.name, _known_names(reader)) or suggestion
         params.diagnostics.warning("SK-PARAM-003", text, element.where, hint)
@@ -74,6 +86,24 @@ def report_unread(params: Params, owner: str, reader: object) -> None:
         attributes_read = element.attributes_asked
         hint = did_you_mean(attribute, (*attributes_read, *_known_names(reader))) if attributes_read else ""
         params.diagnostics.warning("SK-PARAM-007", text, element.where, hint)
+
+
+def _is_of_another_plugin(name: str, reader: object) -> bool:
+    """Check whether other plugins of gazebo_ros read an element, but not the plugin of the reader's library.
+
+    Files often copy such elements from a plugin of another library, such as `<body_name>` of an IMU.
+    """
+    source = getattr(reader, "source", None)
+    table = gazebo_ros_parameters()
+    own = table.get(normalise(getattr(source, "filename", "")))
+    return own is not None and name not in own and any(name in names for names in table.values())
+
+
+@functools.cache
+def gazebo_ros_parameters() -> dict[str, frozenset[str]]:
+    """Return the names of the elements that each plugin of gazebo_ros_pkgs reads, in ROS 2 or ROS 1, by library."""
+    table = tomllib.loads(_GAZEBO_ROS.read_text(encoding="utf-8"))
+    return {library: frozenset(" ".join(texts.values()).split()) for library, texts in table.items()}
 
 
 def _known_names(reader: object) -> frozenset[str]:

@@ -223,6 +223,8 @@ def sensor(value: SceneSensor, at: Pose) -> Params:
 
 
 def plugin(value: ScenePlugin) -> Params:
-    """Return `<plugin>` as it was written."""
+    """Return `<plugin>` or `<particle_emitter>` as it was written."""
+    if value.params.name == "particle_emitter":
+        return value.params
     attributes = {**value.params.attributes, "name": value.name, "filename": value.filename}
     return Params("plugin", value.params.value, attributes, value.params.children)

@@ -23,11 +23,11 @@ def test_no_plugin_is_both_supported_and_unsupported() -> None:
 
 def test_an_unsupported_plugin_is_reported_with_the_reason() -> None:
     text = """<sdf version="1.9"><world name="w">
-      <plugin filename="gz-sim-particle-emitter-system" name="gz::sim::systems::ParticleEmitter"/>
+      <plugin filename="gz-sim-breadcrumbs-system" name="gz::sim::systems::Breadcrumbs"/>
       <plugin filename="mine.so" name="ignition::gazebo::systems::LensFlare"/>
     </world></sdf>"""
     with simkit.load(text) as sim:
         found = [d for d in sim.diagnostics if d.code == "SK-PLUGIN-002"]
     assert [d.line for d in found] == [2, 3]
-    assert UNSUPPORTED_REASONS["gz-sim-particle-emitter-system"] in found[0].message
+    assert UNSUPPORTED_REASONS["gz-sim-breadcrumbs-system"] in found[0].message
     assert "renderer" in found[1].message

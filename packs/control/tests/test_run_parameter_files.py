@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 import simkit
 from simkit.cli import app
 from simkit.errors import LoadError
+from simkit.testing import count_left_out
 
 OF_ROS_1 = """
 joint_state_controller: {type: joint_state_controller/JointStateController, publish_rate: 50}
@@ -189,3 +190,27 @@ def test_the_path_of_a_parameter_file_can_have_spaces(tmp_path: Path) -> None:
     (tmp_path / "robot.urdf").write_text(arm(plugin="<parameters>my robots/arm.yaml</parameters>"))
     with simkit.load(tmp_path / "robot.urdf") as sim:
         assert states(sim) == {"b": "active"}
+
+
+@pytest.mark.leaves_out
+def test_a_controller_with_errors_is_left_out_but_not_if_the_user_named_its_file(tmp_path: Path) -> None:
+    saved(tmp_path, POSITIONS.replace("j2", "j7"), "arm.yaml")
+    (tmp_path / "arm.urdf").write_text(arm(), encoding="utf-8")
+    with simkit.load(tmp_path / "arm.urdf") as sim:
+        assert next(iter(count_left_out(sim.diagnostics))).startswith("controller 'arm_controller' (")
+    given = saved(tmp_path, "/arm_controller: {ros__parameters: {joints: [j1, j8]}}\n")
+    with pytest.raises(LoadError) as caught:
+        simkit.load(tmp_path / "arm.urdf", params_files=[given])
+    (error,) = {(d.code, d.file) for d in caught.value.diagnostics if d.severity == "error"}
+    assert error == ("SK-CONTROL-012", str(given))
+
+
+@pytest.mark.leaves_out
+def test_a_controller_of_a_type_of_the_repository_is_told_at_the_end_of_a_run_again(tmp_path: Path) -> None:
+    own = POSITIONS.replace("position_controllers/JointGroupPositionController", "my_robot/ArmController")
+    saved(tmp_path, own, "arm.yaml")
+    (tmp_path / "arm.urdf").write_text(arm(), encoding="utf-8")
+    with simkit.load(tmp_path / "arm.urdf") as sim:
+        assert count_left_out(sim.diagnostics) == {"controller 'arm_controller' (type 'my_robot/ArmController')": 1}
+    result = CliRunner().invoke(app, ["run", str(tmp_path / "arm.urdf"), "--duration", "0.01"])
+    assert result.exit_code == 0 and result.output.count("SK-CONTROL-013") == 2

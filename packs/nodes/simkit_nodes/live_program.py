@@ -91,11 +91,26 @@ class LiveProgram(NodeProgram):
         """Print the traceback of the program, unless it was ended because the simulation has ended."""
         is_interrupt = isinstance(error, KeyboardInterrupt)
         host = cast("LiveHost", self.host)
-        if host.closed is None or not (is_interrupt or _is_raised_by_modules(error)):
+        if host.closed is None or not (is_interrupt or self._is_raised_by_modules(error)):
             if is_interrupt:
                 self._cut_traceback(error)
             sys.stderr.write("".join(traceback_of_program(error).format()))
         return INTERRUPTED if is_interrupt else _RAISED
+
+    def _is_raised_by_modules(self, error: BaseException) -> bool:
+        """Check whether an exception comes from a module for programs, as after the end of the communication.
+
+        The module may have called another one, such as `socket`, which raised the exception.
+        """
+        is_raised = False
+        trace = error.__traceback__
+        while trace is not None:
+            frame, trace = trace.tb_frame, trace.tb_next
+            if self.has_folder(str(Path(frame.f_code.co_filename).parent)):
+                is_raised = False
+            else:
+                is_raised |= str(frame.f_globals.get("__name__", "")).startswith(("simkit.", "simkit_nodes."))
+        return is_raised
 
     def _cut_traceback(self, error: BaseException) -> None:
         """Remove the frames after the last line of the program: Ctrl-C has interrupted it there."""
@@ -158,14 +173,6 @@ class LiveFinder(MetaPathFinder):
         if module is None:
             return None
         return ModuleSpec(name, TableLoader(module, program), is_package=hasattr(module, "__path__"))
-
-
-def _is_raised_by_modules(error: BaseException) -> bool:
-    """Check whether a module for programs has raised an exception, as after the end of the communication."""
-    trace = error.__traceback__
-    while trace is not None and trace.tb_next is not None:
-        trace = trace.tb_next
-    return trace is not None and str(trace.tb_frame.f_globals.get("__name__", "")).startswith("simkit_nodes.")
 
 
 def _is_module(name: str, folders: Sequence[str] | None) -> bool:

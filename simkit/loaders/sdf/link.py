@@ -12,7 +12,7 @@ from simkit.loaders.sdf.inertial import read_fluid_added_mass, read_inertial
 from simkit.loaders.sdf.light import read_lights
 from simkit.loaders.sdf.load_context import NamedElement, Workspace
 from simkit.loaders.sdf.material import read_material, read_transparency
-from simkit.loaders.sdf.plugin import read_plugins
+from simkit.loaders.sdf.plugin import read_particle_emitters, read_plugins
 from simkit.loaders.sdf.sensor import read_sensors
 from simkit.loaders.sdf.surface import read_surface
 from simkit.params import Params
@@ -49,7 +49,8 @@ def read_link(part: NamedElement, model: str, static: bool, windy: bool, workspa
         visuals=read_visuals(part, link_name, workspace),
         sensors=read_sensors(part, link_name, pose),
         lights=read_lights(part, link_name, pose),
-        plugins=read_plugins(element.all("plugin"), link_name),
+        plugins=read_plugins(element.all("plugin"), link_name)
+        + read_particle_emitters(element.all("particle_emitter"), link_name),
         where=element.where,
         velocity_decay=_velocity_decay(element),
         enable_wind=element.boolean("enable_wind", windy),

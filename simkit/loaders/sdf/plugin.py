@@ -7,6 +7,9 @@ from collections.abc import Sequence
 from simkit.params import Params
 from simkit.scene import ScenePlugin
 
+PARTICLE_EMITTER = "simkit-particle-emitter"
+"""Library name of the plugin that simulates a `<particle_emitter>`."""
+
 
 def read_plugins(elements: Sequence[Params], scoped: str) -> tuple[ScenePlugin, ...]:
     """Return the plugins in document order; a plugin without a file name is an error."""
@@ -18,3 +21,12 @@ def read_plugins(elements: Sequence[Params], scoped: str) -> tuple[ScenePlugin, 
             continue
         plugins.append(ScenePlugin(element.attribute("name"), filename, scoped, element, element.where))
     return tuple(plugins)
+
+
+def read_particle_emitters(elements: Sequence[Params], scoped: str) -> tuple[ScenePlugin, ...]:
+    """Return the plugin of each `<particle_emitter>`, whose parameters are those of the emitter."""
+    names = (element.attribute("name") or "emitter" for element in elements)
+    return tuple(
+        ScenePlugin(name, PARTICLE_EMITTER, scoped, element, element.where)
+        for name, element in zip(names, elements, strict=True)
+    )

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Final
+
 from simkit.diagnostics import did_you_mean
 from simkit.loaders.urdf.element_attributes import (
     extension_text,
@@ -15,10 +18,15 @@ from simkit.params import Params
 from simkit.scene import Transmission, TransmissionEnd
 
 _KINDS = {
-    "simple": ("simple",),
-    "differential": ("differential",),
+    "simple": ("simple", "pr2gripper"),
+    "differential": ("differential", "wrist"),
     "four_bar_linkage": ("fourbarlinkage", "four_bar_linkage", "four-bar"),
 }
+
+
+_JOINTS: Final = ("joint", "flexJoint", "rollJoint", "gap_joint")
+_ACTUATORS: Final = ("actuator", "rightActuator", "leftActuator")
+"""Elements of a joint and of an actuator; those after the first belong to the wrist and the gripper of PR2."""
 
 
 def read_transmissions(draft: RobotDraft) -> tuple[Transmission, ...]:
@@ -47,18 +55,23 @@ def _transmission(draft: RobotDraft, element: Params) -> Transmission:
     if not kind:
         element.warning("SK-URDF-025", f"transmission {name!r} needs <type>")
     common = _reduction(element, 1.0)
-    joints = element.all("joint")
-    for joint in joints:
+    joints = [joint for name in _JOINTS for joint in element.all(name)]
+    motors = [motor for name in _ACTUATORS for motor in element.all(name)]
+    for joint in (*joints, *element.all("passive_joint")):
         _is_known_joint(draft, joint, f"transmission {name!r}")
     if not joints:
         near = did_you_mean("joint", [c.name for c in element.children])
         element.warning("SK-URDF-025", f"transmission {name!r} names no <joint>", near)
+    ends, actuators = [_transmission_end(e, 1.0) for e in joints], [_transmission_end(e, common) for e in motors]
+    if kind.rpartition("/")[2] == "WristTransmission" and len(ends) == len(actuators) == 2:
+        # a1 = n1 (m1 x1 - m2 x2) and a2 = -n2 (m1 x1 + m2 x2), of wrist_transmission.cpp in pr2_mechanism_model
+        ends[1], actuators[1] = (replace(end, reduction=-end.reduction) for end in (ends[1], actuators[1]))
     return Transmission(
         name=name,
         kind=_kind(kind),
         type=kind,
-        joints=tuple(_transmission_end(e, 1.0) for e in joints),
-        actuators=tuple(_transmission_end(e, common) for e in element.all("actuator")),
+        joints=tuple(ends),
+        actuators=tuple(actuators),
         params=element,
         where=element.where,
     )
@@ -77,11 +90,17 @@ def _transmission_end(element: Params, reduction: float) -> TransmissionEnd:
     role, older = element.child("role"), text_attribute(element, "role")
     return TransmissionEnd(
         name=text_attribute(element, "name"),
-        reduction=_reduction(element, reduction),
+        reduction=_reduction(element, _attribute_number(element, "mechanicalReduction", reduction)),
         offset=_number(element, "offset", 0.0),
         role=role.value if role is not None else older,
         interfaces=tuple(i.value for i in element.all("hardwareInterface")),
     )
+
+
+def _attribute_number(element: Params, name: str, default: float) -> float:
+    """Return the number in an attribute, in which PR2's wrist has its reductions; the default without a number."""
+    value = parse_number(text_attribute(element, name))
+    return default if value is None or value == 0 or abs(value) == float("inf") else value
 
 
 def _reduction(element: Params, default: float) -> float:

@@ -129,6 +129,26 @@ class CameraModel:
             x, y = bent_x + off_x, bent_y + off_y
         return self.fx * x + self.skew * y + self.cx, self.fy * y + self.cy
 
+    def zoomed(self, factor: float) -> CameraModel:
+        """Return the model with focal lengths that are `factor` times as long.
+
+        The principal point and the coefficients of the distortion stay the same.
+        """
+        rectified = self.rectified
+        if rectified is not None:
+            rectified = rectified[0] * factor, rectified[1] * factor, rectified[2], rectified[3]
+        return replace(
+            self,
+            fx=self.fx * factor,
+            fy=self.fy * factor,
+            skew=self.skew * factor,
+            tx=self.tx * factor,
+            ty=self.ty * factor,
+            hfov=2 * math.atan(math.tan(self.hfov / 2) / factor),
+            rectified=rectified,
+            info_model=self.info_model and self.info_model.zoomed(factor),
+        )
+
     def as_gazebo(self) -> CameraModel:
         """Return the model that Gazebo draws for the same file, which differs from its `CameraInfo`.
 

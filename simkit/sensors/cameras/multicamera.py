@@ -43,6 +43,7 @@ class CameraUnit:
 
     def __init__(self, name: str, options: CameraOptions) -> None:
         self.name, self.options = name, options
+        self._unzoomed: CameraModel | None = None  # optics of the file, once they were changed
         self.offset = (0.0, 0.0)  # distance to the left of the reference and above it, for P [m]
 
     def open(self, sim: Simulation, scoped: str) -> None:
@@ -50,6 +51,14 @@ class CameraUnit:
         if sim.world.gazebo_quirks:
             self.options = replace(self.options, model=self.options.model.as_gazebo())
         self._pictures = PictureMaker(self.options, sim, f"{scoped}::{self.name}")
+        self.update_camera_info()
+
+    def set_zoom(self, factor: float) -> None:
+        """Make the focal lengths `factor` times those of the file."""
+        if self._unzoomed is None:
+            self._unzoomed = self.options.model
+        self.options = replace(self.options, model=self._unzoomed if factor == 1.0 else self._unzoomed.zoomed(factor))
+        self._pictures.set_model(self.options.model)
         self.update_camera_info()
 
     def update_camera_info(self) -> None:
@@ -152,6 +161,11 @@ class MultiCamera(RenderedCamera):
             model = eye.options.model
             eye.options = replace(eye.options, model=replace(model, info_model=change(model)))
             eye.update_camera_info()
+
+    def _apply_model(self) -> None:
+        super()._apply_model()
+        for eye in self.eyes:
+            eye.set_zoom(self.zoom)
 
     def set_frame_id(self, frame: str) -> None:
         super().set_frame_id(frame)

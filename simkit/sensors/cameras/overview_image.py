@@ -23,6 +23,7 @@ from simkit.sensors.cameras.rendering import render_thread
 from simkit.sensors.cameras.rendering.lights_and_shadows import Sphere, suns_of
 from simkit.sensors.cameras.rendering.scene_composition import Composition
 from simkit.sensors.cameras.rendering.view import Colours, Depths, DrawnView, Shot, View, look_at
+from simkit.sensors.particle_clouds import drawer_of_particles, has_sources
 from simkit.sensors.values_with_expiry import temporary_values
 
 Distances = npt.NDArray[np.float32]
@@ -34,6 +35,14 @@ _DARKEST: Final = 0.12
 """Least brightest channel of a drawn colour. Images are not encoded in sRGB, like those of Gazebo Classic. Images of gz
 Sim are encoded: Create 3 has the colour 3/255 and is dark grey there. Without this limit, a black model would be a
 silhouette without edges. Cameras show the colours as they are."""
+
+
+@runtime_checkable
+class PictureShapes(Protocol):
+    """Plugin that adds shapes to pictures, such as the surface of a sea."""
+
+    def draw_shapes(self, scene: mujoco.MjvScene, eye: Vector) -> None:
+        """Add shapes to a scene that is seen from `eye` [m]."""
 
 
 @runtime_checkable
@@ -98,10 +107,16 @@ def render_view(
         near = max(near, float(position[2]) - ceiling)
     view = View(width, height, -wide, wide, -half, half, near, distance + 50.0 * extent)
     is_dark = model.nlight == 0
+    drawing_plugins = [p for p in sim.engine.structure.all_plugins() if isinstance(p, PictureShapes)]
+    draw_particles = drawer_of_particles(sim, sim.time) if has_sources(sim) else None
 
     def prepare(scene: mujoco.MjvScene) -> None:
         if is_dark:
             _add_headlight(scene)
+        for plugin in drawing_plugins:
+            plugin.draw_shapes(scene, position)
+        if draw_particles is not None:
+            draw_particles(scene)
         if decorate is not None:
             decorate(scene)
 

@@ -75,9 +75,16 @@ class PictureMaker:
     """
 
     def __init__(self, options: CameraOptions, sim: Simulation, name: str) -> None:
-        self._model, self._encoding = options.model, options.encoding
+        self._encoding = options.encoding
+        self.set_model(options.model)
         self.noise = ImageNoise(options.noise, sim.engine.streams, name, as_ogre=sim.world.gazebo_quirks)
         self.spares = ArrayPool((options.model.height, options.model.width, 3), np.uint8)
+
+    def set_model(self, model: CameraModel) -> None:
+        """Set the optics of the next images."""
+        self._model = model
+        for name in ("distorter", "view"):
+            self.__dict__.pop(name, None)
 
     @cached_property
     def distorter(self) -> ImageDistorter | None:
@@ -120,6 +127,8 @@ class RenderedCamera(RenderedSampler):
         self.optical_frame_id = self.options.optical_frame_id
         self._trigger: Trigger | None = None
         self._baseline = 0.0
+        self._zoom = 1.0
+        self._unzoomed: CameraModel | None = None  # optics of the file, once they were changed
 
     @staticmethod
     def read_model(params: Params, width: int, height: int) -> CameraModel:
@@ -167,6 +176,38 @@ class RenderedCamera(RenderedSampler):
         """
         model = self.options.model
         self.options = replace(self.options, model=replace(model, info_model=change(model)))
+        self._info = CameraInfoMaker(self.options.model, self._baseline)
+
+    @property
+    def zoom(self) -> float:
+        """Focal lengths as a multiple of those in the file."""
+        return self._zoom
+
+    def set_zoom(self, factor: float) -> None:
+        """Make the focal lengths of the next images, and in their `CameraInfo`, `factor` times those of the file.
+
+        A reset returns to the file's focal lengths, and a snapshot contains the factor.
+        """
+        if factor == self._zoom:
+            return
+        self.sim.communication.bus.settle()  # messages that wait for a reader have the present optics
+        self.finish_samples()
+        self._apply_zoom(factor)
+
+    def _apply_zoom(self, factor: float) -> None:
+        """Change the optics; samples that are not finished get the new optics, too."""
+        if factor == self._zoom:
+            return
+        render_thread.drain()
+        self._zoom = factor
+        if self._unzoomed is None:
+            self._unzoomed = self.options.model
+        self.options = replace(self.options, model=self._unzoomed if factor == 1.0 else self._unzoomed.zoomed(factor))
+        self._apply_model()
+
+    def _apply_model(self) -> None:
+        """Replace what was computed from the optics of the images."""
+        self._pictures.set_model(self.options.model)
         self._info = CameraInfoMaker(self.options.model, self._baseline)
 
     def transform_messages(self, product: str, change: Callable[[Message], Message]) -> None:
@@ -224,14 +265,16 @@ class RenderedCamera(RenderedSampler):
         return self._pictures.perturb(reading, index)
 
     def memory(self) -> object:
-        return self._trigger.pending if self._trigger else 0
+        return self._trigger.pending if self._trigger else 0, self._zoom
 
     def remember(self, memory: Memory) -> None:
+        pending, zoom = memory
         if self._trigger:
-            self._trigger.pending = memory
+            self._trigger.pending = pending
+        self._apply_zoom(zoom)
 
     def restart(self) -> None:
-        self.remember(0)
+        self.remember((0, 1.0))
 
     # ------------------------------------------------------------------ saved images
 

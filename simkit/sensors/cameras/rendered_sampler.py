@@ -22,6 +22,7 @@ from simkit.sensors.cameras.rendering import render_thread
 from simkit.sensors.cameras.rendering.lights_and_shadows import read_lights, use_lights
 from simkit.sensors.cameras.rendering.scene_composition import Composition
 from simkit.sensors.cameras.rendering.view import DrawnView, Shot
+from simkit.sensors.particle_clouds import drawer_of_particles, has_sources
 from simkit.sensors.sample import Memory, Reading
 
 
@@ -91,9 +92,20 @@ class RenderedSampler(Sensor):
         renderer = renderer_choice.renderer_of(self.sim)
         smooth = self.options.anti_aliasing > 0
         composition = renderer.composer.compose(
-            model, data, *self._frame_in_world(data), unseen=self._hidden_geoms, smooth=smooth
+            model,
+            data,
+            *self._frame_in_world(data),
+            self._particle_drawer(float(data.time)),
+            unseen=self._hidden_geoms,
+            smooth=smooth,
         )
         return functools.partial(self._expose, renderer, composition, self.shots(), self.capture_context(model, data))
+
+    def _particle_drawer(self, time: float) -> Callable[[mujoco.MjvScene], None] | None:
+        """Return the function that draws the particles; None without, or if the sensor reads which geom is seen."""
+        if not has_sources(self.sim) or any(shot.ids for shot in self.shots()):
+            return None
+        return drawer_of_particles(self.sim, time)
 
     def _expose(
         self, renderer: ImageRenderer, composition: Composition, shots: Sequence[Shot], context: Memory

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import ClassVar
 
+import mujoco
 import numpy as np
 import numpy.typing as npt
 
@@ -26,6 +27,7 @@ from simkit.sensors.cameras.image_noise import CameraReading, ImageNoise, NoisyC
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
 from simkit.sensors.cameras.rendering.appearance import Appearance
 from simkit.sensors.cameras.rendering.view import Colours, Depths, DrawnView, Shot, View
+from simkit.sensors.particle_clouds import Echoes, find_echoes, has_sources
 from simkit.sensors.sample import Reading
 from simkit.sensors.topics_and_frames import OPTICAL_POSE
 
@@ -105,6 +107,10 @@ class RgbdCamera(RenderedCamera):
         self.options = replace(old, depth_near=near, depth_far=far)
         self._view = None
 
+    def _apply_model(self) -> None:
+        super()._apply_model()
+        self._view = self._clouds_made = None
+
     def _drawn_view(self) -> View:
         if self._view is None:
             options = self.options
@@ -120,7 +126,13 @@ class RgbdCamera(RenderedCamera):
             return Shot(view), Shot(view, depth=True, sharp=True)
         return (Shot(view, depth=True),)
 
-    def make_reading(self, drawn_views: Iterator[DrawnView], context: object) -> object:
+    def capture_context(self, model: mujoco.MjModel, data: mujoco.MjData) -> Echoes | None:
+        """Return the echoes of particles."""
+        if not has_sources(self.sim):
+            return None
+        return find_echoes(self.sim, self.scoped, float(data.time), *self._frame_in_world(data))
+
+    def make_reading(self, drawn_views: Iterator[DrawnView], context: Echoes | None) -> object:
         drawn_view = next(drawn_views)
         colours = _NO_COLOURS if drawn_view.colours is None else self._pictures.process(drawn_view.colours)
         if drawn_view.depths is None:
@@ -129,7 +141,22 @@ class RgbdCamera(RenderedCamera):
         assert raw is not None
         if self._pictures.distorter:
             raw = self._pictures.distorter.distort_depths(raw)
-        return CameraReading(colours, self._range.metres(raw, drawn_view.view, self._spare_depths.take()))
+        depths = self._range.metres(raw, drawn_view.view, self._spare_depths.take())
+        if context is not None:
+            self._add_echoes(depths, context)
+        return CameraReading(colours, depths)
+
+    def _add_echoes(self, depths: Depths, echoes: Echoes) -> None:
+        """Shorten the depths of the pixels that see a particle; an echo nearer than the range is -inf."""
+        left, up = self.options.model.rays()
+        left, up = np.broadcast_arrays(left, up if up.ndim == 2 else up[:, None])
+        rays = np.stack((np.ones(depths.size), left.ravel(), up.ravel()), axis=1, dtype=np.float64)
+        lengths = np.sqrt(1.0 + rays[:, 1] ** 2 + rays[:, 2] ** 2)
+        ranges = depths.ravel().astype(np.float64) * lengths
+        shortened = echoes.shorten(rays / lengths[:, None], ranges)
+        changed = shortened < ranges
+        depths.reshape(-1)[changed] = (shortened[changed] / lengths[changed]).astype(np.float32)
+        self._range.clip(depths)
 
     def products(self) -> dict[str, Product]:
         return {

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.pose import Vector
+from simkit.sensors.particle_clouds import has_sources
 from simkit.sensors.rays.geom_types import Ids
 from simkit.sensors.rays.lidar_measurement import LidarMeasurement, LidarReading
 from simkit.sensors.rays.numpy_rays import cast_on_shapes
@@ -24,6 +25,8 @@ def lidar_batch_key(lidar: LidarMeasurement) -> Hashable | None:
     """Return the properties that lidars of one batch share; None for a lidar whose rays are not cast in NumPy."""
     fan = lidar.fan
     if fan.by_engine or fan.targets.needs_engine or fan.grid is None:
+        return None
+    if lidar.sees_visuals and has_sources(lidar.sim):
         return None
     common = fan.directions.tobytes(), fan.reach, id(fan.targets), fan.bounds
     return (*common, lidar._start, lidar.sees_visuals)

@@ -20,6 +20,7 @@ from simkit.runtime.array_rules import CannotBatchError, Ids, SensorRule, Ticks
 from simkit.scene import SceneSensor
 from simkit.sensors.base import Sensor
 from simkit.sensors.noise import Noise, NoiseModel, UniformNoise, read_noise
+from simkit.sensors.particle_clouds import find_echoes, has_sources
 from simkit.sensors.rays.ray_fan import RayFan, RayFanRows, fan_directions
 from simkit.sensors.visibility_mask import ALL_VISIBLE, hidden_geoms, read_visibility_mask
 
@@ -239,7 +240,13 @@ class LidarMeasurement(Sensor):
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> LidarReading:
         origin, rotation = self.ray_frame(data)
         self.fan.cast(model, data, origin, rotation, self._start)
-        return self.reading_of_cast()
+        reading = self.reading_of_cast()
+        if self.sees_visuals and has_sources(self.sim):
+            echoes = find_echoes(self.sim, self.scoped, float(data.time), origin, rotation)
+            if echoes is not None:
+                reading.ranges = echoes.shorten(self._directions, reading.ranges)
+                reading.infinite = np.isinf(reading.ranges)
+        return reading
 
     def measure_now(self) -> LidarReading:
         """Measure the state at this tick."""
@@ -326,6 +333,8 @@ class LidarRule(SensorRule):
         name = lidar.scoped
         if lidar.ray_noise is not None or lidar.range_noise is not None:
             raise CannotBatchError(f"noise that a plugin adds to sensor {name!r}")
+        if lidar.sees_visuals and has_sources(lidar.sim):
+            raise CannotBatchError(f"particles in front of sensor {name!r}")
         if not lidar.fan.casts_in_rows:
             raise CannotBatchError(f"more than 2047 rays, or rays that may hit moving meshes, of sensor {name!r}")
         product = next(iter(lidar.topics))

@@ -15,7 +15,7 @@ CODES: Final = frozenset(
     (
         CODE,
         DRIVE_CODE,
-        *("SK-PLUGIN-001", "SK-PLUGIN-002", "SK-PLUGIN-007", "SK-PLUGIN-010"),
+        *("SK-PLUGIN-001", "SK-PLUGIN-002", "SK-PLUGIN-007", "SK-PLUGIN-010", "SK-CONTROL-013"),
         *("SK-SENSOR-001", "SK-SENSOR-024", "SK-SENSOR-052", "SK-SENSOR-053"),
     )
 )

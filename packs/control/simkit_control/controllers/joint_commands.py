@@ -39,7 +39,7 @@ class ForwardCommandController(Controller):
         interface: command interface; None if `interface_name` sets it.
     """
 
-    types = ("forward_command_controller/ForwardCommandController",)
+    types: ClassVar[tuple[str, ...]] = ("forward_command_controller/ForwardCommandController",)
     interface: ClassVar[str | None] = None
 
     def configure(self) -> None:
@@ -142,7 +142,7 @@ class OneVelocityController(_OneJointController):
 class OneEffortController(_OneJointController):
     """Forwards the effort [N·m or N] of one joint (ROS 1)."""
 
-    types = ("effort_controllers/JointEffortController",)
+    types = ("effort_controllers/JointEffortController", "robot_mechanism_controllers/JointEffortController")
     interface = EFFORT
 
 
@@ -256,13 +256,13 @@ class _LoopController(Controller):
 class EffortPositionController(_LoopController):
     """Moves one joint to a position [rad or m] by effort, with gains in `pid` (ROS 1)."""
 
-    types = ("effort_controllers/JointPositionController",)
+    types = ("effort_controllers/JointPositionController", "robot_mechanism_controllers/JointPositionController")
 
 
 class EffortVelocityController(_LoopController):
     """Moves one joint at a velocity [rad/s or m/s] by effort, with gains in `pid` (ROS 1)."""
 
-    types = ("effort_controllers/JointVelocityController",)
+    types = ("effort_controllers/JointVelocityController", "robot_mechanism_controllers/JointVelocityController")
     measured = VELOCITY
 
 

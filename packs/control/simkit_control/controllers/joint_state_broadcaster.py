@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, ClassVar, Final
 
 import numpy as np
 
@@ -29,7 +29,7 @@ class JointStateBroadcaster(Controller):
     have, are published with zeros.
     """
 
-    types = ("joint_state_broadcaster/JointStateBroadcaster",)
+    types: ClassVar[tuple[str, ...]] = ("joint_state_broadcaster/JointStateBroadcaster",)
 
     def configure(self) -> None:
         params = self.params

@@ -13,7 +13,7 @@ from simkit_control.plugins.ros2_control.joint_pids import JointPids
 class PositionJointTrajectoryController(JointTrajectoryController):
     """Follows trajectories by position commands, as the ROS 1 controller does."""
 
-    types = ("position_controllers/JointTrajectoryController",)
+    types: ClassVar[tuple[str, ...]] = ("position_controllers/JointTrajectoryController",)
     default_commands: ClassVar[tuple[str, ...]] = ("position",)
     default_states = ("position", "velocity")
     topics: ClassVar[tuple[str, ...]] = ("~/command", "~/joint_trajectory")
@@ -30,7 +30,11 @@ class VelocityJointTrajectoryController(PositionJointTrajectoryController):
 class EffortJointTrajectoryController(PositionJointTrajectoryController):
     """Follows trajectories by effort commands from PIDs, as the ROS 1 controller does."""
 
-    types = ("effort_controllers/JointTrajectoryController",)
+    types = (
+        "effort_controllers/JointTrajectoryController",
+        "robot_mechanism_controllers/JointTrajectoryActionController",
+        "robot_mechanism_controllers/JointSplineTrajectoryController",
+    )
     default_commands = ("effort",)
 
 

@@ -88,9 +88,9 @@ class ScaledMimic(RobotController):
 
 
 class JointStatesOfFetch(JointStateBroadcaster):
-    """Publishes `joint_states` at 100 Hz, as Fetch's plugin does itself."""
+    """Publishes `joint_states` at 100 Hz, as the plugins of Fetch and PR2 do themselves."""
 
-    types = ("fetch_gazebo/JointStates",)
+    types = ("fetch_gazebo/JointStates", "pr2_controller_manager/JointStates")
 
     def configure(self) -> None:
         self.update_rate = 100

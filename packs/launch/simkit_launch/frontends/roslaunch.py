@@ -495,10 +495,8 @@ class _Reader:
         full_name = f"{inner.namespace}/{name}"
         if full_name in self.node_places:
             first = self.node_places[full_name]
-            message = f"there are two nodes {full_name}, which roslaunch refuses; only the first starts, in {first}"
             hint = 'write name="$(anon ID)" for names that differ'
-            self.plan.diagnostics.warning(SAME_NAME, message, element.where, hint)
-            return
+            raise LaunchFault(SAME_NAME, f"there are two nodes {full_name}; the first one is in {first}", hint)
         self.node_places[full_name] = element.where
         settings = self._process_settings(element, scope, package, executable)
         self._node_children(element, inner, full_name)

@@ -443,12 +443,11 @@ def test_unknown_elements_and_attributes_are_warnings_with_a_suggestion(read: Re
     }
 
 
-def test_of_two_nodes_with_one_name_the_first_starts(read: Read, tmp_path: Path) -> None:
-    plan = read(node() + "\n" + node())
-    (warning,) = plan.diagnostics
-    assert (warning.code, warning.line, len(plan.processes)) == ("SK-LAUNCH-032", 3, 1)
+def test_two_nodes_with_one_name_are_an_error_as_in_roslaunch(read: Read, tmp_path: Path) -> None:
+    found = errors(read, node() + "\n" + node())
     first = f"{tmp_path / 'robot.launch'}:2"
-    assert warning.message == f"there are two nodes /n, which roslaunch refuses; only the first starts, in {first}"
+    assert found == [f'3: <node name="n">: there are two nodes /n; the first one is in {first}']
+    assert len(read(node('ns="a"') + node('ns="b"')).processes) == 2
 
 
 def test_an_error_in_an_included_file_has_its_place(read: Read, tmp_path: Path) -> None:

@@ -327,6 +327,85 @@ def test_a_program_ends_with_the_simulation(world: RunningWorld, run_node: RunNo
         assert "Traceback" not in process.text
 
 
+@pytest.mark.parametrize(
+    "call",
+    [
+        "rclpy.create_node('late')",
+        "publisher.publish(String())",
+        "node.create_timer(1.0, print)",
+        "rclpy.spin_once(node)",
+    ],
+)
+def test_a_call_after_the_end_of_the_simulation_prints_no_traceback(
+    world: RunningWorld, run_node: RunNode, call: str
+) -> None:
+    """Some calls raise then, others do nothing."""
+    program = run_node(
+        f"""
+        import time, rclpy
+        from std_msgs.msg import String
+
+        rclpy.init()
+        node = rclpy.create_node("early")
+        publisher = node.create_publisher(String, "chatter", 10)
+        print("ready", flush=True)
+        while rclpy.ok():
+            time.sleep(0.001)
+        {call}
+        time.sleep(1000)
+        """
+    )
+    program.wait_for("ready")
+    world.close()
+    assert program.exit_code() == 2
+    assert program.lines[-1].startswith("error: SK-LIVE-005 simulation 'empty' has ended")
+    assert "Traceback" not in program.text
+
+
+@pytest.mark.parametrize("call", ["rclpy.create_node('n').destroy_node()", "publisher.publish(String())"])
+def test_the_end_of_the_simulation_in_the_middle_of_a_call_prints_no_traceback(
+    world: RunningWorld, run_node: RunNode, call: str
+) -> None:
+    program = run_node(
+        f"""
+        import rclpy
+        from std_msgs.msg import String
+
+        rclpy.init()
+        node = rclpy.create_node("early")
+        publisher = node.create_publisher(String, "chatter", 10)
+        print("ready", flush=True)
+        while True:
+            {call}
+        """
+    )
+    program.wait_for("ready")
+    world.close()
+    assert program.exit_code() == 2
+    assert program.lines[-1].startswith("error: SK-LIVE-005 simulation 'empty' has ended")
+    assert "Traceback" not in program.text
+
+
+def test_an_exception_of_the_program_itself_after_the_end_of_the_simulation_is_printed(
+    world: RunningWorld, run_node: RunNode
+) -> None:
+    program = run_node(
+        """
+        import time, rclpy
+
+        rclpy.init()
+        print("ready", flush=True)
+        while rclpy.ok():
+            time.sleep(0.001)
+        raise ValueError("no way")
+        """
+    )
+    program.wait_for("ready")
+    world.close()
+    assert program.exit_code() == 2
+    assert "ValueError: no way" in program.text
+
+
 def test_a_program_that_raises_ends_with_its_own_traceback(world: RunningWorld, run_node: RunNode) -> None:
     program = run_node(
         """
@@ -397,11 +476,11 @@ def test_without_a_simulation_a_program_does_not_start(run_node: RunNode) -> Non
 def test_ctrl_c_shuts_the_context_down(world: RunningWorld, run_node: RunNode) -> None:
     program = run_node(
         """
-        import rclpy
+        import os, rclpy
 
         rclpy.init()
         node = rclpy.create_node("waiting")
-        print("spins", os := __import__("os").getpid(), flush=True)
+        node.create_timer(0.01, lambda: print("spins", os.getpid(), flush=True))
         try:
             rclpy.spin(node)
         except KeyboardInterrupt:
@@ -409,7 +488,6 @@ def test_ctrl_c_shuts_the_context_down(world: RunningWorld, run_node: RunNode) -
         """
     )
     pid = int(program.wait_for("spins").split()[1])
-    world.wait(lambda: "/waiting" in world.client.ask("nodes"))
     os.kill(pid, signal.SIGINT)
     assert program.exit_code() == 0
     assert program.lines[-1] == "interrupted False"

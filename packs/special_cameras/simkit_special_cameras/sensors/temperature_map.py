@@ -14,8 +14,7 @@ import numpy.typing as npt
 
 from simkit import Pose, Simulation
 from simkit.compiler.shape_geometry import textured_triangles, turn_z_to
-from simkit.diagnostics import NOWHERE
-from simkit.extend import Diagnostics, Vector
+from simkit.extend import Diagnostics, Vector, Where
 from simkit.linear_algebra import matmul
 from simkit.loaders.meshes.companion_files import read_pixels
 from simkit.loaders.meshes.mesh_reader import load_mesh
@@ -255,7 +254,7 @@ def _make_textured_mesh(shape: Geometry) -> TexturedMesh | None:
 def _triangles(shape: Geometry) -> Iterator[tuple[Vector, npt.NDArray[np.int32], Vector]]:
     """Yield corners, faces and texture coordinates of the parts of a shape that have texture coordinates."""
     if isinstance(shape, Mesh):
-        for part in [] if shape.missing else load_mesh(shape, Diagnostics(), NOWHERE):
+        for part in [] if shape.missing else load_mesh(shape, Diagnostics(), Where()):
             if part.uv is not None:
                 yield part.vertices, part.faces, part.uv
     elif isinstance(shape, Plane):

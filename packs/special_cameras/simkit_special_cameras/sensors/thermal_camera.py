@@ -95,12 +95,18 @@ class ThermalCamera(RenderedCamera):
         air = self.sim.world.atmosphere or Atmosphere()
         self._air = air.temperature
         self._quirks = self.sim.world.gazebo_quirks
+        self._temperature_gradient = abs(air.temperature_gradient)
         self._directions: Vector | None = None
-        self._span = abs(air.temperature_gradient) * self._height_of_view()
+        self._span = self._temperature_gradient * self._height_of_view()
 
     def bind(self, compiled: Compiled) -> None:
         super().bind(compiled)
         self._heat = None
+
+    def _apply_model(self) -> None:
+        super()._apply_model()
+        self._span = self._temperature_gradient * self._height_of_view()
+        self._directions = self._heat = None
 
     def leave(self) -> None:
         super().leave()

@@ -1,0 +1,1 @@
+"""Plugins of cameras and of what only cameras see."""
