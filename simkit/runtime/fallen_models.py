@@ -10,7 +10,7 @@ import numpy as np
 from simkit.diagnostics import Diagnostics
 
 if TYPE_CHECKING:
-    from simkit.runtime.handles import Model
+    from simkit.runtime.handles.model import Model
     from simkit.runtime.simulation import Simulation
 
 _FREE_FALL: Final = 0.01
