@@ -366,6 +366,19 @@ def check(source: Source, **arguments: Unpack[LoadArguments]) -> Diagnostics:
         source: see `load`.
         arguments: further arguments of `load`.
     """
+    return check_and_visit(source, lambda *_: None, **arguments)
+
+
+def check_and_visit(
+    source: Source, visit: Callable[[Simulation, Diagnostics], None], **arguments: Unpack[LoadArguments]
+) -> Diagnostics:
+    """Return every problem of a file like `check`, and call a function with the loaded simulation and the problems.
+
+    Args:
+        source: see `load`.
+        visit: function for the simulation, which is closed afterwards; not called for a file with errors.
+        arguments: further arguments of `load`.
+    """
     from simkit.compiler.lint import lint_world
 
     diagnostics = Diagnostics()
@@ -373,6 +386,7 @@ def check(source: Source, **arguments: Unpack[LoadArguments]) -> Diagnostics:
         with load(source, **arguments) as simulation:
             diagnostics.extend(simulation.diagnostics)
             diagnostics.extend(lint_world(simulation.world, simulation.engine.compiled))
+            visit(simulation, diagnostics)
     except LoadError as error:
         diagnostics.extend(error.diagnostics)
     except PluginError as error:

@@ -1,13 +1,16 @@
-"""Control of processes on every system: check whether one has ended, and kill one with its children."""
+"""Control of processes on every system: start and end child processes, and check whether a process has ended."""
 
 from __future__ import annotations
 
 import os
 import signal
 import subprocess
-from contextlib import suppress
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from typing import Any, Final
 
+_SAFE_PATH: Final = "PYTHONSAFEPATH"
 _TASKKILL_TIMEOUT: Final = 10.0  # [s]
 _SYNCHRONIZE: Final = 0x0010_0000  # access right of Windows: wait for the end of a process
 _ERROR_INVALID_PARAMETER: Final = 87  # error of Windows: no process has this number
@@ -70,3 +73,47 @@ def _has_ended_on_windows(number: int) -> bool:
         return bool(kernel.WaitForSingleObject(handle, 0) == _WAIT_OBJECT_0)
     finally:
         kernel.CloseHandle(handle)
+
+
+@contextmanager
+def without_interrupts() -> Iterator[None]:
+    """Start child processes that ignore Ctrl-C. The terminal sends it to them too, but the parent process ends them."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # child processes inherit the mask
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def safe_path() -> Iterator[None]:
+    """Start child processes that import no file of the working directory, which `python -c` would search first."""
+    before = os.environ.get(_SAFE_PATH)
+    os.environ[_SAFE_PATH] = "1"
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[_SAFE_PATH]
+        else:
+            os.environ[_SAFE_PATH] = before
+
+
+def end_with_parent() -> None:
+    """End this child process when its parent process ends for any reason."""
+    import multiprocessing
+    from multiprocessing.connection import wait
+
+    parent = multiprocessing.parent_process()
+    if parent is None:
+        return
+    sentinel = parent.sentinel
+
+    def watch() -> None:
+        wait([sentinel])
+        os._exit(1)
+
+    threading.Thread(target=watch, name="simkit ends with its parent", daemon=True).start()

@@ -1,21 +1,22 @@
-"""Command `simkit check`: print every problem of a file."""
+"""Command `simkit check`: print every problem of a file, its score, or the scores of all files of a folder."""
 
 from __future__ import annotations
 
 import json
+import os
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated
 
 from typer import Option
 
-from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
+from simkit.cli.run_options import NONE_GIVEN, GivenOptions, parse_seconds, with_run_options
 from simkit.cli.second_reader import Against, compare_readers
 from simkit.cli.terminal import options
 from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import print_diagnostics, report_errors, stdout_console
-from simkit.diagnostics import Diagnostic
+from simkit.diagnostics import Diagnostic, Diagnostics, Where
 from simkit.errors import InputError
 from simkit.run_files import FilePath
 from simkit.writers.atomic_output import check_file
@@ -37,25 +38,61 @@ def check(
     file: options.File,
     json_: options.Json = False,
     strict: options.Strict = False,
-    every: Annotated[bool, Option("--all", help="List repeated problems one by one.")] = False,
+    every: Annotated[
+        bool,
+        Option("--all", help="List repeated problems one by one; of a folder, also files that are parts of others."),
+    ] = False,
     fix_inertia: Annotated[
         bool, Option("--fix-inertia", help="Show corrected values for impossible inertias.")
     ] = False,
     output: Annotated[
         Path | None, option("With --fix-inertia: corrected file to write.", "OUT", "--output", "-o")
     ] = None,
+    score: Annotated[
+        bool, Option("--score", help="Show how much of the file works as in Gazebo: 0 to 100, with the reasons.")
+    ] = False,
+    html: Annotated[Path | None, option("Write the scores as one HTML page.", "OUT", "--html")] = None,
+    jobs: Annotated[
+        int | None, option("For a folder: number of parallel processes; default: one per core.", "N", "--jobs", min=1)
+    ] = None,
+    limit: Annotated[
+        float | None,
+        option("For a folder: longest wall time for one file; default: 60 s.", "S", "--limit", parser=parse_seconds),
+    ] = None,
     force: options.Force = False,
     against: Against = None,
     given: GivenOptions = NONE_GIVEN,
 ) -> int:
-    """Print all problems of a file without running it."""
-    from simkit.build import check as check_file
+    """Print all problems of a file without running it, or the scores of all files of a folder."""
+    from simkit.build import check as find_problems
+    from simkit.cli.diagnostic_catalogue import effect_of
 
+    if fix_inertia and (score or html is not None):
+        raise InputError("SK-CLI-018", "--fix-inertia cannot be used with --score and --html")
+    if output is not None and not fix_inertia:
+        raise InputError("SK-CLI-018", "--output needs --fix-inertia")
+    if against is not None and (score or html is not None or fix_inertia):
+        raise InputError("SK-CLI-018", "--against cannot be used with --score, --html and --fix-inertia")
+    if html is not None:
+        check_file(html, overwrite=force)
+    if not fix_inertia and _is_searched(file):
+        from simkit.cli.scores.score_command import check_folder
+
+        if against is not None:
+            raise InputError("SK-CLI-018", "--against needs one file, not a folder")
+        return check_folder(
+            file, given.load_arguments(), effect_of, run_options=list(_run_options(given)), jobs=jobs, limit=limit,
+            html=html, json_=json_, strict=strict, every=every,
+        )  # fmt: skip
+    if jobs is not None or limit is not None:
+        raise InputError("SK-CLI-018", "--jobs and --limit are for a folder of files")
     if fix_inertia:
         return _fix_inertia(file, output, force, given.source_options().get("resource_paths", ()), json_)
-    if output is not None:
-        raise InputError("SK-CLI-018", "--output needs --fix-inertia")
-    diagnostics, comparison = list(check_file(file, **given.load_arguments())), ""
+    if score or html is not None:
+        from simkit.cli.scores.score_command import show_score
+
+        return show_score(file, given.load_arguments(), effect_of, html=html, json_=json_, strict=strict)
+    diagnostics, comparison = list(find_problems(file, **given.load_arguments())), ""
     if against is not None:
         differences, comparison = compare_readers(file, against, given.source_options(), diagnostics)
         diagnostics += differences
@@ -68,6 +105,34 @@ def check(
         stdout_console().print(_counts(diagnostics))
     bad = {"error", "warning"} if strict else {"error"}
     return 2 if any(d.severity in bad for d in diagnostics) else 0
+
+
+def _is_searched(file: str) -> bool:
+    """Check for a folder whose files are all checked: one that is not itself a model, and no bundled name."""
+    try:
+        if "<" in file or "://" in file or not os.path.isdir(file):  # noqa: PTH112 (a long name is no error)
+            return False
+    except ValueError:  # a zero byte
+        return False
+    from simkit.loaders.resources.bundled_models import find_bundled_model, find_bundled_world
+    from simkit.loaders.resources.model_folder import model_file
+
+    folder, where = Path(file), Where(file)
+    if (folder / "model.config").exists() or (folder / "manifest.xml").exists():
+        return False
+    has_model = model_file(folder, where, Diagnostics(), lambda _: True) is not None
+    return not has_model and not (find_bundled_world(file) or find_bundled_model(file))
+
+
+def _run_options(given: GivenOptions) -> Iterator[str]:
+    """Yield the options of the command that a run of a file needs too."""
+    for folder in given.values.get("resource_paths", ()):
+        yield from ("--resource-path", str(folder))
+    packages = given.values.get("package_paths") or ()
+    for item in packages.items() if isinstance(packages, Mapping) else packages:
+        yield from ("--package-path", f"{item[0]}={item[1]}" if isinstance(item, tuple) else str(item))
+    for name, value in dict(given.values.get("xacro_args") or {}).items():
+        yield from ("--xacro-arg", f"{name}={value}")
 
 
 def _counts(diagnostics: Sequence[Diagnostic]) -> str:

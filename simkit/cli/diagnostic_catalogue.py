@@ -21,13 +21,15 @@ from dataclasses import dataclass, field, fields
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
-from typing import Literal
+from typing import Literal, get_args
 
 from simkit.cli.terminal.output import JsonObject, JsonValue
 from simkit.diagnostics import did_you_mean
 from simkit.packs import foreign_packs, pack_folders, warn_of_pack
 
 Kind = Literal["xml", "command", "python"]
+Effect = Literal["none", "approximated", "left out"]
+"""Effect of what a warning or note is about: works as in Gazebo, works differently, or does not work at all."""
 
 _FOLDER = Path(__file__).with_name("diagnostic_codes")
 _INTRODUCTION = """# Diagnostics
@@ -45,9 +47,12 @@ A test runs every example.
 | warning | a part of the input has no effect, or a different effect than written; an error with `--strict` |
 | note | a conversion that keeps the meaning as closely as MuJoCo can represent it |
 | stop | the reason why a run ended, not a problem of a file; the row gives the exit code |
+
+An entry also says if [`simkit check --score`](commands/check.md#score) counts something as approximated or left out.
 """
 _LAST = sys.maxsize
 _SEVERITIES = frozenset(("error", "warning", "note", "stop"))
+_EFFECTS = frozenset(get_args(Effect))
 _LANGUAGE_OF_KIND = {"xml": "xml", "command": "sh", "python": "python"}
 _LANGUAGE_OF_ENDING = {
     "py": "python",
@@ -86,6 +91,9 @@ class Code:
         helps: remedy; may be empty.
         example: input that causes the code; None if no user input can cause it.
         without: reason for the missing example.
+        effect: what a warning or note of this code means for the score of a file; empty for the usual effect of the
+            severity.
+        note_effect: the same for the notes of a code that has warnings too; empty for none.
     """
 
     code: str
@@ -94,6 +102,14 @@ class Code:
     helps: str = ""
     example: Example | None = None
     without: str = ""
+    effect: Effect | Literal[""] = ""
+    note_effect: Effect | Literal[""] = ""
+
+    def effect_of(self, severity: str) -> Effect:
+        """Return the effect of a diagnostic with this code; without an entry, a warning means an approximation."""
+        if severity == "note" and "warning" in self.severity:
+            return self.note_effect or "none"
+        return self.effect or ("approximated" if severity == "warning" else "none")
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,11 +130,19 @@ def catalogue(prefix: str = "SK-") -> Mapping[str, Code]:
     return MappingProxyType({code.code: code for code in sorted(codes, key=lambda code: code.code)})
 
 
+def effect_of(code: str, severity: str) -> Effect:
+    """Return the effect of a diagnostic on the score of a file; see `Code.effect_of`."""
+    known = _area(code.split("-")[1]).codes.get(code) if code.split("-")[1] in _area_files() else None
+    return "none" if known is None else known.effect_of(severity)
+
+
 def code_text(code: Code) -> str:
     """Format one code as plain text: severity, meaning, remedy and an example."""
     lines = [f"{code.code} ({code.severity})", f"  {code.meaning}"]
     if code.helps:
         lines.append(f"  help: {code.helps}")
+    if scored := _score_text(code):
+        lines.append(f"  {scored}")
     if code.example is None:
         if code.without:
             lines.append(f"  no example: {code.without}")
@@ -208,6 +232,9 @@ def _fault_of_code(name: str, path: Path, entry: JsonValue) -> str:
     missing = [key for key in ("severity", "meaning") if key not in entry]
     if missing:
         return f"{missing[0]!r} is missing"
+    for key in ("effect", "note_effect"):
+        if entry.get(key, "none") not in _EFFECTS:
+            return f"{key} {entry[key]!r}; expected {', '.join(sorted(_EFFECTS))}"
     wrong = set(entry["severity"].split(", ")) - _SEVERITIES
     if wrong:
         return f"severity {sorted(wrong)[0]!r}; expected {', '.join(sorted(_SEVERITIES))}"
@@ -245,6 +272,13 @@ def _example_files(example: Example) -> list[tuple[str, str]]:
     return [*files, (title, example.text)]
 
 
+def _score_text(code: Code) -> str:
+    """Return how a score counts what the warnings and notes of a code are about; empty if it does not count."""
+    effects = {severity: code.effect_of(severity) for severity in ("warning", "note") if severity in code.severity}
+    counted = dict.fromkeys(effect for effect in effects.values() if effect != "none")
+    return f"score: {', '.join(counted)}" if counted else ""
+
+
 def _section(area: Area) -> Iterator[str]:
     """Yield the lines of one area: a table of its codes, then each code with its example."""
     yield f"## {area.title}\n"
@@ -259,7 +293,8 @@ def _section(area: Area) -> Iterator[str]:
 def _entry(code: Code) -> Iterator[str]:
     """Yield the lines of one code."""
     yield f"### {code.code}\n"
-    yield f"{code.severity}: {code.meaning}." + (f" What helps: {code.helps}." if code.helps else "") + "\n"
+    scored = f" {text[:1].upper()}{text[1:]}." if (text := _score_text(code)) else ""
+    yield f"{code.severity}: {code.meaning}." + (f" What helps: {code.helps}." if code.helps else "") + f"{scored}\n"
     if code.example is None:
         if code.without:
             yield f"No example: {code.without}.\n"

@@ -448,6 +448,9 @@ class SpecBuilder:
             starts = place_joints(model, data, names.joints.values())
             report_starts(names.joints.values(), starts, self.diagnostics)
             report_lights(model, self.diagnostics, self.world.where)
+            if starts:
+                first.qpos[:] = data.qpos
+                mujoco.mj_kinematics(model, first)
             report_overlaps(model, first, names, self.diagnostics, self.world.where)
         for text in dict.fromkeys(str(w.message) for w in engine_warnings):
             if not mjcf_attachment.is_expected_warning(text):

@@ -115,7 +115,8 @@ def save_picture(
     marks = replace(marks, title=" · ".join((marks.title, *_notes(subject, camera))))
     colours = draw_frame(sim, render, camera, look, marks, subject)
     try:
-        is_saved = cv2.imwrite(str(path), colours[:, :, ::-1], [cv2.IMWRITE_PNG_COMPRESSION, 9])
+        settings = [cv2.IMWRITE_PNG_COMPRESSION, 9] if path.suffix.lower() == ".png" else []
+        is_saved = cv2.imwrite(str(path), colours[:, :, ::-1], settings)
     except cv2.error as error:
         raise InputError("SK-CLI-013", f"cannot write {path}: {str(error).strip().splitlines()[-1]}") from None
     if not is_saved:

@@ -62,6 +62,12 @@ def test_a_quadruped_whose_knees_cannot_be_straight_stands_on_its_feet() -> None
         assert fastest < 0.3
 
 
+def test_overlaps_are_those_of_the_start_positions() -> None:
+    """With straight knees the feet would be in the ground, but the robot starts with bent ones."""
+    with simkit.load(legged(), model_world="ground") as sim:
+        assert "SK-PHYS-024" not in codes(sim)
+
+
 def test_a_joint_whose_limits_exclude_0_starts_at_its_nearest_limit_with_a_warning() -> None:
     with simkit.load(legged()) as sim:
         assert angles(sim, "knee") == pytest.approx([-0.9] * 4)

@@ -34,6 +34,10 @@ _CAMERA = (
 _RIGHT = '<camera name="right"><pose>0 -0.1 0 0 0 0</pose>'
 NOISY = {
     "air_pressure": "<air_pressure><pressure>N</pressure></air_pressure>",
+    "anemometer": "<anemometer>N</anemometer>",
+    "dvl": "<dvl><arrangement degrees='true'><beam id='0'><aperture>4</aperture><tilt>30</tilt></beam><beam id='1'>"
+    "<aperture>4</aperture><rotation>120</rotation><tilt>30</tilt></beam><beam id='2'><aperture>4</aperture>"
+    "<rotation>-120</rotation><tilt>30</tilt></beam></arrangement><tracking><bottom_mode>N</bottom_mode></tracking></dvl>",
     "air_speed": "<air_speed><pressure>N</pressure></air_speed>",
     "altimeter": "<altimeter><vertical_position>N</vertical_position>"
     "<vertical_velocity>N</vertical_velocity></altimeter>",

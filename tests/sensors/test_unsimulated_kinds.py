@@ -2,25 +2,14 @@
 
 from __future__ import annotations
 
-import math
-
 import pytest
 from sensor_worlds import world
 
 import simkit
 from simkit.params import Params
 from simkit.sensors import sensor_kinds
-from simkit.sensors.unsimulated_kinds import UNSIMULATED_READERS, read_dvl, read_transceiver
+from simkit.sensors.unsimulated_kinds import UNSIMULATED_READERS, read_transceiver
 
-DVL = """<gz:dvl xmlns:gz="g"><type>phased_array</type><arrangement degrees="true">
-<beam id="1"><aperture>2</aperture><rotation>45</rotation><tilt>30</tilt></beam>
-<beam><aperture>2</aperture><rotation>135</rotation><tilt>30</tilt></beam>
-<beam><rotation>-45</rotation><tilt>30</tilt></beam></arrangement>
-<tracking><bottom_mode><when>best</when><noise type="gaussian"><stddev>0.01</stddev></noise><visualize>false</visualize>
-</bottom_mode><water_mass_mode><when>never</when><water_velocity><x>a</x><y>b</y></water_velocity>
-<boundaries><near>5</near><far>60</far></boundaries><bins>10</bins></water_mass_mode></tracking>
-<resolution>0.02</resolution><maximum_range>80.</maximum_range><minimum_range>0.1</minimum_range>
-<reference_frame>0 0 0 0 0 -1.57</reference_frame></gz:dvl>"""
 RADIO = """<transceiver><essid>osrf</essid><frequency>2450</frequency><min_frequency>2412</min_frequency>
 <max_frequency>2484</max_frequency><gain>2.6</gain><power>14</power><sensitivity>-90</sensitivity></transceiver>"""
 BLOCKS = {
@@ -28,14 +17,12 @@ BLOCKS = {
     "rfidtag": "<rfidtag/>",
     "wireless_transmitter": RADIO,
     "wireless_receiver": RADIO,
-    "dvl": DVL,
 }
 
 
 def sensor(kind: str, block: str) -> str:
-    declared = f'type="custom" gz:type="{kind}" xmlns:gz="g"' if kind == "dvl" else f'type="{kind}"'
     common = "<pose>0 0 1 0 0 0</pose><update_rate>5</update_rate><topic>t</topic><always_on>1</always_on>"
-    return world(f'<sensor name="s" {declared}>{common}{block}</sensor>')
+    return world(f'<sensor name="s" type="{kind}">{common}{block}</sensor>')
 
 
 @pytest.mark.parametrize("kind", UNSIMULATED_READERS)
@@ -53,7 +40,7 @@ def test_there_is_exactly_one_report(kind: str) -> None:
 
 @pytest.mark.parametrize("kind", UNSIMULATED_READERS)
 def test_an_unknown_element_is_reported_too(kind: str) -> None:
-    inner = BLOCKS[kind].replace("</transceiver>", "<gian/></transceiver>").replace("</gz:dvl>", "<gian/></gz:dvl>")
+    inner = BLOCKS[kind].replace("</transceiver>", "<gian/></transceiver>")
     text = sensor(kind, inner if "gian" in inner else inner + "<gian/>")
     with simkit.load(text) as sim:
         assert any(d.code == "SK-PARAM-003" and "gian" in d.message for d in sim.diagnostics)
@@ -65,11 +52,6 @@ def test_an_unknown_element_is_reported_too(kind: str) -> None:
         ("wireless_transmitter", "<transceiver><gain>much</gain></transceiver>"),
         ("wireless_receiver", "<transceiver><sensitivity>3</sensitivity></transceiver>"),
         ("wireless_receiver", "<transceiver><min_frequency>9000</min_frequency></transceiver>"),
-        ("dvl", DVL.replace("phased_array", "phased")),
-        ("dvl", DVL.replace("<tilt>30", "<tilt>90", 1)),
-        ("dvl", DVL.replace("<far>60", "<far>90")),
-        ("dvl", DVL.replace("<when>best", "<when>worst")),
-        ("dvl", DVL.replace("<maximum_range>80.", "<maximum_range>0.05")),
     ],
 )
 def test_an_invalid_value_is_an_error(kind: str, block: str) -> None:
@@ -81,9 +63,3 @@ def test_all_values_of_the_file_are_read() -> None:
     radio = read_transceiver(Params.from_dict({"transceiver": {"essid": "osrf", "gain": 2.6}}))
     assert (radio.essid, radio.frequency, radio.band, radio.gain) == ("osrf", 2442.0, (2412.0, 2484.0), 2.6)
     assert (radio.power, radio.sensitivity) == (14.5, -90.0)
-    beams = [{"rotation": 1.0, "tilt": 0.5}, {"id": 7, "aperture": 0.1}, {}]
-    log = read_dvl(Params.from_dict({"dvl": {"arrangement": {"beam": beams}, "tracking": {"bottom_mode": {}}}}))
-    assert [b.id for b in log.beams] == [0, 7, 2]
-    assert (log.beams[0].rotation, log.beams[0].aperture) == (1.0, pytest.approx(math.pi / 2))
-    assert log.modes["bottom_mode"].when == "always"
-    assert (log.type, log.range, log.layer) == ("piston", (0.1, 100.0), (20.0, 80.0, 5))

@@ -113,3 +113,20 @@ def test_without_a_file_nothing_is_loaded_and_a_note_has_the_remedy(tmp_path: Pa
         assert states(sim, "/r/controller_manager") == {}
         assert any(d.code == "SK-CONTROL-018" for d in sim.diagnostics)
         sim.run(0.5)  # joints of effort fall, as in Gazebo
+
+
+def test_the_help_names_the_file_that_the_launch_file_loads(tmp_path: Path) -> None:
+    """The file is in another package of the same project; files for other robots are not named."""
+    text = robot("EffortJointInterface").replace("<simkit:parameters>arm.yaml</simkit:parameters>", "")
+    for name, joint in (("a_control", "elbow"), ("b_control", "j1")):
+        folder = tmp_path / name / "config"
+        folder.mkdir(parents=True)
+        (folder / "control.yaml").write_text(
+            yaml("effort_controllers/JointPositionController", "").replace("j1", joint)
+        )
+    described = tmp_path / "description/urdf/arm.urdf"
+    described.parent.mkdir(parents=True)
+    described.write_text(text)
+    with simkit.load(described) as sim:
+        (problem,) = [d for d in sim.diagnostics if d.code == "SK-CONTROL-018"]
+        assert f"--params-file {tmp_path / 'b_control/config/control.yaml'}" in problem.hint

@@ -13,6 +13,7 @@ from xml.sax.saxutils import quoteattr  # this import also loads Python's networ
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where
 from simkit.loaders.mjcf.asset_files import placeholder, read_asset
+from simkit.loaders.mjcf.schema import drop_removed_attributes
 from simkit.loaders.mjcf.size_limits import MOST_ELEMENTS
 from simkit.loaders.resources.loader import MjcfText
 from simkit.loaders.resources.uri_resolver import Resolver
@@ -65,6 +66,7 @@ class _FileGatherer:
 
     def bundle(self, root: Params) -> MjcfText:
         complete = self._with_includes(root, self.folder, 0)
+        drop_removed_attributes(complete)
         self._settings(complete)
         self._assets(complete)
         first = len(self.shared.lines)

@@ -22,6 +22,12 @@ _PREPROCESSED: Final[dict[str, frozenset[str]]] = {
     "replicate": frozenset(("count", "offset", "euler", "sep", "prefix", "childclass")),
 }
 """Elements that MuJoCo's reader processes before it uses its table."""
+_REMOVED: Final[dict[str, frozenset[str]]] = {
+    "compiler": frozenset(("convexhull", "exactmeshinertia")),
+    "flag": frozenset(("sensornoise",)),
+    "option": frozenset(("apirate",)),
+}
+"""Attributes of earlier versions that MuJoCo 4.0 refuses, by element; none of them selects what moves or collides."""
 
 
 @dataclass(slots=True)
@@ -83,6 +89,15 @@ def _check_children(element: Params, kind: _ElementKind, table: _ElementKind) ->
             continue
         _check_attributes(child, below.attributes)
         _check_children(child, below, table)
+
+
+def drop_removed_attributes(element: Params) -> None:
+    """Remove attributes of earlier versions of MuJoCo from an element and its children, with warnings."""
+    for name in sorted(_REMOVED.get(element.name, frozenset()).intersection(element.attributes)):
+        del element.attributes[name]
+        element.warning("SK-MJCF-016", f"<{element.name}> {name}= is of an earlier version of MuJoCo; it is ignored")
+    for child in element.children:
+        drop_removed_attributes(child)
 
 
 def _own_name(element: Params, name: str) -> str:

@@ -29,7 +29,7 @@ from simkit.loaders.resources.uris import (
     is_private,
     sibling_names,
 )
-from simkit.project_folder import is_top_folder
+from simkit.project_folder import enclosing_project, is_top_folder
 from simkit.trusted_folders import TrustedFolders, built_workspace, join_below
 
 _MEDIA = ("Media/models", "media/models", "Media", "media")  # folders of a package that Gazebo Classic searches
@@ -182,7 +182,7 @@ class UriCandidates:
                 yield join_below(folder, inside)
 
     def _models_of_project(self, name: str, inside: str, relative_to: Path | None) -> Iterator[Path]:
-        """Yield candidates for `model://name/...` in the folder `models` of the project and in groups of models in it.
+        """Yield candidates for `model://name/...` in the folders `models` of the project and of the folders in it.
 
         The launch files or the README of such a project add these folders to GAZEBO_MODEL_PATH.
         """
@@ -192,12 +192,15 @@ class UriCandidates:
                     yield join_below(folder, inside)
 
     def _model_groups(self, project: Path) -> list[Path]:
-        """Return the folder `models` of a project and the folders in it that are no models; none if it is missing."""
+        """Return the folders `models` of a project and of its folders, and the groups of models in the first."""
         if project not in self._groups:
             top = project / "models"
             below = sorted(top / name for name in sibling_names(top / "any"))
             groups = [folder for folder in below if is_folder(folder) and not is_file(folder / "model.config")]
-            self._groups[project] = [top, *groups] if below else []
+            is_project = enclosing_project(project) == project  # not just the folder above a file
+            others = sorted(project / name / "models" for name in sibling_names(project / "any") if is_project)
+            others = [folder for folder in others if not is_link(folder.parent) and is_folder(folder)]
+            self._groups[project] = [*([top, *groups] if below else []), *others]
         return self._groups[project]
 
     def media_candidates(self, text: str, relative_to: Path | None) -> Iterator[Path]:

@@ -16,6 +16,7 @@ from simkit.loaders.sdf.load_context import EntitySource, SdfFile, Workspace, po
 from simkit.params import Params
 
 _ENTITIES = ("model", "light", "actor")
+_CLASSIC = (1, 7)  # newest version of SDF that Gazebo Classic reads
 _MOST_LISTED = 30
 
 
@@ -163,13 +164,23 @@ def report_missing(workspace: Workspace, is_world: bool) -> None:
 
 
 def _only_entity(file: SdfFile, uri: str, include: Params, workspace: Workspace) -> Params | None:
-    """Return the one model, light or actor of an included file."""
+    """Return the one model, light or actor of an included file.
+
+    In files of Gazebo Classic, the first one is used, a model before an actor and an actor before a light, as in its
+    versions of sdformat; newer versions refuse such a file.
+    """
     entities = [c for name in _ENTITIES for c in file.root.all(name)]
     if len(entities) != 1:
         contained = ", ".join(f"<{e.name}>" for e in entities) or "none"
         world = "; it also contains a <world>" if file.root.has("world") else ""
         near = did_you_mean("model", [c.name for c in file.root.children]) if not entities else ""
         message = f"{uri} must contain exactly one model, light or actor; it contains {contained}{world}"
+        if entities and file.version <= _CLASSIC:
+            entities.sort(key=lambda entity: ("model", "actor", "light").index(entity.name))
+            include.warning("SK-SDF-016", f"{message}; the first <{entities[0].name}> is used, as in Gazebo Classic")
+            for entity in entities[1:]:
+                entity.mark_all_read()
+            return entities[0]
         workspace.diagnostics.error("SK-SDF-016", message, include.where, near)
         return None
     return entities[0]

@@ -77,8 +77,9 @@ def _script_material(
     name: str, script: Params, file: SdfFile, workspace: Workspace
 ) -> tuple[OgreMaterial | None, list[Path]]:
     """Return the material of that name in the script files that the visual refers to, and their paths."""
-    # Gazebo's own scripts are identified by name, in the table of gazebo_materials.py
-    uris = [e.value for e in script.all("uri") if e.value and "media/materials" not in e.value]
+    # Gazebo's own scripts are identified by name, in the table of gazebo_materials.py; other projects have such folders
+    is_of_gazebo = bool(gazebo_colours(name))
+    uris = [e.value for e in script.all("uri") if e.value and not (is_of_gazebo and "media/materials" in e.value)]
     places = [place for uri in uris if (place := workspace.resolver.search(uri, file.folder)[0]) is not None]
     material = find_material(name, places, workspace.resolver.allows) if name and places else None
     return material, places

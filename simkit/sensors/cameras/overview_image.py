@@ -38,6 +38,14 @@ silhouette without edges. Cameras show the colours as they are."""
 
 
 @runtime_checkable
+class PictureShapes(Protocol):
+    """Plugin that adds shapes to pictures, such as the surface of a sea."""
+
+    def draw_shapes(self, scene: mujoco.MjvScene, eye: Vector) -> None:
+        """Add shapes to a scene that is seen from `eye` [m]."""
+
+
+@runtime_checkable
 class SoftPictureRenderer(Protocol):
     """Renderer that draws soft shadows and smooth edges in one image, which is faster than several passes."""
 
@@ -99,11 +107,14 @@ def render_view(
         near = max(near, float(position[2]) - ceiling)
     view = View(width, height, -wide, wide, -half, half, near, distance + 50.0 * extent)
     is_dark = model.nlight == 0
+    drawing_plugins = [p for p in sim.engine.structure.all_plugins() if isinstance(p, PictureShapes)]
     draw_particles = drawer_of_particles(sim, sim.time) if has_sources(sim) else None
 
     def prepare(scene: mujoco.MjvScene) -> None:
         if is_dark:
             _add_headlight(scene)
+        for plugin in drawing_plugins:
+            plugin.draw_shapes(scene, position)
         if draw_particles is not None:
             draw_particles(scene)
         if decorate is not None:

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import os
-import signal
 import sys
-import threading
-from collections.abc import Collection, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager, redirect_stdout
+from collections.abc import Collection, Sequence
+from contextlib import AbstractContextManager, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from simkit import progress
 from simkit.errors import SimkitError
+from simkit.process_control import end_with_parent, safe_path, without_interrupts
 from simkit.run_spec import FilePath
-
-_SAFE_PATH: Final = "PYTHONSAFEPATH"
 
 if TYPE_CHECKING:
     from simkit.testing.golden.compare.difference import Verdict
@@ -102,9 +98,9 @@ def _check_in_parallel(folders: list[Path], options: CheckOptions, jobs: int) ->
 
     context = multiprocessing.get_context("spawn")  # graphics libraries do not work in a forked process
     results: list[CheckResult] = []
-    with ProcessPoolExecutor(jobs, context, _end_with_parent) as pool, _progress(folders) as task:
+    with ProcessPoolExecutor(jobs, context, end_with_parent) as pool, _progress(folders) as task:
         try:
-            with _without_interrupts(), _safe_path():
+            with without_interrupts(), safe_path():
                 checks = pool.map(_check_in_process, folders, [options] * len(folders))
             for result in checks:
                 results.append(result)
@@ -119,50 +115,6 @@ def _check_in_parallel(folders: list[Path], options: CheckOptions, jobs: int) ->
 
 def _progress(folders: Collection[Path]) -> AbstractContextManager[progress.Task]:
     return progress.task("checking golden runs", len(folders))
-
-
-@contextmanager
-def _without_interrupts() -> Iterator[None]:
-    """Start child processes that ignore Ctrl-C. The terminal sends it to them too, but the parent process ends them."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # child processes inherit the mask
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-@contextmanager
-def _safe_path() -> Iterator[None]:
-    """Start child processes that import no file of the working directory, which `python -c` would search first."""
-    before = os.environ.get(_SAFE_PATH)
-    os.environ[_SAFE_PATH] = "1"
-    try:
-        yield
-    finally:
-        if before is None:
-            del os.environ[_SAFE_PATH]
-        else:
-            os.environ[_SAFE_PATH] = before
-
-
-def _end_with_parent() -> None:
-    """End this child process when its parent process ends for any reason."""
-    import multiprocessing
-    from multiprocessing.connection import wait
-
-    parent = multiprocessing.parent_process()
-    if parent is None:
-        return
-    sentinel = parent.sentinel
-
-    def watch() -> None:
-        wait([sentinel])
-        os._exit(1)
-
-    threading.Thread(target=watch, name="simkit ends with its parent", daemon=True).start()
 
 
 def _check_in_process(folder: Path, options: CheckOptions) -> CheckResult:

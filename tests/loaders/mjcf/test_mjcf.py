@@ -292,6 +292,18 @@ def test_all_unknown_names_are_reported_in_one_pass_with_the_closest_name(tmp_pa
     assert [d.hint for d in found] == [f"did you mean '{w}'?" for w in ("geom", "size", "stiffness", "actuator")]
 
 
+def test_attributes_of_earlier_versions_of_mujoco_are_ignored_with_a_warning(tmp_path: Path) -> None:
+    text = """<mujoco>
+  <option apirate="100"><flag sensornoise="enable"/></option>
+  <worldbody><body><geom size="1"/></body></worldbody>
+</mujoco>"""
+    scene, diagnostics = scene_of(write(tmp_path, {"m.xml": text}))
+    assert scene.model is not None
+    assert [(d.code, d.severity, d.line) for d in diagnostics if d.severity != "note"] == [
+        ("SK-MJCF-016", "warning", 2)
+    ] * 2
+
+
 def test_errors_have_the_line_of_the_included_file(tmp_path: Path) -> None:
     part = "<mujoco>\n\n<worldbody>\n<body name='b'>\n<geom size='1' type='blob'/></body></worldbody></mujoco>"
     path = write(tmp_path, {"main.xml": "<mujoco>\n<include file='part.xml'/></mujoco>", "part.xml": part})

@@ -141,3 +141,13 @@ def test_an_unknown_scheme_has_the_same_message_for_each_uri(tmp_path: Path) -> 
     for line, name in enumerate(("a.dae", "b.dae"), 1):
         Resolver([tmp_path]).resolve(f"models://shop/{name}", Where("w.sdf", line), found, None)
     assert [d.message for d in found] == ["unknown scheme models://; model:// is used instead"] * 2
+
+
+@pytest.mark.parametrize("place", ["models", "descriptions/models"])
+@pytest.mark.parametrize("uri", ["model://boat", "boat"])
+def test_a_model_is_found_in_the_folders_models_of_the_project(tmp_path: Path, place: str, uri: str) -> None:
+    """Such a project names the folders in an environment variable, which a user of simkit has not set."""
+    (tmp_path / "project/.git").mkdir(parents=True)
+    model = _write(tmp_path / "project" / place / "boat/model.config").parent
+    world = _write(tmp_path / "project/tests/worlds/w.sdf").parent
+    assert Resolver().resolve(uri, Where("w.sdf", 1), Diagnostics(), world) == model

@@ -115,6 +115,17 @@ def test_fuel_caches_are_read(load, write, monkeypatch):
     assert not [d for d in found if d.severity == "error"]
 
 
+@pytest.mark.parametrize(("version", "severity"), [("1.5", "warning"), ("1.9", "error")])
+def test_of_several_lights_in_an_included_file_gazebo_classic_uses_the_first(load, write, version, severity):
+    lights = "".join(f'<light name="{n}" type="point"><pose>0 0 {n} 0 0 0</pose></light>' for n in (1, 2, 3))
+    path = write("models/lights/model.sdf", f'<sdf version="{version}">{lights}</sdf>')
+    world = "<sdf version='1.6'><world name='w'><include><uri>model://lights</uri></include></world></sdf>"
+    scene, found = load(world, (path.parents[1],))
+    assert [d.severity for d in found if d.code == "SK-SDF-016"] == [severity]
+    if severity == "warning":
+        assert [light.name for light in scene.world.lights] == ["1"]
+
+
 def test_a_circle_of_includes_is_an_error(load, write):
     text = '<sdf version="1.9"><model name="a"><link name="l"/><include><uri>model://a</uri></include></model></sdf>'
     path = write("models/a/model.sdf", text)

@@ -81,6 +81,16 @@ def script(name, uris=("model://paints/materials/scripts", "model://paints/mater
     return f"<material><script>{listed}<name>{name}</name></script>{more}</material>"
 
 
+def test_a_project_may_have_its_own_folder_media_materials(read, tmp_path):
+    """Gazebo's own scripts are in a folder of this name too, and are not needed."""
+    folder = tmp_path / "media/materials/scripts"
+    folder.mkdir(parents=True)
+    (folder / "road.material").write_text("material Own/Road { technique { pass { diffuse 0.2 0.3 0.4 } } }")
+    material, diagnostics = read(script("Own/Road", ["file://media/materials/scripts/road.material"]))
+    assert material.diffuse == (0.2, 0.3, 0.4, 1.0)
+    assert not diagnostics
+
+
 @pytest.mark.parametrize(
     ("name", "ambient", "diffuse", "emissive"),
     [

@@ -54,7 +54,7 @@ class JointTrajectoryController(Controller):
     GOAL_TOLERANCE_VIOLATED after `constraints.goal_time`. Then the joints hold their positions.
     """
 
-    types = ("joint_trajectory_controller/JointTrajectoryController",)
+    types: ClassVar[tuple[str, ...]] = ("joint_trajectory_controller/JointTrajectoryController",)
     default_commands: ClassVar[tuple[str, ...]] = ()
     default_states: ClassVar[tuple[str, ...]] = ()
     topics: ClassVar[tuple[str, ...]] = ("~/joint_trajectory",)

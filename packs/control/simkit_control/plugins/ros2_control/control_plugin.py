@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
+from shlex import quote
 from typing import TYPE_CHECKING, ClassVar, Final
 
 from simkit import ModelPlugin, Params
@@ -12,6 +13,7 @@ from simkit.plugins.endpoints import offers_all
 from simkit.plugins.find_entities import find_plugin_file
 from simkit.plugins.ros_parameter_block import ParameterBlock
 from simkit.plugins.ros_parameter_files import ParameterFiles, read_parameter_file
+from simkit_control.plugins.ros2_control.controller_file_hint import find_controller_file
 from simkit_control.plugins.ros2_control.controller_manager import ControllerManager
 from simkit_control.plugins.ros2_control.controller_manager_services import offer_services
 from simkit_control.plugins.ros2_control.hardware import Hardware
@@ -249,8 +251,11 @@ class ControlPlugin(ModelPlugin):
                     yield read
         if not has_other_files and not any(element.value for element in elements):
             message = f"plugin {self.name!r} names no parameter file: no controller is loaded"
+            likely = find_controller_file(self.where.file, self.hardware.joints)
             hint = (
                 f"give the file that the ROS launch file loads: {_PARAMS_FILE_HINT}; or name it in <simkit:parameters>"
+                if likely is None
+                else f"add --params-file {quote(str(likely))}, which has controllers for these joints"
             )
             params.diagnostics.warning("SK-CONTROL-018", message, self.where, hint)
 

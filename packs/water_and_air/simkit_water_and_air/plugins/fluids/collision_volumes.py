@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -124,3 +126,35 @@ def _bounds(hull: Hull, shape: Geometry) -> tuple[Vector, Vector]:
         along = np.abs(hull.axes[:, 2])
         half = shape.length / 2 * along + shape.radius * np.sqrt(np.maximum(0.0, 1.0 - along * along))
     return hull.centre - half, hull.centre + half
+
+
+def link_triangles(link: SceneLink) -> Vector:
+    """Return the surfaces of a link's collisions as triangles in the link's frame [m], shape (n, 3, 3).
+
+    A cylinder becomes a prism with 24 sides; other round shapes are left out.
+    """
+    factory, parts = HullFactory(lambda _: None), [np.zeros((0, 3, 3))]
+    for collision in link.collisions:
+        hull = factory.hull(collision)
+        if hull is None:
+            continue
+        if isinstance(hull.solid, Polyhedron):
+            corners = hull.solid.corners
+        elif isinstance(collision.geometry, Cylinder):
+            corners = _prism(collision.geometry.radius, collision.geometry.length)
+        else:
+            continue
+        parts.append((hull.origin + matmul(corners.reshape(-1, 3), hull.axes.T)).reshape(-1, 3, 3))
+    return np.concatenate(parts)
+
+
+def _prism(radius: float, length: float, sides: int = 24) -> Vector:
+    """Return the triangles of a prism about z, counter-clockwise from outside."""
+    angles = [2 * math.pi * side / sides for side in range(sides + 1)]
+    ring = [(radius * math.cos(angle), radius * math.sin(angle)) for angle in angles]
+    half, triangles = length / 2, []
+    for (x, y), (u, v) in itertools.pairwise(ring):
+        low, high, next_low, next_high = (x, y, -half), (x, y, half), (u, v, -half), (u, v, half)
+        triangles += [(low, next_low, next_high), (low, next_high, high)]
+        triangles += [((0.0, 0.0, half), high, next_high), ((0.0, 0.0, -half), next_low, low)]
+    return np.array(triangles)

@@ -9,7 +9,7 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, cast
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
 
     from simkit import Simulation
     from simkit.msgs import Vector3, Wind
-    from simkit.runtime.engine.entity_structure import AttachedPlugin
 
 WIND: Final = "simkit_msgs/msg/Wind"
 VECTOR: Final = "geometry_msgs/msg/Vector3"
@@ -262,7 +261,7 @@ class WindPluginBase(WorldPlugin):
             return
         parent.engine.wind.source = self.velocity
         base = valid_topic(f"/world/{parent.world.name}")
-        self.listen(f"{base}/wind", (WIND, VECTOR), self._on_wind)
+        self.listen(f"{base}/wind", (WIND, VECTOR), self.set_wind)
         self.offer(f"{base}/wind_info", INFO, self._on_wind_info)
 
     @property
@@ -278,7 +277,7 @@ class WindPluginBase(WorldPlugin):
     def before_step_rate(self, rate: float | None) -> None:
         raise AttributeError("before_step_rate of a wind plugin is read-only: it follows the links in the wind")
 
-    def _before(self) -> list[AttachedPlugin]:
+    def _before(self) -> list[Any]:
         """Return the plugins that run before this plugin."""
         return list(itertools.takewhile(lambda plugin: plugin is not self, self.sim.engine.structure.all_plugins()))
 
@@ -340,7 +339,8 @@ class WindPluginBase(WorldPlugin):
 
     # ------------------------------------------------------------------ commands
 
-    def _on_wind(self, message: Wind | Vector3) -> None:
+    def set_wind(self, message: Wind | Vector3) -> None:
+        """Set the mean wind from a message."""
         vector = cast("Vector3", getattr(message, "linear_velocity", message))
         velocity = float(vector.x), float(vector.y), float(vector.z)
         if not all(map(math.isfinite, velocity)) or max(map(abs, velocity)) > 1e6:

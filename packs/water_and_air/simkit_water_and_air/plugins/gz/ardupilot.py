@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Final, cast
 import numpy as np
 
 from simkit import Params, Pose, msgs
-from simkit.compiler.name_map import NameMap
 from simkit.extend import (
     LARGEST,
     JointAxis,
@@ -244,8 +243,7 @@ class ArduPilotPlugin(AutopilotPlugin):
                 turned.append((joint.axis, target))
         if turned:
             axes, velocities = zip(*turned, strict=True)
-            names: NameMap = self.sim.engine.names
-            layouts: dict[tuple[int, ...], KinematicTrees] = names.shared(f"ardupilot {id(self)}", dict)
+            layouts: dict[tuple[int, ...], KinematicTrees] = self.sim.engine.names.shared(f"ardupilot {id(self)}", dict)
             self._servo.drive(self.sim, axes, velocities, layouts)
 
     def controllers(self) -> list[tuple[JointAxis, Pid]]:

@@ -82,6 +82,7 @@ class MulticopterMotorModel(ModelPlugin):
     filenames = ("gz-sim-multicopter-motor-model-system",)
     names: ClassVar[tuple[str, ...]] = ("gz::sim::systems::MulticopterMotorModel",)
     drives = True
+    driven_types: ClassVar[tuple[str, ...]] = ("velocity",)
     reads_at_load = ("inertial", "axes")  # the effort follows from the inertia of the propeller
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
@@ -92,7 +93,7 @@ class MulticopterMotorModel(ModelPlugin):
             self._number = options.actuator_number
         else:
             self._number = params.integer("motorNumber", required=True, minimum=0)
-        self._is_driven = options.motor_type == "velocity"
+        self._is_driven = options.motor_type in self.driven_types
         if not self._is_driven:
             kind = f"<motorType>{options.motor_type}</motorType> has no effect, as in Gazebo"
             params.warning("SK-PLUGIN-111", f"{kind}: the rotor stands still", "use `velocity`")
@@ -109,6 +110,7 @@ class MulticopterMotorModel(ModelPlugin):
         self._input = 0.0  # commanded speed of the rotor [rad/s]
         self._filtered = 0.0  # the same after the filter
         self._has_state = False
+        self.share = 1.0  # of the speed that a damaged rotor reaches
         namespace = options.namespace or parent.name
         self.listen(valid_topic(f"/{namespace}/{options.topic}"), ACTUATORS, self._on_command)
 
@@ -126,6 +128,11 @@ class MulticopterMotorModel(ModelPlugin):
     def motor_number(self) -> int:
         """Index of the motor in a message."""
         return self._number
+
+    @property
+    def joint_name(self) -> str:
+        """Scoped name of the joint of the rotor."""
+        return self._joint_name
 
     def command(self, speed: float) -> None:
         """Set the speed of the rotor [rad/s] from the next step on; a negative speed turns it backwards."""
@@ -148,7 +155,7 @@ class MulticopterMotorModel(ModelPlugin):
         slow = options.time_up if self._input > self._filtered else options.time_down
         left = math.exp(-self.period / slow) if slow > 0 else 0.0
         self._filtered = left * self._filtered + (1 - left) * self._input
-        self._joint.turn(self._sign * self._filtered / options.slowdown)
+        self._joint.turn(self._sign * self.share * self._filtered / options.slowdown)
 
     def inflow_factor(self, speed: float) -> float:
         """Return the share of the thrust that is left while the rotor moves along its axis [m/s]."""

@@ -1,0 +1,1 @@
+"""Sensors of vehicles in water and wind."""
