@@ -14,7 +14,7 @@ from simkit_water_and_air.plugins.gz.multicopter_motor_model import MotorModelOp
 
 if TYPE_CHECKING:
     from simkit import Model
-    from simkit.msgs import Actuators, Message
+    from simkit.msgs import Message
 
 _MAV: Final = "mav_msgs/msg/Actuators"
 _COMMAND: Final = "command/motor_speed"
@@ -49,7 +49,7 @@ class RotorsMotorModel(MulticopterMotorModel):
         if self.options.topic.strip("/") != _COMMAND:
             self.listen(f"/{namespace}/{_COMMAND}", (_MAV, ACTUATORS), self._on_actuators)
 
-    def _on_actuators(self, message: Actuators | Message) -> None:
+    def _on_actuators(self, message: Message) -> None:
         if message.__msgtype__ != _MAV:
             self._on_command(message)
             return
