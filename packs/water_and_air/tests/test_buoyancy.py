@@ -318,3 +318,12 @@ def test_a_fleet_floats_like_each_ship_alone(shape: str) -> None:
             return np.concatenate([pose.position, pose.quaternion, link.linear_velocity, link.angular_velocity])
 
     assert sailed(40) == pytest.approx(sailed(1), rel=1e-10, abs=1e-10)
+
+
+def test_a_plugin_with_persistent_wrenches_may_stand_before_the_buoyancy() -> None:
+    """ApplyLinkWrench asks for the rates of all plugins while it loads; the buoyancy was not loaded then."""
+    wrench = '<plugin filename="gz-sim-apply-link-wrench-system" name="gz::sim::systems::ApplyLinkWrench"/>'
+    ball = body("ball", BALL, 100.0)
+    with simkit.load(world(f"{wrench}{ball}", SEA)) as sim:
+        sim.step(10)
+        assert height(sim, "ball") > 0.0  # the ball has a fifth of the density of water

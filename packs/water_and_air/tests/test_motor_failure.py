@@ -83,3 +83,24 @@ def test_the_water_of_px4_lifts_below_the_surface_and_brakes() -> None:
         assert hull.linear_velocity[0] == pytest.approx(math.exp(-5 / 10 * 2.0), rel=1e-2)
         sim.run(20.0)
         assert hull.pose.position[2] == pytest.approx(0.0, abs=1e-3)  # half of twice the weight
+
+
+ROTORS = """<plugin name="m" filename="librotors_gazebo_motor_model.so"><robotNamespace>hummingbird</robotNamespace>
+  <jointName>spin</jointName><linkName>screw</linkName><turningDirection>ccw</turningDirection><motorNumber>1</motorNumber>
+  <motorConstant>1e-5</motorConstant><momentConstant>0</momentConstant><rotorDragCoefficient>0</rotorDragCoefficient>
+  <rollingMomentCoefficient>0</rollingMomentCoefficient><motorType>velocity</motorType></plugin>
+  <plugin name="b" filename="librotors_gazebo_multirotor_base_plugin.so"><linkName>hull</linkName></plugin>"""
+
+
+@pytest.mark.parametrize(
+    ("topic", "field"),
+    [("command/motor_speed", "angular_velocities"), ("gazebo/command/motor_speed", "velocity")],
+)
+def test_a_rotor_of_rotors_listens_to_both_of_its_topics(topic: str, field: str) -> None:
+    kind = "mav_msgs/msg/Actuators" if field == "angular_velocities" else "actuator_msgs/msg/Actuators"
+    with simkit.load(boat(ROTORS)) as sim:
+        assert not [d for d in sim.diagnostics if d.severity != "note"]
+        sim.publish(f"/hummingbird/{topic}", simkit.msgs.make(kind, **{field: [0.0, 300.0]}))
+        sim.run(0.5)
+        assert sim.joint("boat::spin").velocity == pytest.approx(30.0, rel=1e-2)
+        assert sim.link("boat::hull").linear_velocity[0] > 0.01

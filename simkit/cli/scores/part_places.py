@@ -68,6 +68,8 @@ class PartPlaces:
         for path in self._paths(item):
             for depth in range(len(path) - 1, -1, -1):
                 element = path[depth]
+                if numbers := self._referenced(element):
+                    return numbers, None, False
                 if element.name not in ELEMENT_KINDS:
                     continue
                 is_whole = left_out and (depth == len(path) - 1 or element.name in _LEAVES)
@@ -91,6 +93,12 @@ class PartPlaces:
             return path[-1].name not in words, not any(text == name or text.endswith(f"::{name}") for text in quoted)
 
         return sorted(paths, key=rank)
+
+    def _referenced(self, element: Params) -> list[int]:
+        """Return the link or joint that `<gazebo reference="NAME">` of a URDF file describes further."""
+        name = element.attributes.get("reference", "") if element.name == "gazebo" else ""
+        numbers = self._named.get(name, []) if name else []
+        return [number for number in numbers if self._parts[number].element in ("link", "joint")][:1]
 
     def _numbers_of(self, element: Params, item: Diagnostic) -> list[int]:
         """Return the parts that an element describes; a macro describes several, of which the message may name one."""

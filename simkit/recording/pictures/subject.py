@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from simkit.linear_algebra import matmul, norm
 from simkit.pose import Pose
 from simkit.recording.pictures.stray_models import find_stray_models
+from simkit.sensors.particle_clouds import find_clouds
 
 if TYPE_CHECKING:
     from simkit.msgs import LaserScan
@@ -86,6 +87,8 @@ def find_subject(sim: Simulation, traces: Iterable[tuple[str, Points]], room_siz
     limit = math.inf if is_scene and not len(seen) else room_size
     if len(boxes) and (not len(room) or _size(np.concatenate((points, room))) > limit * _size(points)):
         room = np.zeros((0, 3))
+    if not len(points) and not len(room):  # smoke alone, or nothing
+        room = np.concatenate([np.zeros((0, 3)), *(cloud.positions for cloud in find_clouds(sim, sim.time))])
     if not len(points) and not len(room):
         middle, radius = np.array(sim.mj_model.stat.center), max(float(sim.mj_model.stat.extent) / 4, _LEAST)
         room = middle + radius * _CORNERS

@@ -45,7 +45,7 @@ def serving(path: Path, opens: Callable[[Client], Any], node: str = "server") ->
     thread = threading.Thread(target=run)
     thread.start()
     try:
-        ready.wait(10.0)
+        ready.wait(60.0)
         yield failed
     finally:
         over.set()
@@ -165,7 +165,8 @@ def test_a_caller_gets_an_error_when_the_process_of_the_service_ends_or_is_slow(
         assert error.value.code == "SK-SERVICE-010"
         killer = threading.Timer(0.05, server.close)
         killer.start()
-        with pytest.raises(LiveError, match="'/add' of '/server' was closed before it answered"):
+        # a busy machine may close the server before the call
+        with pytest.raises(LiveError, match="no service '/add'|'/add' of '/server' was closed before it answered"):
             client.call("/add")
         killer.join()
         assert "/add" not in client.services()
@@ -190,12 +191,12 @@ def test_a_goal_goes_from_client_to_client_with_feedback_result_rejection_and_ca
     heard: list[list[int]] = []
     with run(court) as client, serving(client.path, lambda c: c.act("/fibonacci", FIBONACCI, execute, lambda _: True)):
         goal = client.send_goal("/fibonacci", {"order": 4}, lambda f: heard.append(list(f.sequence)))
-        assert goal.wait(5.0)
+        assert goal.wait(60.0)
         assert (goal.status, list(goal.result.sequence)) == (GoalStatus.SUCCEEDED, [0, 1, 1, 2, 3])
         client.flush()
         assert heard == [[0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3]]
         far = client.send_goal("/fibonacci", {"order": 101})
-        assert far.wait(5.0)
+        assert far.wait(60.0)
         assert (far.status, far.reason) == (GoalStatus.REJECTED, "too far")
 
 
@@ -211,13 +212,13 @@ def test_a_goal_is_cancelled_or_aborted_with_its_process(court: simkit.Simulatio
     with run(court) as client:
         with serving(client.path, lambda c: c.act("/fibonacci", FIBONACCI, goals.append, on_cancel)):
             kept, cancelled = (client.send_goal("/fibonacci", {"order": order}) for order in (1, 2))
-            assert kept.wait_accepted(5.0) and cancelled.wait_accepted(5.0)
+            assert kept.wait_accepted(60.0) and cancelled.wait_accepted(60.0)
             kept.cancel()
             cancelled.cancel()
-            assert cancelled.wait(5.0)
+            assert cancelled.wait(60.0)
             assert (cancelled.status, list(cancelled.result.sequence)) == (GoalStatus.CANCELED, [7])
-            assert client.wait(lambda: kept.status is GoalStatus.EXECUTING, 5.0)
-        assert kept.wait(5.0)
+            assert client.wait(lambda: kept.status is GoalStatus.EXECUTING, 60.0)
+        assert kept.wait(60.0)
         assert (kept.status, kept.reason) == (GoalStatus.ABORTED, "the action of '/server' was closed")
 
 
@@ -231,7 +232,7 @@ def test_a_goal_is_aborted_for_its_sender_when_the_server_of_the_simulation_clos
                 waited = client.send_goal("/fibonacci", {"order": 1})
                 waited.wait_accepted(10.0)
                 over.set()
-                waited.wait(10.0)
+                waited.wait(60.0)
                 found.append((waited.status, waited.reason))
 
         failed: list[LiveError] = []
@@ -243,7 +244,7 @@ def test_a_goal_is_aborted_for_its_sender_when_the_server_of_the_simulation_clos
                 sim.step()
                 server.poll(0.01)
             server.close()
-            sender.join(10.0)
+            sender.join(60.0)
         assert found == [(GoalStatus.ABORTED, "the action of '/server' was closed")]
         assert not failed, "a callback that waits ends with the simulation"
 
@@ -272,7 +273,7 @@ def test_a_subscriber_that_waits_for_the_simulation_ends_with_it(sockets: Path) 
         while not waits.is_set():
             sim.step()
             server.poll(0.01)
-    thread.join(10.0)
+    thread.join(60.0)
     assert not thread.is_alive() and not failed
 
 
@@ -349,7 +350,7 @@ def test_commands_topics_and_parameters_reach_the_functions_of_a_client(
             client.set_parameter("/robot", "gain", -1.0)
         assert publisher.subscribers == 2
         assert client.parameters()["/robot"]["gain"]["value"] == 4.0
-        end = time.monotonic() + 5.0
+        end = time.monotonic() + 60.0
         while (len(commands) < 3 or len(heard) < 3 or not values) and time.monotonic() < end:
             client.flush()
     assert (commands, heard, values) == ([1.0, 2.0, 3.0], [1.0, 2.0, 3.0], [4.0])
@@ -371,7 +372,7 @@ def yard() -> Iterator[tuple[simkit.Simulation, Server]]:
 
 def poll_until(server: Server, condition: Callable[[], bool]) -> None:
     """Poll until a condition holds."""
-    end = time.monotonic() + 10.0
+    end = time.monotonic() + 60.0
     while not condition():
         assert time.monotonic() < end
         server.poll(0.01)
@@ -413,9 +414,15 @@ def test_a_script_waits_for_the_service_of_another_process(yard: tuple[simkit.Si
 
 def test_a_script_gets_an_error_after_its_timeout(yard: tuple[simkit.Simulation, Server]) -> None:
     sim, server = yard
-    with adding(yard, lambda _: time.sleep(0.1)):
+    too_late = threading.Event()
+
+    def answer(_: Any) -> None:
+        too_late.wait(60.0)
+
+    with adding(yard, answer):
         with pytest.raises(ServiceError, match=r"'/adder', which did not answer within 0.01 s") as error:
             sim.call("/add", timeout=0.01)
+        too_late.set()
         assert error.value.code == "SK-SERVICE-010"
         server.poll()
 
@@ -486,7 +493,7 @@ def test_a_process_that_ends_is_an_error_in_the_next_step(
         with Client(server.path, node="adder") as client:
             client.offer("/add", ADD, add)
             ready.set()
-            over.wait(10.0)
+            over.wait(60.0)
 
     thread = threading.Thread(target=serve)
     thread.start()

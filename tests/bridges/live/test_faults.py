@@ -41,7 +41,7 @@ class Caller:
     """A client that sends whatever it likes, and never waits."""
 
     def __init__(self, server: Server) -> None:
-        self.socket, token = socket_files.connect(server.path, timeout=5.0)
+        self.socket, token = socket_files.connect(server.path, timeout=60.0)
         self.socket.setblocking(False)
         self._reader, self._numbers = FrameReader(1 << 28, (2, 3, 4), token), 0
 

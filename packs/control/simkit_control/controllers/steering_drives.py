@@ -4,17 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from simkit import Params
 from simkit.float_sum import float_sum
 from simkit.plugins.drives.odometry import Motion
 from simkit_control.plugins.ros2_control.reference_drive import ReferenceDrive, read_joints, read_size
 
+if TYPE_CHECKING:
+    from simkit.plugins.ros_parameter_files import ParameterFiles
+
 _FREE_DEVIATION = math.pi / 6
 """Deviation of the steering angle [rad] up to which `reduce_wheel_speed_until_steering_reached` has no effect."""
 _LARGEST_DEVIATION = 1.5608
 """Deviation of the steering angle [rad] from which the wheel speed has its smallest value."""
+
+
+_STEER_BOT = "steer_bot_hardware_gazebo"
 
 
 class SteeringDrive(ReferenceDrive):
@@ -151,7 +157,44 @@ class TricycleSteering(SteeringDrive):
 
 
 class AckermannSteering(SteeringDrive):
-    """Drives the two wheels of one axle, and steers the two wheels of the other axle."""
+    """Drives the two wheels of one axle, and steers the two wheels of the other axle.
 
-    types = ("ackermann_steering_controller/AckermannSteeringController",)
+    With the parameters of ROS 1 (`rear_wheel`, `front_steer`) it drives one wheel and steers one joint. A robot with
+    `steer_bot_hardware_gazebo` has these two joints on both sides: then both wheels get the speed, and the two steering
+    joints the angles that `steer_bot_hardware_gazebo.cpp` of steer_drive_ros gives them.
+    """
+
+    types: ClassVar[tuple[str, ...]] = (
+        "ackermann_steering_controller/AckermannSteeringController",
+        "steer_drive_controller/SteerDriveController",
+    )
     traction_counts = steering_counts = (2,)
+
+    def read_wheels(self, params: Params) -> None:
+        if not params.has("rear_wheel"):
+            super().read_wheels(params)
+            return
+        self.topics = ("~/cmd_vel", "~/odom", "/tf")
+        self.publish_rate = params.number("publish_rate", 50.0, minimum=0)
+        for name in ("publish_cmd", "allow_multiple_cmd_vel_publishers", "publish_wheel_joint_controller_state"):
+            params.child(name)
+        self._traction, self._steering = (read_joints(params, [name], (1,)) for name in ("rear_wheel", "front_steer"))
+        self._wheelbase, self._radius = (
+            read_size(params, [name]) * read_size(params, [f"{name}_multiplier"], 1.0)
+            for name in ("wheel_separation_h", "wheel_radius")
+        )
+        self._position_feedback = params.boolean("estimate_velocity_from_position", False)
+        self._traction_track, self._steering_track, self._slows_down = 0.0, 0.0, False
+        self._angles, self._steering_angle, self._steering_commands = None, 0.0, None
+        files: ParameterFiles = self.plugin.files  # type: ignore[attr-defined] # of the plugin with the manager
+        entry = files.of_node(f"{self.plugin.ros.namespace}/{_STEER_BOT}") or files.of_node(f"/{_STEER_BOT}")
+        if entry is not None:
+            self._read_steer_bot(entry.block(_STEER_BOT, params.diagnostics))
+
+    def _read_steer_bot(self, hardware: Params) -> None:
+        """Read the joints on both sides, which `steer_bot_hardware_gazebo` moves."""
+        self._traction = read_joints(hardware, ["virtual_rear_wheels"], (2,))
+        self._steering = read_joints(hardware, ["virtual_front_steers"], (2,))
+        width, height = (read_size(hardware, [f"wheel_separation_{axis}"], 1.0) for axis in "wh")
+        if hardware.boolean("enable_ackermann_link", True):
+            self._steering_track = width / 2 * self._wheelbase / height

@@ -100,6 +100,7 @@ class ParticleEmitter(ModelPlugin, ParticleSource):
         self._settings: dict[str, float] = {name: getattr(options, name) for name in _SETTINGS}
         self._kind = params.attribute("type") or "point"
         self._pose = params.pose("pose")
+        params.block("material").mark_all_read()  # the other elements are of Gazebo's picture of a particle
         tint = _colour(options.material.diffuse)
         self._start, self._finish = tint * _colour(options.color_start), tint * _colour(options.color_end)
 

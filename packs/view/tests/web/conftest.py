@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 ROOT = Path(__file__).parents[4]
-TIMEOUT = 30.0
+TIMEOUT = 60.0
 PLUGIN = '''
 import simkit
 

@@ -8,7 +8,7 @@ import threading
 
 import roslibpy
 
-TIMEOUT = 20
+TIMEOUT = 60
 
 
 def main(port: int) -> dict[str, object]:

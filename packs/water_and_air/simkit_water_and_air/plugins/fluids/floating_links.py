@@ -26,6 +26,7 @@ class BuoyancyBase(Plugin):
     reads_at_load = ("inertial", "geometry")  # the volumes are computed once
 
     _fluid: Fluid
+    _found: BuoyantForces | None = None  # plugins that are loaded before this one already ask for the rate
 
     @abstractmethod
     def find_hulls(self) -> Mapping[str, Sequence[Hull]]:
@@ -34,7 +35,7 @@ class BuoyancyBase(Plugin):
     def start(self) -> None:
         """Set up the forces; a subclass calls this method at the end of `load`."""
         self._factory = HullFactory(self._report_open_mesh)
-        self._found: BuoyantForces | None = None
+        self._found = None
         self._steady_state: tuple[object, ...] | None = None
         self._steady_wrenches: dict[str, tuple[float, ...]] = {}
         self._bind()

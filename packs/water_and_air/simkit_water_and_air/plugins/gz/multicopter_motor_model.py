@@ -15,7 +15,7 @@ of the physics resolves its motion.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, ClassVar, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from simkit import ModelPlugin, Params
 from simkit.extend import (
@@ -77,7 +77,9 @@ class MulticopterMotorModel(ModelPlugin):
     `<maxRotVelocity>`.
     """
 
-    endpoints = (listens("/{model}/command/motor_speed", ACTUATORS, named_by=("commandSubTopic",)),)
+    endpoints: ClassVar[tuple[Any, ...]] = (
+        listens("/{model}/command/motor_speed", ACTUATORS, named_by=("commandSubTopic",)),
+    )
     options = OptionsOf(MotorModelOptions)
     filenames = ("gz-sim-multicopter-motor-model-system",)
     names: ClassVar[tuple[str, ...]] = ("gz::sim::systems::MulticopterMotorModel",)
