@@ -53,9 +53,9 @@ class LinkBinding:
 
     @property
     def has_missing_visuals(self) -> bool:
-        """Check whether the link has visuals, but their mesh files are missing, so that none of them is drawn."""
+        """Check whether the link has visuals, but their mesh files are missing or unreadable: none of them is drawn."""
         shapes = [visual.geometry for visual in self.scene.visuals]
-        return bool(shapes) and not self.visuals and all(isinstance(s, Mesh) and s.missing for s in shapes)
+        return bool(shapes) and not self.visuals and all(isinstance(s, Mesh) for s in shapes)
 
 
 @dataclass(frozen=True, slots=True)

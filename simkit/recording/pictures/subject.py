@@ -145,9 +145,9 @@ def _moving_models(sim: Simulation) -> set[str]:
 
 
 def _is_robot(sim: Simulation, name: str) -> bool:
-    """Check whether a model has joints, sensors or plugins."""
+    """Check whether a model has joints or sensors."""
     scenes = sim.models[name].scene.all_models()
-    return any(model.joints or model.plugins or any(link.sensors for link in model.links) for model in scenes)
+    return any(model.joints or any(link.sensors for link in model.links) for model in scenes)
 
 
 def _ground(sim: Simulation) -> float:

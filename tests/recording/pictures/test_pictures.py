@@ -188,14 +188,20 @@ def test_the_title_of_a_picture_names_what_is_left_out(tmp_path: Path, monkeypat
     assert titles == ["w · t = 0.00 s · outside of the picture: book"]
 
 
-def test_a_link_whose_visual_meshes_are_missing_shows_its_collisions() -> None:
-    visual = "<visual name='v'><geometry><mesh><uri>file://missing.dae</uri></mesh></geometry></visual>"
+@pytest.mark.parametrize("content", ["", "version https://git-lfs.github.com/spec/v1"], ids=["missing", "unreadable"])
+def test_a_link_whose_visual_meshes_are_missing_or_unreadable_shows_its_collisions(
+    tmp_path: Path, content: str
+) -> None:
+    file = tmp_path / "arm.dae"
+    if content:
+        file.write_text(content)
+    visual = f"<visual name='v'><geometry><mesh><uri>{file}</uri></mesh></geometry></visual>"
     text = world(("robot", "0 0 0.5", "1 1 1", False))
     arm = f"""<link name="arm"><pose>0 0 1 0 0 0</pose>{visual}<collision name="c"><geometry><box>
       <size>1 1 1</size></box></geometry></collision></link>"""
     bare = arm.replace(visual, "").replace("arm", "bumper")
     for link, is_drawn in ((arm, True), (bare, False)):
-        with simkit.load(text.replace("</model>", link + "</model>")) as sim:
+        with simkit.load(text.replace("</model>", link + "</model>"), resource_paths=[tmp_path]) as sim:
             try:
                 distances = np.full((60, 80), np.inf, np.float32)
                 render_view(
