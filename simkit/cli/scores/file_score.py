@@ -162,7 +162,9 @@ class FileScore:
 
 
 EffectOf = Callable[[str, str], str]
-"""Function that returns the effect of a diagnostic by its code and severity: none, approximated or left out."""
+"""Function that returns the effect of a diagnostic by its code and severity: none, approximated or left out.
+
+It is an argument because the table of codes is in the folder of the commands, which import this folder."""
 
 
 @dataclass(frozen=True)
