@@ -71,7 +71,9 @@ def test_the_hand_brake_holds_the_car_until_the_first_throttle_and_then_it_creep
         sim.run(1.0)
         start = sim.link("prius::chassis").pose.position[0]
         sim.run(1.0)
-        assert sim.link("prius::chassis").pose.position[0] == pytest.approx(start, abs=5e-3)  # contacts creep by 1.6 mm/s
+        assert sim.link("prius::chassis").pose.position[0] == pytest.approx(
+            start, abs=5e-3
+        )  # contacts creep by 1.6 mm/s
         drive(sim, 0.1, throttle=0.1, shift_gears=2)
         sim.run(4.0)
         assert 0.2 < sim.link("prius::chassis").linear_velocity[0] < 7 / 2.23694
@@ -98,7 +100,9 @@ def test_the_car_turns_about_one_point_at_the_angle_of_the_steering_wheel(steer:
         drive(sim, 0.5, throttle=0.1, steer=steer)
         turned = sim.link("prius::chassis").pose.rpy[2] - yaw
         back = (sim.link("prius::bl_link").pose.position, sim.link("prius::br_link").pose.position)
-        inner, outer = (sim.joint(f"prius::{name}").position for name in (("fls", "frs") if steer > 0 else ("frs", "fls")))
+        inner, outer = (
+            sim.joint(f"prius::{name}").position for name in (("fls", "frs") if steer > 0 else ("frs", "fls"))
+        )
         hand = sim.joint("prius::hand").position
     assert hand == pytest.approx(7.85 * steer, abs=0.05)
     angle = 0.6458 * abs(steer)  # the middle wheel: half of the largest angle

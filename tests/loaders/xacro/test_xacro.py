@@ -223,7 +223,9 @@ def test_a_mistake_is_reported_with_its_line_and_the_closest_name(load, content,
     (problem,) = (d for d in found if d.severity == "error")
     assert (problem.code, problem.line) == ("SK-XACRO-001", line)
     assert part in problem.message
-    assert problem.hint == (f"did you mean {hint!r}?" if hint.isalpha() else hint and f"add {hint} (Python: xacro_args)")
+    assert problem.hint == (
+        f"did you mean {hint!r}?" if hint.isalpha() else hint and f"add {hint} (Python: xacro_args)"
+    )
 
 
 def test_all_arguments_without_a_value_are_told_at_once(load):

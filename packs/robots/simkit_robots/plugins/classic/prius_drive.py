@@ -1,8 +1,8 @@
 """Car of car_demo in Gazebo Classic: `libPriusHybridPlugin.so`.
 
-The elements, defaults, topics and formulas are those of `PriusHybridPlugin.cc` in car_demo. Two differences are deliberate.
-The console's fuel consumption and battery, which do not act on the car, are not simulated. Keys of Gazebo's window and the
-topics `/prius/reset` and `/prius/stop`, which reset or pause the world, are left out.
+The elements, defaults, topics and formulas are those of `PriusHybridPlugin.cc` in car_demo. Two differences are
+deliberate. The console's fuel consumption and battery, which do not act on the car, are not simulated. Keys of Gazebo's
+window and the topics `/prius/reset` and `/prius/stop`, which reset or pause the world, are left out.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from simkit.plugins.joints.pid import Pid
 if TYPE_CHECKING:
     from simkit import Model
     from simkit.extend import SceneLink, SceneModel, SpecBuilder
-    from simkit.msgs import Bool, Int32, Message, Pose
+    from simkit.msgs import Int32, Message, Pose
 
 _CONTROL: Final = "prius_msgs/msg/Control"
 _POSE: Final = "geometry_msgs/msg/Pose"
