@@ -1,8 +1,8 @@
 """Exclusion of contacts between links of one model whose convex hulls overlap at the start.
 
-The engine replaces a mesh by its convex hull or by the hulls of its pieces. The hulls of two neighbouring links of a hand
-may overlap by centimetres where the meshes of the file do not touch. Contacts would then push the links apart for as long
-as the simulation runs: a hand with 30 links that collide with each other turned itself by 2.8 rad in 7 s.
+The engine replaces a mesh by its convex hull or by the hulls of its pieces. The hulls of two neighbouring links of a
+hand may overlap by centimetres where the meshes of the file do not touch. Contacts would then push the links apart for
+as long as the simulation runs: a hand with 30 links that collide with each other turned itself by 2.8 rad in 7 s.
 """
 
 from __future__ import annotations
@@ -52,8 +52,8 @@ def exclude_overlapping_hulls(
         record = owners.get(first)
         is_mesh = (model.geom_type[geoms] == int(mujoco.mjtGeom.mjGEOM_MESH)).any()
         if record is not None and record is owners.get(second) and is_mesh:
-            pairs, pair = found.setdefault(record.scene.scoped, {}), (min(first, second), max(first, second))
-            pairs[pair] = max(pairs.get(pair, 0.0), -float(data.contact.dist[i]))
+            of_model, pair = found.setdefault(record.scene.scoped, {}), (min(first, second), max(first, second))
+            of_model[pair] = max(of_model.get(pair, 0.0), -float(data.contact.dist[i]))
     for record in suspects:
         record.has_unchecked_hulls = False
         if pairs := found.get(record.scene.scoped):
@@ -70,8 +70,8 @@ def _report(record: ModelRecord, pairs: dict[tuple[str, str], float], diagnostic
     texts = [" and ".join(link.rpartition("::")[2] for link in pair) for pair in deepest[:_NAMED_MOST]]
     more = f" and {len(deepest) - _NAMED_MOST} more pairs" if len(deepest) > _NAMED_MOST else ""
     message = (
-        f"model {record.scene.scoped}: the links {'; '.join(texts)}{more} do not collide with each other: the convex hulls "
-        f"of their meshes overlap at the start, by up to {1e3 * max(pairs.values()):.0f} mm"
+        f"model {record.scene.scoped}: the links {'; '.join(texts)}{more} do not collide with each other: the convex "
+        f"hulls of their meshes overlap at the start, by up to {1e3 * max(pairs.values()):.0f} mm"
     )
     where = record.links[deepest[0][0]].scene.where
     hint = 'give their collisions simple shapes, or <mesh optimization="convex_decomposition">'

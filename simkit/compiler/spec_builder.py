@@ -20,9 +20,9 @@ from simkit.compiler.kinematic_tree import WORLD, JointIndex
 from simkit.compiler.lights import add_light, report_light, report_lights
 from simkit.compiler.meshes.parallel_conversion import convert_meshes
 from simkit.compiler.model_compilation import compile_spec, finish_model, report_overlaps
-from simkit.compiler.overlapping_hulls import exclude_overlapping_hulls
 from simkit.compiler.model_writer import FIRST_OWN_BIT, PAIRS_MOST, ModelWriter
 from simkit.compiler.name_map import ActuatorRef, JointBinding, LightBinding, ModelRecord, NameMap, lookup
+from simkit.compiler.overlapping_hulls import exclude_overlapping_hulls
 from simkit.compiler.servo_gains import add_actuator, add_armature, add_drive_armature
 from simkit.compiler.start_positions import place_joints, report_starts
 from simkit.compiler.state_transfer import transfer_state
@@ -108,6 +108,7 @@ class SpecBuilder:
     def spec(self) -> mujoco.MjSpec:
         """MuJoCo's specification. `copy` makes its element handles invalid, so look elements up by name."""
         self._world_geoms.attach_waiting()
+        self.assets.add_waiting()
         return self._world_geoms.spec
 
     # ------------------------------------------------------------------ models
