@@ -292,8 +292,10 @@ class Params:
         if len(numbers) > 6:
             self.first_of(6)  # reports the surplus
         elif len(numbers) < 6:
-            message = f"<{self.name}>{self.value}</{self.name}> has {len(numbers)} numbers, 0 is used for the others"
-            self.diagnostics.warning("SK-PARAM-006", message, self.where)
+            text = f"<{self.name}>{self.value}</{self.name}> has {len(numbers)} numbers"
+            lost = ", and the rotation needs 3 of them: it is 0, as in Gazebo Classic" if len(numbers) > 3 else ""
+            self.diagnostics.warning("SK-PARAM-006", text + (lost or ", 0 is used for the others"), self.where)
+            numbers = numbers[:3]
         numbers = [*numbers, 0.0, 0.0, 0.0][:6]
         angles = numbers[3:]
         if degrees:

@@ -130,6 +130,17 @@ def test_a_pose_may_be_in_degrees_or_a_quaternion():
     assert [code for code, _ in problems(p)] == ["SK-PARAM-002"]
 
 
+def test_a_pose_with_too_few_numbers_has_no_rotation_and_one_with_too_many_ignores_them() -> None:
+    """Gazebo Classic reads these poses so; later versions refuse them."""
+    p = block("<a>1 2 3 0.5 0.5</a><b>1 2 3 0 0 0.5 7 8</b><c>1 2 3</c>")
+    short = p.pose("a")
+    assert tuple(short.position) == (1, 2, 3) and tuple(short.rpy) == (0, 0, 0)
+    assert p.pose("b").rpy[2] == pytest.approx(0.5)
+    assert tuple(p.pose("c").position) == (1, 2, 3)
+    assert {(d.code, d.severity) for d in p.diagnostics} == {("SK-PARAM-006", "warning")}
+    assert "it is 0, as in Gazebo Classic" in next(iter(p.diagnostics)).message
+
+
 def test_a_block_made_in_python_reads_like_one_from_a_file():
     p = Params.from_dict({"joint": ["a", "b"], "on": True, "size": (1, 2, 3), "inner": {"k": 4}})
     assert [j.value for j in p.all("joint")] == ["a", "b"]

@@ -10,6 +10,7 @@ import numpy as np
 from simkit.diagnostics import Diagnostics
 
 if TYPE_CHECKING:
+    from simkit.runtime.handles.model import Model
     from simkit.runtime.simulation import Simulation
 
 _FREE_FALL: Final = 0.01
@@ -20,6 +21,7 @@ _GROUND_HINT: Final = (
     "--world none"
 )
 _COLLISION_HINT: Final = "its links have no <collision>, so that no ground can carry it: add one to the lowest links"
+_MESH_HINT: Final = "its collisions are left out, so that no ground can carry it: see the warnings about their meshes"
 
 
 def find_fallen_models(sim: Simulation) -> Diagnostics:
@@ -48,9 +50,17 @@ def find_fallen_models(sim: Simulation) -> Diagnostics:
             f"{name} fell out of the world{since}: it is at z = {height:.4g} m at t = {sim.time:.2f} s, and everything "
             f"else is above {lowest:.4g} m",
             model.scene.where,
-            _GROUND_HINT if any(s.collisions for s in model.scene.all_links()) else _COLLISION_HINT,
+            _hint(sim, model),
         )
     return diagnostics
+
+
+def _hint(sim: Simulation, model: Model) -> str:
+    """Return the remedy for a model that fell: a ground, collisions, or the files of its collisions."""
+    links = model.scene.all_links()
+    if not any(link.collisions for link in links):
+        return _COLLISION_HINT
+    return _GROUND_HINT if any(sim.engine.names.links[link.scoped].geoms for link in links) else _MESH_HINT
 
 
 def _lowest_height(model: mujoco.MjModel) -> float:

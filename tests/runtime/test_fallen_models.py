@@ -50,6 +50,16 @@ def test_a_model_without_collisions_is_told_to_have_none() -> None:
         assert "<collision>" in warning.hint
 
 
+def test_a_model_whose_collision_meshes_are_missing_is_told_so_and_not_to_have_no_ground() -> None:
+    text = world(0.0)
+    first, last = text.rindex("<geometry>"), text.rindex("</geometry>") + len("</geometry>")
+    mesh = "<geometry><mesh><uri>model://nowhere/ball.dae</uri></mesh></geometry>"
+    with simkit.load(text[:first] + mesh + text[last:]) as sim:
+        sim.run(2.0)
+        (warning,) = find_fallen_models(sim)
+        assert warning.hint.startswith("its collisions are left out")
+
+
 def test_a_model_that_a_hit_or_a_divergence_threw_below_the_world_is_not_told_to_have_no_ground() -> None:
     with simkit.load(world(0.0)) as sim:
         sim.model("ball").set_pose(simkit.Pose((0.0, 0.0, -5.0)))

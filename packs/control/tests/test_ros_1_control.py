@@ -56,6 +56,21 @@ def test_an_effort_loop_reaches_a_position_and_publishes_its_state(tmp_path: Pat
         assert len(sent.messages) == pytest.approx(400, abs=2)
 
 
+def test_the_plugin_of_cob_runs_one_controller_of_a_joint_with_several_interfaces(tmp_path: Path) -> None:
+    one, other = (f"<hardwareInterface>{kind}JointInterface</hardwareInterface>" for kind in ("Position", "Velocity"))
+    text = robot(
+        "PositionJointInterface", "<robotNamespace>rrbot</robotNamespace><filterJointsParam>j</filterJointsParam>"
+    )
+    text = (
+        text.replace("hardware_interface/", "").replace(one, one + other).replace(ROS_1, f"libhwi_switch_{ROS_1[3:]}")
+    )
+    with opened(tmp_path, text, yaml("position_controllers/JointPositionController", "")) as sim:
+        assert not [d for d in sim.diagnostics if d.code in ("SK-PLUGIN-001", "SK-PARAM-003")]
+        send(sim, 0.5)
+        sim.run(2.0)
+        assert position(sim, "j1") == pytest.approx([0.5], abs=0.01)
+
+
 def test_services_use_the_states_of_ros_1(tmp_path: Path) -> None:
     kind = "position_controllers/JointPositionController"
     with opened(tmp_path, robot("PositionJointInterface"), yaml(kind, "")) as sim:

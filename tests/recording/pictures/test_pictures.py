@@ -188,14 +188,20 @@ def test_the_title_of_a_picture_names_what_is_left_out(tmp_path: Path, monkeypat
     assert titles == ["w · t = 0.00 s · outside of the picture: book"]
 
 
-def test_a_link_whose_visual_meshes_are_missing_shows_its_collisions() -> None:
-    visual = "<visual name='v'><geometry><mesh><uri>file://missing.dae</uri></mesh></geometry></visual>"
+@pytest.mark.parametrize("content", ["", "version https://git-lfs.github.com/spec/v1"], ids=["missing", "unreadable"])
+def test_a_link_whose_visual_meshes_are_missing_or_unreadable_shows_its_collisions(
+    tmp_path: Path, content: str
+) -> None:
+    file = tmp_path / "arm.dae"
+    if content:
+        file.write_text(content)
+    visual = f"<visual name='v'><geometry><mesh><uri>{file}</uri></mesh></geometry></visual>"
     text = world(("robot", "0 0 0.5", "1 1 1", False))
     arm = f"""<link name="arm"><pose>0 0 1 0 0 0</pose>{visual}<collision name="c"><geometry><box>
       <size>1 1 1</size></box></geometry></collision></link>"""
     bare = arm.replace(visual, "").replace("arm", "bumper")
     for link, is_drawn in ((arm, True), (bare, False)):
-        with simkit.load(text.replace("</model>", link + "</model>")) as sim:
+        with simkit.load(text.replace("</model>", link + "</model>"), resource_paths=[tmp_path]) as sim:
             try:
                 distances = np.full((60, 80), np.inf, np.float32)
                 render_view(
@@ -265,3 +271,14 @@ def test_a_picture_changes_no_bit_of_the_run_and_shows_shadows(tmp_path: Path) -
     assert len(soft[0]) > len(hard[0]), "soft shadows have more shades"
     assert (tmp_path / "out.png").stat().st_size > 5000
     assert math.isfinite(float(images[2].mean()))
+
+
+def test_long_scans_on_open_ground_do_not_make_the_robot_small_and_a_room_is_shown_whole() -> None:
+    angles = np.linspace(-np.pi, np.pi, 90)
+    ring = np.stack((np.cos(angles), np.sin(angles), np.zeros(90)), axis=1)
+    far, near = ("robot", 30 * ring), ("robot", 4 * ring)
+    robot, wall = ("robot", "0 0 0", "1 1 1", False), ("wall", "29 0 0", "0.2 60 2", True)
+    for models, scans, width in (([robot], [far], 1.0), ([robot], [far, near], 8.0), ([robot, wall], [far], 60.0)):
+        with simkit.load(world(*models)) as sim:
+            points = find_subject(sim, [], scans=scans).points
+        assert np.ptp(points, axis=0)[:2].max() == pytest.approx(width, rel=0.01)

@@ -355,10 +355,11 @@ class GazeboRosControl(ControlPlugin):
     """Runs the controllers that parameter files in ROS 1's layout declare.
 
     In ROS 1 a launch file loads these files, so the plugin's own `<parameters>` (or `<simkit:parameters>`) is an
-    extension of simkit. Joints with gains in `gazebo_ros_control/pid_gains` are driven by PID loops.
+    extension of simkit. Joints with gains in `gazebo_ros_control/pid_gains` are driven by PID loops. The plugin of
+    cob_gazebo_ros_control differs in that joints with several interfaces switch between them.
     """
 
-    filenames = ("libgazebo_ros_control.so",)
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_control.so", "libhwi_switch_gazebo_ros_control.so")
 
     is_ros_1 = True
     set_without_effort = frozenset((POSITION,))  # the motor of a velocity command has the effort limit as its fmax
@@ -387,7 +388,7 @@ class GazeboRosControl(ControlPlugin):
         return bool({POSITION, VELOCITY} & set(joint.command_interfaces))
 
     def mark_ignored_elements(self, params: Params) -> None:
-        for name in ("robotSimType", "legacyModeNS", "robotParam", "eStopTopic", "joints"):
+        for name in ("robotSimType", "legacyModeNS", "robotParam", "eStopTopic", "joints", "filterJointsParam"):
             params.child(name)
 
     def read_rate(self, params: Params, builder: SpecBuilder) -> float | None:
