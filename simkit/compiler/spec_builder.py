@@ -19,11 +19,11 @@ from simkit.compiler.geoms import WorldGeoms
 from simkit.compiler.kinematic_tree import WORLD, JointIndex
 from simkit.compiler.lights import add_light, report_light, report_lights
 from simkit.compiler.meshes.parallel_conversion import convert_meshes
-from simkit.compiler.model_compilation import compile_spec, finish_model, report_overlaps
+from simkit.compiler.model_compilation import compile_spec, finish_model
 from simkit.compiler.model_writer import FIRST_OWN_BIT, PAIRS_MOST, ModelWriter
 from simkit.compiler.name_map import ActuatorRef, JointBinding, LightBinding, ModelRecord, NameMap, lookup
 from simkit.compiler.servo_gains import add_actuator, add_armature, add_drive_armature
-from simkit.compiler.start_positions import place_joints, report_starts
+from simkit.compiler.start_positions import place_joints
 from simkit.compiler.state_transfer import transfer_state
 from simkit.diagnostics import Diagnostics
 from simkit.loaders.sdf.material_script import find_material, find_texture
@@ -442,16 +442,11 @@ class SpecBuilder:
         with warnings.catch_warnings(record=True) as engine_warnings:
             warnings.simplefilter("always")
             model = compile_spec(self.spec, self.world, list(self.records.values()), self.diagnostics)
-            first = self._finish(model)
+            self._finish(model)
             names = NameMap.of(self.records.values(), model)
             data = mujoco.MjData(model)
-            starts = place_joints(model, data, names.joints.values())
-            report_starts(names.joints.values(), starts, self.diagnostics)
+            place_joints(model, data, names.joints.values())
             report_lights(model, self.diagnostics, self.world.where)
-            if starts:
-                first.qpos[:] = data.qpos
-                mujoco.mj_kinematics(model, first)
-            report_overlaps(model, first, names, self.diagnostics, self.world.where)
         for text in dict.fromkeys(str(w.message) for w in engine_warnings):
             if not mjcf_attachment.is_expected_warning(text):
                 self.diagnostics.warning("SK-PHYS-025", f"the engine warns: {text}", self.world.where)
@@ -471,16 +466,14 @@ class SpecBuilder:
         """
         model = compile_spec(self.spec, self.world, list(self.records.values()), self.diagnostics)
         fresh, names = mujoco.MjData(model), NameMap.of(self.records.values(), model)
-        starts = place_joints(model, fresh, names.joints.values())
-        new = [joint for joint in names.joints.values() if joint.scoped not in compiled.names.joints]
-        report_starts(new, starts, self.diagnostics)
+        place_joints(model, fresh, names.joints.values())
         transfer_state(compiled.model, data, model, fresh)
         model.opt.gravity[:] = compiled.model.opt.gravity
         self._finish(model)
         return Compiled(model, fresh, names, self)
 
-    def _finish(self, model: mujoco.MjModel) -> mujoco.MjData:
-        return finish_model(self.spec, model, self.world, list(self.records.values()), self.diagnostics)
+    def _finish(self, model: mujoco.MjModel) -> None:
+        finish_model(self.spec, model, self.world, list(self.records.values()), self.diagnostics)
 
     def copy(self) -> SpecBuilder:
         """Return an independent builder with the same content."""
