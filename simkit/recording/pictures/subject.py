@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from simkit.linear_algebra import matmul, norm
 from simkit.pose import Pose
 from simkit.recording.pictures.stray_models import find_stray_models
-from simkit.sensors.particle_clouds import find_clouds
+from simkit.runtime.particle_clouds import find_clouds
 
 if TYPE_CHECKING:
     from simkit.msgs import LaserScan
