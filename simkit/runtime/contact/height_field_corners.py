@@ -7,7 +7,7 @@ contacts of this module are a function of the poses alone.
 
 from __future__ import annotations
 
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import mujoco
 import numpy as np
@@ -100,11 +100,11 @@ class HeightFieldCorners:
         below = depths > 0.0
         contact = data.contact
         pairs: list[ExactContacts] = []
-        for i in below.any(axis=1).nonzero()[0].tolist():
-            chosen = below[i].nonzero()[0]
+        for i in np.flatnonzero(np.logical_or.reduce(below, axis=1)).tolist():
+            chosen = np.flatnonzero(below[i])
             depth, normal = depths[i, chosen], normals[i, chosen]
             spots = places[i, chosen] + normal * (0.5 * depth)[:, None]
-            exact = [
+            exact: list[Any] = [
                 (-d, tuple(spot), _frame(*n))
                 for d, spot, n in zip(depth.tolist(), spots.tolist(), normal.tolist(), strict=True)
             ]
