@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from importlib import metadata
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -173,7 +174,7 @@ def test_a_chain_of_300_links_is_compared_in_seconds() -> None:
     links = "".join(f'<link name="{name}">{MASS}</link>' for name in names)
     joints = "".join(
         joint(f"j{child}", "revolute", parent, child, f'<axis xyz="0 0 1"/>{LIMIT}')
-        for parent, child in zip(names, names[1:], strict=False)
+        for parent, child in pairwise(names)
     )
     text = f'<robot name="r">{links}{joints}</robot>'
     assert differences(text, text) == []
