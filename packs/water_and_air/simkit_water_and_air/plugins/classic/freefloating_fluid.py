@@ -18,7 +18,7 @@ from simkit.pose import quat_conjugate, quat_rotate
 from simkit_water_and_air.plugins.fluids.freefloating_link import FreefloatingLink, read_freefloating_link
 from simkit_water_and_air.plugins.fluids.link_forces import PushedLinks, moving_data
 from simkit_water_and_air.plugins.fluids.tuple_vectors import to_link_axes, to_world_axes
-from simkit_water_and_air.plugins.uuv.water_current import VECTOR, current_of
+from simkit_water_and_air.plugins.fluids.water_current import VECTOR, current_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

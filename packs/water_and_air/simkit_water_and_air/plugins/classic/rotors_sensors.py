@@ -62,7 +62,7 @@ class RotorsImu(Px4Imu):
     """
 
     endpoints = (publishes("/{robotNamespace}/imu", _IMU, named_by=("imuTopic",)),)
-    options = OptionsOf(RotorsImuOptions)  # type: ignore[assignment]
+    options = OptionsOf(RotorsImuOptions)
     filenames = ("librotors_gazebo_imu_plugin.so",)
 
     def load(self, parent: Model, params: Params) -> None:

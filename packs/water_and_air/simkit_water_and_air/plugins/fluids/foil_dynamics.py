@@ -17,7 +17,7 @@ from simkit import Params
 from simkit.extend import OptionsOf, choice, listens, number, without_effect
 from simkit_water_and_air.plugins.fluids.foil_lift_drag import FoilBase, FoilShapeOptions
 from simkit_water_and_air.plugins.fluids.tuple_vectors import ZERO, Triple
-from simkit_water_and_air.plugins.uuv.water_current import VECTOR, current_of
+from simkit_water_and_air.plugins.fluids.water_current import VECTOR, current_of
 
 if TYPE_CHECKING:
     from simkit import Model
