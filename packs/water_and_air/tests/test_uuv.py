@@ -220,3 +220,15 @@ def test_the_sensors_measure_depth_velocity_and_position() -> None:
 def test_a_thruster_without_dynamics_is_reported_at_its_line() -> None:
     report = simkit.check(world(vehicle(THRUSTER.format(dynamics="", conversion=BASIC, more=""))))
     assert any(d.code == "SK-PARAM-001" and "<dynamics>" in d.message for d in report)
+
+
+@pytest.mark.parametrize("library", ["libuuv_sc_ros_interface_plugin.so", "libdave_sc_coordinates_interface.so"])
+def test_services_convert_positions_to_places_on_the_earth_and_back(library: str) -> None:
+    world = f'''<sdf version="1.6"><world name="sea"><spherical_coordinates><latitude_deg>56</latitude_deg>
+      <longitude_deg>10</longitude_deg></spherical_coordinates><plugin name="s" filename="{library}"/></world></sdf>'''
+    with simkit.load(world) as sim:
+        assert sim.call("/gazebo/get_origin_spherical_coordinates").latitude_deg == pytest.approx(56.0)
+        place = sim.call("/gazebo/transform_to_spherical_coordinates", {"input": {"x": 100.0, "y": 200.0, "z": -10.0}})
+        degrees = {"latitude_deg": place.latitude_deg, "longitude_deg": place.longitude_deg}
+        back = sim.call("/gazebo/transform_from_spherical_coordinates", {**degrees, "altitude": place.altitude}).output
+        assert (back.x, back.y, back.z) == pytest.approx((100.0, 200.0, -10.0), abs=1e-6)

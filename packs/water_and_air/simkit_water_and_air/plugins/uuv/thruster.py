@@ -210,5 +210,5 @@ def _range(params: Params, name: str, low: float, high: float) -> tuple[float, f
     if low < high:
         return low, high
     message = f"found <{name}Min> {low:g} and <{name}Max> {high:g}; both are left out, as in Gazebo"
-    params.warning("SK-PLUGIN-111", message, f"<{name}Min> is below <{name}Max>")
+    params.warning("SK-PARAM-008", message, f"<{name}Min> is below <{name}Max>")
     return -math.inf, math.inf
