@@ -102,7 +102,7 @@ class UnderwaterCurrent(WorldPlugin):
     types: ClassVar[str] = _TYPES
     endpoints: ClassVar[tuple[Any, ...]] = current_endpoints(_TYPES)
     options = OptionsOf(UnderwaterCurrentOptions)
-    filenames = (
+    filenames: ClassVar[tuple[str, ...]] = (
         "libuuv_underwater_current_ros_plugin.so",
         "libuuv_underwater_current_plugin.so",
         "libunderwater_current_ros_plugin.so",
