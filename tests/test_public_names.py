@@ -41,7 +41,7 @@ PRIVATE_IMPORTS = {
     "navigation": 18,
     "nodes": 34,
     "open_rmf": 5,
-    "robots": 22,
+    "robots": 23,
     "ros": 10,
     "special_cameras": 23,
     "terminal": 16,
