@@ -26,7 +26,7 @@ OWN_FILES = {
     "cli/diagnostic_catalogue.py": "data of the package",
     "packs/view/simkit_view/view/page_server.py": "data of the package",
     "cli/commands.py": "modules of packs",
-    "cli/scores/file_score.py": "a temporary file of simkit",
+    "cli/scores/score_calculation.py": "a temporary file of simkit",
     "cli/scores/folder_search.py": "tables of packs",
     "compiler/meshes/parallel_conversion.py": "a temporary file of simkit",
     "mujoco_import.py": "the list of files that pip has installed",

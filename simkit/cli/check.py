@@ -12,7 +12,7 @@ from typing import Annotated
 from typer import Option
 
 from simkit.cli.run_options import NONE_GIVEN, GivenOptions, parse_seconds, with_run_options
-from simkit.cli.second_reader import Against, compare_readers
+from simkit.cli.second_reader.against_option import Against, compare_readers
 from simkit.cli.terminal import options
 from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import print_diagnostics, report_errors, stdout_console
@@ -89,6 +89,8 @@ def check(
     if fix_inertia:
         return _fix_inertia(file, output, force, given.source_options().get("resource_paths", ()), json_)
     if score or html is not None:
+        if every:
+            raise InputError("SK-CLI-018", "--all cannot be used with the score of one file; --json lists everything")
         from simkit.cli.scores.score_command import show_score
 
         return show_score(file, given.load_arguments(), effect_of, html=html, json_=json_, strict=strict)

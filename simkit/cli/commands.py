@@ -294,7 +294,7 @@ app = typer.Typer(
 )
 COMMANDS = {
     "run": "Run a world without a window, as fast as possible.",
-    "check": "Print all problems of a file without running it.",
+    "check": "Print all problems of a file without running it, or the scores of all files of a folder.",
     "explain": "Explain a diagnostic code, with its remedy and an example.",
     "inspect": "Show the resolved content of a file.",
     "convert": "Convert a world or model to MJCF or to a single SDF file.",

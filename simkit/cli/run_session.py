@@ -280,7 +280,7 @@ class Session:
     def _report_new_warnings(self) -> None:
         """Print the warnings that the run has caused, such as ignored commands; disabled plugins are logged at once.
 
-        A drive or controller that was left out is told again, because the user waits for a motion.
+        A drive or controller that was left out is reported again, because the user waits for a motion.
         """
         warnings = [d for d in self.sim.diagnostics if d.severity == "warning"]
         new_warnings = [d for d in warnings if d not in self._printed or d.code in _TOLD_AGAIN]

@@ -31,13 +31,23 @@ _tile_digests: WeakKeyDictionary[ConvexBodies, str] = WeakKeyDictionary()
 
 
 class Assets:
-    """Writer that adds each asset once. `used` collects the assets of the model under construction."""
+    """Writer that adds each asset once.
+
+    MuJoCo visits all meshes at each attachment of geoms. With 72,000 convex bodies, this took a third of the load of a
+    world. Meshes are therefore added after all geoms, by `add_waiting`.
+
+    Attributes:
+        spec: specification; before others use its meshes, call `add_waiting`.
+        known: assets that were added.
+        used: assets of the model under construction.
+    """
 
     def __init__(self, spec: mujoco.MjSpec, known: set[AssetKey] | None = None) -> None:
         self.spec = spec
         self.known: set[AssetKey] = set(known or ())
         self.used: set[AssetKey] = set()
         self._pictures: dict[Path, Pixels] = {}
+        self._waiting: dict[str, bytes] = {}
 
     def _is_new(self, kind: str, name: str) -> bool:
         key = (kind, name)
@@ -78,15 +88,21 @@ class Assets:
         return names
 
     def _add_mesh(self, name: str, content: bytes) -> None:
-        """Add a mesh as a file in memory: MuJoCo caches the conversion of a file and does not repeat it.
+        """Add a mesh; it is in the specification after `add_waiting`."""
+        self._waiting[name] = content
+
+    def add_waiting(self) -> None:
+        """Add the meshes that wait as files in memory: MuJoCo caches the conversion of a file and does not repeat it.
 
         The inertia type "shell" is fast to compute and valid for open and flat meshes too. MuJoCo never uses the
         result, because every body has an explicit mass.
         """
-        mesh = self.spec.add_mesh(name=name)
-        mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
-        mesh.file = file_of(name)
-        self.spec.assets[mesh.file] = content
+        waiting, self._waiting = self._waiting, {}
+        for name, content in waiting.items():
+            mesh = self.spec.add_mesh(name=name)
+            mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
+            mesh.file = file_of(name)
+            self.spec.assets[mesh.file] = content
 
     def picture(self, file: Path) -> Pixels:
         """Return the image of a texture file. Each file is read only once.

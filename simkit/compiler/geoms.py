@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 DIRECT: Final = 500
 """Number of geoms that are added to the world body itself."""
 
-BLOCK: Final = 2500
+BLOCK: Final = 6000
 """Number of geoms in one attached specification; the time of an attachment grows with the square of this number."""
 
 

@@ -317,6 +317,7 @@ def exclude_self_collisions(
     owns = {link.scoped: m.self_collide for m in model.all_models() for link in m.links}
     solid = [link for link in moving if link.collisions]
     touchy = {k.scoped for k in solid if model.self_collide or k.self_collide or owns[k.scoped]}
+    record.has_unchecked_hulls = bool(touchy)
     groups = _jointed_groups(model, joints)
     is_one = len({groups[link.scoped] for link in solid}) < 2
     many = is_one and len(solid) * (len(solid) - 1) // 2 > PAIRS_MOST

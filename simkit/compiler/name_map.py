@@ -186,6 +186,7 @@ class ModelRecord:
         massless: scoped name of the joint that moves a link without mass, by link; empty for a free link.
         unladen: links in `massless` with no mass below them.
         own_bit: collision bit of the model's links; 0 if excludes are used instead.
+        has_unchecked_hulls: true if links of the model can touch each other, until `exclude_overlapping_hulls`.
         attached: prefix of the elements of each model in MuJoCo's own format, by scoped name.
     """
 
@@ -208,6 +209,7 @@ class ModelRecord:
     unladen: set[str] = field(default_factory=set)
     exact: dict[str, tuple[float, tuple[float, float, float, float, float, float]]] = field(default_factory=dict)
     own_bit: int = 0
+    has_unchecked_hulls: bool = False
     attached: dict[str, str] = field(default_factory=dict)
 
     def copy(self) -> ModelRecord:

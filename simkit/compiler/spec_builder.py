@@ -22,6 +22,7 @@ from simkit.compiler.meshes.parallel_conversion import convert_meshes
 from simkit.compiler.model_compilation import compile_spec, finish_model, report_overlaps
 from simkit.compiler.model_writer import FIRST_OWN_BIT, PAIRS_MOST, ModelWriter
 from simkit.compiler.name_map import ActuatorRef, JointBinding, LightBinding, ModelRecord, NameMap, lookup
+from simkit.compiler.overlapping_hulls import exclude_overlapping_hulls
 from simkit.compiler.servo_gains import add_actuator, add_armature, add_drive_armature
 from simkit.compiler.start_positions import place_joints, report_starts
 from simkit.compiler.state_transfer import transfer_state
@@ -107,6 +108,7 @@ class SpecBuilder:
     def spec(self) -> mujoco.MjSpec:
         """MuJoCo's specification. `copy` makes its element handles invalid, so look elements up by name."""
         self._world_geoms.attach_waiting()
+        self.assets.add_waiting()
         return self._world_geoms.spec
 
     # ------------------------------------------------------------------ models
@@ -441,7 +443,7 @@ class SpecBuilder:
         """Compile the model with its first state; raise LoadError if MuJoCo refuses it."""
         with warnings.catch_warnings(record=True) as engine_warnings:
             warnings.simplefilter("always")
-            model = compile_spec(self.spec, self.world, list(self.records.values()), self.diagnostics)
+            model = self._compile_model()
             first = self._finish(model)
             names = NameMap.of(self.records.values(), model)
             data = mujoco.MjData(model)
@@ -469,7 +471,7 @@ class SpecBuilder:
         Raises:
             LoadError: MuJoCo refuses the changed model.
         """
-        model = compile_spec(self.spec, self.world, list(self.records.values()), self.diagnostics)
+        model = self._compile_model()
         fresh, names = mujoco.MjData(model), NameMap.of(self.records.values(), model)
         starts = place_joints(model, fresh, names.joints.values())
         new = [joint for joint in names.joints.values() if joint.scoped not in compiled.names.joints]
@@ -478,6 +480,14 @@ class SpecBuilder:
         model.opt.gravity[:] = compiled.model.opt.gravity
         self._finish(model)
         return Compiled(model, fresh, names, self)
+
+    def _compile_model(self) -> mujoco.MjModel:
+        """Compile the specification; links of one model do not collide if their hulls overlap at the start."""
+        records = list(self.records.values())
+        model = compile_spec(self.spec, self.world, records, self.diagnostics)
+        if exclude_overlapping_hulls(self.spec, model, records, self.diagnostics):
+            model = compile_spec(self.spec, self.world, records, self.diagnostics)
+        return model
 
     def _finish(self, model: mujoco.MjModel) -> mujoco.MjData:
         return finish_model(self.spec, model, self.world, list(self.records.values()), self.diagnostics)

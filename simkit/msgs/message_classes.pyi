@@ -1070,6 +1070,35 @@ class ConveyorBeltControl_Response:
     success: bool
     __msgtype__: ClassVar[str]
 
+# dave_interfaces
+
+@dataclass
+class dave_interfaces__msg__DVL:
+    """`dave_interfaces/msg/DVL`"""
+    header: Header
+    type: str
+    target: DVLTarget
+    velocity: TwistWithCovariance
+    beams: list[dave_interfaces__msg__DVLBeam]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class dave_interfaces__msg__DVLBeam:
+    """`dave_interfaces/msg/DVLBeam`"""
+    id: int
+    reference: str
+    range: float
+    locked: bool
+    velocity: TwistWithCovariance
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DVLTarget:
+    """`dave_interfaces/msg/DVLTarget`"""
+    type: str
+    range: float
+    __msgtype__: ClassVar[str]
+
 # diagnostic_msgs
 
 @dataclass
@@ -7819,6 +7848,16 @@ class Contacts:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class Dataframe:
+    """`ros_gz_interfaces/msg/Dataframe`"""
+    header: Header
+    src_address: str
+    dst_address: str
+    data: NDArray[np.uint8]
+    rssi: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class Entity:
     """`ros_gz_interfaces/msg/Entity`"""
     id: int
@@ -10822,6 +10861,195 @@ class SetUseGlobalCurrentVel_Request:
 class SetUseGlobalCurrentVel_Response:
     """`uuv_gazebo_ros_plugins_msgs/srv/SetUseGlobalCurrentVel_Response`"""
     success: bool
+    __msgtype__: ClassVar[str]
+
+# uuv_sensor_ros_plugins_msgs
+
+@dataclass
+class ChemicalParticleConcentration:
+    """`uuv_sensor_ros_plugins_msgs/msg/ChemicalParticleConcentration`"""
+    header: Header
+    position: Vector3
+    latitude: float
+    longitude: float
+    depth: float
+    concentration: float
+    is_measuring: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class uuv_sensor_ros_plugins_msgs__msg__DVL:
+    """`uuv_sensor_ros_plugins_msgs/msg/DVL`"""
+    header: Header
+    velocity: Vector3
+    velocity_covariance: NDArray[np.float64]
+    altitude: float
+    beams: list[uuv_sensor_ros_plugins_msgs__msg__DVLBeam]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class uuv_sensor_ros_plugins_msgs__msg__DVLBeam:
+    """`uuv_sensor_ros_plugins_msgs/msg/DVLBeam`"""
+    range: float
+    range_covariance: float
+    velocity: float
+    velocity_covariance: float
+    pose: PoseStamped
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PositionWithCovariance:
+    """`uuv_sensor_ros_plugins_msgs/msg/PositionWithCovariance`"""
+    pos: Point
+    covariance: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PositionWithCovarianceStamped:
+    """`uuv_sensor_ros_plugins_msgs/msg/PositionWithCovarianceStamped`"""
+    header: Header
+    pos: PositionWithCovariance
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Salinity:
+    """`uuv_sensor_ros_plugins_msgs/msg/Salinity`"""
+    header: Header
+    salinity: float
+    variance: float
+    unit: str
+    PSU: ClassVar[str] = 'psu'
+    PPM: ClassVar[str] = 'ppm'
+    PPT: ClassVar[str] = 'ppt'
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ChangeSensorState_Request:
+    """`uuv_sensor_ros_plugins_msgs/srv/ChangeSensorState_Request`"""
+    on: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ChangeSensorState_Response:
+    """`uuv_sensor_ros_plugins_msgs/srv/ChangeSensorState_Response`"""
+    success: bool
+    message: str
+    __msgtype__: ClassVar[str]
+
+# uuv_world_ros_plugins_msgs
+
+@dataclass
+class GetCurrentModel_Request:
+    """`uuv_world_ros_plugins_msgs/srv/GetCurrentModel_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetCurrentModel_Response:
+    """`uuv_world_ros_plugins_msgs/srv/GetCurrentModel_Response`"""
+    mean: float
+    min: float
+    max: float
+    noise: float
+    mu: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetOriginSphericalCoord_Request:
+    """`uuv_world_ros_plugins_msgs/srv/GetOriginSphericalCoord_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetOriginSphericalCoord_Response:
+    """`uuv_world_ros_plugins_msgs/srv/GetOriginSphericalCoord_Response`"""
+    latitude_deg: float
+    longitude_deg: float
+    altitude: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetCurrentDirection_Request:
+    """`uuv_world_ros_plugins_msgs/srv/SetCurrentDirection_Request`"""
+    angle: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetCurrentDirection_Response:
+    """`uuv_world_ros_plugins_msgs/srv/SetCurrentDirection_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetCurrentModel_Request:
+    """`uuv_world_ros_plugins_msgs/srv/SetCurrentModel_Request`"""
+    mean: float
+    min: float
+    max: float
+    noise: float
+    mu: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetCurrentModel_Response:
+    """`uuv_world_ros_plugins_msgs/srv/SetCurrentModel_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetCurrentVelocity_Request:
+    """`uuv_world_ros_plugins_msgs/srv/SetCurrentVelocity_Request`"""
+    velocity: float
+    horizontal_angle: float
+    vertical_angle: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetCurrentVelocity_Response:
+    """`uuv_world_ros_plugins_msgs/srv/SetCurrentVelocity_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetOriginSphericalCoord_Request:
+    """`uuv_world_ros_plugins_msgs/srv/SetOriginSphericalCoord_Request`"""
+    latitude_deg: float
+    longitude_deg: float
+    altitude: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetOriginSphericalCoord_Response:
+    """`uuv_world_ros_plugins_msgs/srv/SetOriginSphericalCoord_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TransformFromSphericalCoord_Request:
+    """`uuv_world_ros_plugins_msgs/srv/TransformFromSphericalCoord_Request`"""
+    latitude_deg: float
+    longitude_deg: float
+    altitude: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TransformFromSphericalCoord_Response:
+    """`uuv_world_ros_plugins_msgs/srv/TransformFromSphericalCoord_Response`"""
+    output: Vector3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TransformToSphericalCoord_Request:
+    """`uuv_world_ros_plugins_msgs/srv/TransformToSphericalCoord_Request`"""
+    input: Vector3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TransformToSphericalCoord_Response:
+    """`uuv_world_ros_plugins_msgs/srv/TransformToSphericalCoord_Response`"""
+    latitude_deg: float
+    longitude_deg: float
+    altitude: float
     __msgtype__: ClassVar[str]
 
 # vision_msgs

@@ -110,7 +110,7 @@ def save_picture(
     look = Look(quality=sim.world.quality if sim.world.quality == "high" else "gazebo") if look is None else look
     marks = marks_of(sim, driven)
     goals = (("", goal[None]) for goal in marks.goals.values())
-    subject = find_subject(sim, [*marks.paths.items(), *scan_traces(sim, marks.scans), *goals])
+    subject = find_subject(sim, [*marks.paths.items(), *goals], scans=scan_traces(sim, marks.scans))
     camera = choose_camera(sim, render, subject, look)
     marks = replace(marks, title=" · ".join((marks.title, *_notes(subject, camera))))
     colours = draw_frame(sim, render, camera, look, marks, subject)

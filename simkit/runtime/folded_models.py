@@ -16,7 +16,7 @@ _SHARE: Final = 0.25
 """Share of the height of a robot's base over its lowest link; the base of a robot that folded sank by more."""
 
 _MOST: Final = 4.0
-"""Largest share; a model that fell off something sank by more, and `find_fallen_models` tells it."""
+"""Largest share; a model that fell off something sank by more, and `find_fallen_models` reports it."""
 
 _FEWEST: Final = 4
 """Fewest joints of a robot with legs; a cart without a drive has wheels, which do not fold."""

@@ -159,7 +159,16 @@ def test_the_page_is_valid_xml_without_code_and_with_escaped_names() -> None:
 
 
 @pytest.mark.parametrize(
-    "options", [("--jobs", "2"), ("--limit", "5"), ("--score", "--fix-inertia"), ("--score", "--against", "yourdfpy")]
+    "options",
+    [
+        ("--jobs", "2"),
+        ("--limit", "5"),
+        ("--score", "--all"),
+        ("--score", "--fix-inertia"),
+        ("--score", "--against", "yourdfpy"),
+        ("--html", "page.html", "--against", "yourdfpy"),
+        ("--fix-inertia", "--against", "yourdfpy"),
+    ],
 )
 def test_options_that_do_not_fit_are_refused(options: tuple[str, ...]) -> None:
     Path("robot.sdf").write_text(ROBOT)

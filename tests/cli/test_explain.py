@@ -24,6 +24,7 @@ from simkit.sensors.cameras.rendering import gl_context
 
 ROOT = Path(__file__).resolve().parents[2]
 CODE = re.compile(r"\bSK-[A-Z]+-\d{3}\b")
+REPORT = re.compile(r"""(?:\.(warning|error|note)\(|"(warning|error|note)",)\s*"(SK-[A-Z]+-\d{3})\"""")
 SEVERITIES = {"error", "warning", "note", "stop"}
 PATHS = (
     "SIMKIT_RESOURCE_PATH",
@@ -37,10 +38,15 @@ PATHS = (
 )
 
 
+def sources() -> dict[Path, str]:
+    """Return the text of every module."""
+    files = [*ROOT.glob("simkit/**/*.py"), *ROOT.glob("packs/*/simkit_*/**/*.py")]
+    return {path: path.read_text(encoding="utf-8") for path in files}
+
+
 def codes_in_source() -> set[str]:
     """Return the codes in the text of every module."""
-    files = [*ROOT.glob("simkit/**/*.py"), *ROOT.glob("packs/*/simkit_*/**/*.py")]
-    return {code for path in files for code in CODE.findall(path.read_text(encoding="utf-8"))}
+    return {code for text in sources().values() for code in CODE.findall(text)}
 
 
 def area_of(code: str) -> str:
@@ -49,6 +55,16 @@ def area_of(code: str) -> str:
 
 def test_the_catalogue_has_the_codes_of_the_source_and_no_others() -> None:
     assert set(catalogue()) == codes_in_source()
+
+
+def test_a_code_is_reported_with_a_severity_of_its_entry() -> None:
+    wrong = [
+        f"{path.relative_to(ROOT)}: {method or argument} {code}"
+        for path, text in sources().items()
+        for method, argument, code in REPORT.findall(text)
+        if (method or argument) not in catalogue()[code].severity
+    ]
+    assert not wrong
 
 
 def test_the_page_has_a_row_and_a_heading_for_every_code_in_the_source() -> None:

@@ -9,12 +9,11 @@ from dataclasses import dataclass, replace
 from importlib.metadata import entry_points
 from pathlib import Path
 
-from simkit import Params
+from simkit import Params, Plugin
 from simkit.diagnostics import closest
 from simkit.errors import InputError
 from simkit.extend import Diagnostics, Options, block, choice, text, texts
 from simkit.packs import is_shipped
-from simkit.plugins import Plugin
 from simkit.plugins.discovery.find_plugin_class import find_plugin, plugin_kinds
 from simkit.plugins.endpoints import Endpoint
 from simkit.plugins.options import Option, option_types_of

@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable, Iterator
 
-from simkit.plugins import Plugin
+from simkit import Plugin
 from simkit.plugins.discovery.find_plugin_class import GAZEBO_PLUGINS, UNSUPPORTED_REASONS
 from simkit.plugins.plugin_names import normalise
 from simkit_authoring.catalogue import Entry, known_plugins

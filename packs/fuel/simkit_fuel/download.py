@@ -18,10 +18,10 @@ from urllib.error import HTTPError, URLError
 from urllib.parse import urlsplit
 from urllib.request import HTTPRedirectHandler, OpenerDirector, ProxyHandler, Request, build_opener
 
+from simkit import __version__
 from simkit.input_file import read_input_text
 from simkit.json_reader import parse_json
 from simkit.progress import Task
-from simkit.version import __version__
 from simkit_fuel.timed_request import RequestLimits, timed_handlers
 
 MISSING, REFUSED, TOO_LARGE, NETWORK = "SK-FETCH-001", "SK-FETCH-002", "SK-FETCH-003", "SK-FETCH-006"

@@ -11,9 +11,8 @@ import weakref
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 
-from simkit.diagnostics import NOWHERE
 from simkit.errors import MessageError
-from simkit.extend import SharedByCopies
+from simkit.extend import SharedByCopies, Where
 from simkit_gz_python import simulation_context
 from simkit_gz_python.math.missing_names import missing_name_error
 from simkit_gz_python.msgs.message import MESSAGE_CLASSES, Message
@@ -59,7 +58,7 @@ def _warn_of_rate(sim: Simulation, owner: Plugin | None, topic: str, options: _O
     rate = getattr(options, "msgs_per_sec", 0)
     if rate:
         message = f"msgs_per_sec = {rate} for {topic!r} has no effect: every message arrives"
-        where = getattr(owner, "where", NOWHERE)
+        where = getattr(owner, "where", Where())
         sim.engine.reports.warning("SK-PLUGIN-086", message, where, "count steps, or compare info.sim_time")
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from simkit.params import Params
+from simkit import Params
 from simkit.writers.xml_text import document, element
 from simkit_launch.robot_description import DescriptionError, description_root
 

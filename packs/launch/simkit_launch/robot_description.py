@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from simkit import Params
 from simkit.extend import Diagnostics
 from simkit.loaders.resources.xml_reader import parse_text
-from simkit.params import Params
 
 
 class DescriptionError(ValueError):

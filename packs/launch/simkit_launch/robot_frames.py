@@ -7,9 +7,8 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 import simkit
-from simkit import Pose
+from simkit import Params, Pose
 from simkit.errors import SimkitError
-from simkit.params import Params
 from simkit.pose import IDENTITY
 from simkit.writers.xml_text import document
 from simkit_launch.robot_description import DescriptionError, description_root

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Final
 
+from simkit import Params
 from simkit.extend import Diagnostics
 from simkit.loaders.resources.xml_reader import parse_text
-from simkit.params import Params
 
 _MOVES: Final = frozenset(("revolute", "continuous", "prismatic"))
 

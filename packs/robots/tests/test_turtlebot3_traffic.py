@@ -71,7 +71,7 @@ def test_a_snapshot_and_a_spawned_model_keep_the_light(light_world: Path) -> Non
 def test_a_light_without_its_textures_says_so() -> None:
     with simkit.load("""<sdf version="1.6"><world name="w"><model name="light"><static>1</static><link name="l"/>
       <plugin name="p" filename="libtraffic_light_plugin.so"/></model></world></sdf>""") as sim:
-        assert "SK-SDF-021" in {d.code for d in sim.diagnostics}
+        assert "SK-PLUGIN-003" in {d.code for d in sim.diagnostics}
         sim.run(6.0)
 
 

@@ -9,7 +9,7 @@ import pytest
 
 import simkit
 from simkit.recording.pictures.subject import find_subject
-from simkit.sensors.particle_clouds import ParticleCloud, ParticleSource
+from simkit.runtime.particle_clouds import ParticleCloud, ParticleSource
 
 COMMAND = "/model/fire/link/l/particle_emitter/smoke/cmd"
 LIDAR = """<sensor name="lidar" type="{kind}"><update_rate>10</update_rate><topic>scan</topic><lidar><scan><horizontal>

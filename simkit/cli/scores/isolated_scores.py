@@ -16,7 +16,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 from simkit import progress
-from simkit.cli.scores.file_score import FileScore, ScoreOptions, refused_score, score_file
+from simkit.cli.scores.file_score import FileScore
+from simkit.cli.scores.score_calculation import ScoreOptions, refused_score, score_file
 from simkit.diagnostics import Diagnostic
 from simkit.errors import SimkitError
 from simkit.memory_error import OutOfMemory

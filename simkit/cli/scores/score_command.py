@@ -9,10 +9,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
-from simkit.cli.scores.file_score import EffectOf, FileScore, ScoreOptions, score_file
+from simkit.cli.scores.file_score import FileScore
 from simkit.cli.scores.folder_score import FolderScore, with_parts
 from simkit.cli.scores.folder_search import find_files
 from simkit.cli.scores.isolated_scores import ScoreLimits, score_files
+from simkit.cli.scores.score_calculation import EffectOf, ScoreOptions, score_file
 from simkit.cli.scores.score_page import write_score_page
 from simkit.cli.scores.score_text import folder_lines, score_lines, summary_lines
 from simkit.cli.terminal.output import JsonObject, stdout_console

@@ -14,7 +14,7 @@ from simkit.diagnostics import Diagnostics, Where, shorten
 from simkit.input_file import GIT_LFS_POINTER, GIT_LFS_TEXT, FileTooLargeError, read_input
 from simkit.params import Params
 from simkit.scene.simkit_elements import PREFIX
-from simkit.template_texts import find_template_text
+from simkit.template_texts import find_template_text, may_have_template_texts
 
 ALLOWED_FORMATS: Final = "a world or model file is XML that begins with <sdf>, <robot> (URDF, xacro) or <mujoco> (MJCF)"
 
@@ -100,7 +100,6 @@ MAX_BYTES = 256 * 1024 * 1024
 MAX_DEPTH = 200
 MAX_ELEMENTS = 3_000_000
 _PLAIN_AMPERSAND = re.compile(rb"(<!\[CDATA\[.*?\]\]>)|&(?!#?\w+;)", re.DOTALL)
-_MAYBE_TEMPLATE = re.compile(rb"\$[({]|\{[{%]|__[A-Z]|@[A-Z]")
 _MOST_TEMPLATE_TEXTS = 3
 _DECLARATION = re.compile(rb"<\?xml\b[^?]*\?>")
 
@@ -275,7 +274,7 @@ def _parse_lenient_text(data: bytes, builder: _TreeBuilder) -> Params | None:
 
 def report_template_texts(document: Document, diagnostics: Diagnostics) -> None:
     """Warn of texts in a file that a launch file, xacro or a template engine was to fill in."""
-    if not _MAYBE_TEMPLATE.search(document.text):
+    if not may_have_template_texts(document.text):
         return
     found: dict[str, tuple[Where, str]] = {}
     stack = [document.root]

@@ -57,9 +57,8 @@ def read_inertial(
     mass = block.number("mass", 1.0, maximum=_MAX_MOMENT)
     pose, moments = block.pose("pose"), block.block("inertia")
     values = [moments.number(k, float(k[1] == k[2]), minimum=-_MAX_MOMENT, maximum=_MAX_MOMENT) for k in MOMENT_NAMES]
-    if (
-        static and block.diagnostics.error_count > errors
-    ):  # saved worlds have `nan` for walls without mass, and Gazebo opens them
+    if static and block.diagnostics.error_count > errors:
+        # saved worlds have `nan` for walls without mass, and Gazebo opens them
         block.diagnostics.soften(d for d in tuple(block.diagnostics)[earlier:] if d.severity == "error")
     _check(name, mass, values, block, static)
     return Inertial(mass, vec3(pose.position), rotated_moments(values, pose), True)

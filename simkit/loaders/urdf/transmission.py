@@ -22,8 +22,6 @@ _KINDS = {
     "differential": ("differential", "wrist"),
     "four_bar_linkage": ("fourbarlinkage", "four_bar_linkage", "four-bar"),
 }
-
-
 _JOINTS: Final = ("joint", "flexJoint", "rollJoint", "gap_joint")
 _ACTUATORS: Final = ("actuator", "rightActuator", "leftActuator")
 """Elements of a joint and of an actuator; those after the first belong to the wrist and the gripper of PR2."""

@@ -75,6 +75,8 @@ class _Expansion:
         self.arguments: dict[str, str] = dict(self.given)
         self.declared: set[str] = set()
         self.used: set[str] = set()  # arguments that a $(arg ...) has read, also without an <xacro:arg>
+        # arguments without a value: the element that reads each first, and the macro calls that led there
+        self.missing: dict[str, tuple[Where, list[tuple[str, Where]]]] = {}
         self.expanded = self.copied = 0
         self.sizes: dict[int, int] = {}
         self.calls: list[tuple[str, Where]] = []
@@ -90,27 +92,44 @@ class _Expansion:
         engine.macrostack = []
         try:
             engine.eval_all(top.documentElement, engine.Table(), engine.Table(self._global_names()))
-        except RecursionError:
-            self._fail("SK-XACRO-003", "the expansion is nested too deeply; a macro or an include calls itself")
-            return None
-        except MissingError as error:
-            self._fail("SK-XACRO-002", str(error), error.hint)
-            return None
-        except BoundError as error:
-            self._fail("SK-XACRO-003", f"expansion stopped: {error}")
-            return None
         except Exception as error:  # noqa: BLE001 - xacro raises any exception of Python; only here the place is known
-            inner = _inner_error(error)
-            if isinstance(inner, (MissingError, BoundError)):
-                code = "SK-XACRO-002" if isinstance(inner, MissingError) else "SK-XACRO-003"
-                self._fail(code, str(inner), getattr(inner, "hint", ""))
-            else:
-                self._fail("SK-XACRO-001", " ".join(str(error).split()) or type(error).__name__, self._hint(error))
+            if not self.missing:  # else the error may only follow from a missing value
+                self._report_error(error)
+                return None
+        if self.missing:
+            self._report_missing_arguments()
             return None
         self._report_unknown_arguments()
         arguments = {name: self.arguments.get(name, "") for name in sorted(self.declared)}
         root = to_params(top.documentElement, self.diagnostics)
         return Document(root, self.document.path, self.document.text, arguments)
+
+    def _report_error(self, error: Exception) -> None:
+        """Record the error that stopped the expansion.
+
+        Args:
+            error: exception of xacro or of simkit's replacements.
+        """
+        inner = _inner_error(error)
+        if isinstance(error, RecursionError):
+            self._fail("SK-XACRO-003", "the expansion is nested too deeply; a macro or an include calls itself")
+        elif isinstance(inner, MissingError):
+            self._fail("SK-XACRO-002", str(inner), inner.hint)
+        elif isinstance(inner, BoundError):
+            self._fail("SK-XACRO-003", f"expansion stopped: {inner}" if inner is error else str(inner))
+        else:
+            self._fail("SK-XACRO-001", " ".join(str(error).split()) or type(error).__name__, self._hint(error))
+
+    def _report_missing_arguments(self) -> None:
+        """Record one error with all arguments that have no value, at the element that reads the first one."""
+        names = list(self.missing)
+        self.where, self.calls = self.missing[names[0]]
+        listed = ", ".join(map(repr, names))
+        subject = f"the argument {listed} has" if len(names) == 1 else f"the arguments {listed} have"
+        known = ", ".join(sorted(self.arguments)) or "none"
+        options = " ".join(f"--xacro-arg {name}=VALUE" for name in names)
+        message = f"{subject} no value (arguments with values: {known})"
+        self._fail("SK-XACRO-001", message, f"add {options} (Python: xacro_args)")
 
     def _fail(self, code: str, message: str, hint: str = "") -> None:
         """Record one error at the element that is being expanded, with the macro calls that led there."""
@@ -344,10 +363,13 @@ class _Expansion:
         raise ExpansionError(f"unknown substitution $({text}); known are {', '.join(known)}")
 
     def _argument(self, name: str) -> str:
+        """Return the value of an argument.
+
+        An argument without a value is noted and reads as 0, so that one expansion finds all such arguments.
+        """
         if name not in self.arguments:
-            known = ", ".join(sorted(self.arguments)) or "none"
-            remedy = f"set it with --xacro-arg {name}=VALUE (Python: xacro_args)"
-            raise ExpansionError(f"the argument {name!r} has no value (arguments with values: {known}); {remedy}")
+            self.missing.setdefault(name, (self.where, list(self.calls)))
+            return "0"
         self.used.add(name)
         return self.arguments[name]
 

@@ -142,7 +142,7 @@ class Film:
             return
         self._driven.sample()
         marks = marks_of(self._sim, self._driven) if marks is None else marks
-        subject = find_subject(self._sim, scan_traces(self._sim, marks.scans))
+        subject = find_subject(self._sim, [], scans=scan_traces(self._sim, marks.scans))
         frame = draw_frame(self._sim, self._render, self._aim(subject), self._look, marks, subject)
         for file in self._files:
             file.take(frame)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from simkit.linear_algebra import matmul, norm
 from simkit.pose import Pose
 from simkit.recording.pictures.stray_models import find_stray_models
-from simkit.sensors.particle_clouds import find_clouds
+from simkit.runtime.particle_clouds import find_clouds
 
 if TYPE_CHECKING:
     from simkit.msgs import LaserScan
@@ -28,6 +28,8 @@ _CORNERS: Final = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
 _FLAT: Final = 0.02  # height of a floor, relative to its width
 ROOM: Final = 1.8
 """Size of a room that is shown whole, relative to the robots with their scans and paths."""
+_SCAN_REACH: Final = 3.0
+"""Distance up to which scans are in a picture without a room, relative to the size of the robots with their paths."""
 _LEAST: Final = 1e-3  # [m] size of a subject that is a point
 
 
@@ -59,14 +61,21 @@ class Subject:
         return np.concatenate((self.robots, self.traces, self.room))
 
 
-def find_subject(sim: Simulation, traces: Iterable[tuple[str, Points]], room_size: float = ROOM) -> Subject:
+def find_subject(
+    sim: Simulation,
+    traces: Iterable[tuple[str, Points]],
+    room_size: float = ROOM,
+    scans: Iterable[tuple[str, Points]] = (),
+) -> Subject:
     """Return what a picture of a simulation shows.
 
     Args:
         sim: simulation to show.
-        traces: points of scans, paths and goals [m], each with the model that it belongs to, or an empty name; those of
-            models that are left out are not framed.
+        traces: points of paths and goals [m], each with the model that it belongs to, or an empty name; those of models
+            that are left out are not framed.
         room_size: largest size of a room that is shown whole, relative to the other points.
+        scans: points of scans, like `traces`. Without a room around the robots, those far away are not framed: on open
+            ground, rays of 100 m would make a car a dot.
     """
     drawn = _drawn_geoms(sim)
     moving_models = _moving_models(sim)
@@ -80,13 +89,19 @@ def find_subject(sim: Simulation, traces: Iterable[tuple[str, Points]], room_siz
     boxes = np.concatenate([none, *(boxes_by_model[name] for name in moving if name not in left_out)])
     fixed = [name for name in drawn if name not in moving and name not in left_out]
     walls = _without_floors(np.concatenate([none, *(boxes_by_model[name] for name in fixed)]))
-    seen = np.concatenate([np.zeros((0, 3)), *(points for name, points in traces if name not in left_out)])
+    nothing = np.zeros((0, 3))
+    driven = np.concatenate([nothing, *(points for name, points in traces if name not in left_out)])
+    scanned = np.concatenate([nothing, *(points for name, points in scans if name not in left_out)])
+    seen = np.concatenate((driven, scanned))
     points = np.concatenate((boxes.reshape(-1, 3), seen))
     room = walls.reshape(-1, 3)
     is_scene = not any(_is_robot(sim, name) for name in moving)  # objects at rest, such as furniture
     limit = math.inf if is_scene and not len(seen) else room_size
     if len(boxes) and (not len(room) or _size(np.concatenate((points, room))) > limit * _size(points)):
         room = np.zeros((0, 3))
+    nearby = np.concatenate((boxes.reshape(-1, 3), driven))
+    if len(nearby) and len(scanned) and not len(room):
+        seen = np.concatenate((driven, _within_reach(scanned, nearby)))
     if not len(points) and not len(room):  # smoke alone, or nothing
         room = np.concatenate([np.zeros((0, 3)), *(cloud.positions for cloud in find_clouds(sim, sim.time))])
     if not len(points) and not len(room):
@@ -187,6 +202,14 @@ def _without_floors(boxes: Points) -> Points:
     span = np.ptp(solid.reshape(-1, 3), axis=0)
     walls: Points = boxes[~is_flat | (widths <= math.hypot(span[0], span[1]))]
     return walls
+
+
+def _within_reach(scanned: Points, nearby: Points) -> Points:
+    """Return the points of scans [m] that are near robots and paths, compared with the size of these."""
+    middle = (nearby.min(axis=0) + nearby.max(axis=0)) / 2
+    ways = scanned - middle
+    near: Points = scanned[np.einsum("ij,ij->i", ways, ways) <= (_SCAN_REACH * _size(nearby)) ** 2]
+    return near
 
 
 def _size(points: Points) -> float:

@@ -18,12 +18,13 @@ from simkit.elementary_functions import tan
 from simkit.linear_algebra import norm
 from simkit.pose import Vector
 from simkit.runtime import Simulation
+from simkit.runtime.particle_clouds import has_sources
 from simkit.sensors.cameras.renderer_choice import ImageRenderer, renderer_of
 from simkit.sensors.cameras.rendering import render_thread
 from simkit.sensors.cameras.rendering.lights_and_shadows import Sphere, suns_of
 from simkit.sensors.cameras.rendering.scene_composition import Composition
 from simkit.sensors.cameras.rendering.view import Colours, Depths, DrawnView, Shot, View, look_at
-from simkit.sensors.particle_clouds import drawer_of_particles, has_sources
+from simkit.sensors.particle_echoes import drawer_of_particles
 from simkit.sensors.values_with_expiry import temporary_values
 
 Distances = npt.NDArray[np.float32]

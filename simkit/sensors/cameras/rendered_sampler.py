@@ -13,6 +13,7 @@ from simkit.errors import RenderError
 from simkit.msgs.message_types import Message
 from simkit.runtime import Publisher
 from simkit.runtime.communication.subscription import NO_MESSAGE, LazyMessage
+from simkit.runtime.particle_clouds import has_sources
 from simkit.scene import SceneSensor
 from simkit.sensors.base import Sample, Sensor
 from simkit.sensors.cameras import renderer_choice
@@ -22,7 +23,7 @@ from simkit.sensors.cameras.rendering import render_thread
 from simkit.sensors.cameras.rendering.lights_and_shadows import read_lights, use_lights
 from simkit.sensors.cameras.rendering.scene_composition import Composition
 from simkit.sensors.cameras.rendering.view import DrawnView, Shot
-from simkit.sensors.particle_clouds import drawer_of_particles, has_sources
+from simkit.sensors.particle_echoes import drawer_of_particles
 from simkit.sensors.sample import Memory, Reading
 
 

@@ -16,6 +16,7 @@ from simkit import msgs
 from simkit.diagnostics import Diagnostics
 from simkit.pose import IDENTITY, Pose
 from simkit.runtime import Simulation
+from simkit.runtime.particle_clouds import has_sources
 from simkit.scene import SceneSensor
 from simkit.sensors.base import Product
 from simkit.sensors.cameras import depth_messages, image_messages
@@ -27,7 +28,7 @@ from simkit.sensors.cameras.image_noise import CameraReading, ImageNoise, NoisyC
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
 from simkit.sensors.cameras.rendering.appearance import Appearance
 from simkit.sensors.cameras.rendering.view import Colours, Depths, DrawnView, Shot, View
-from simkit.sensors.particle_clouds import Echoes, find_echoes, has_sources
+from simkit.sensors.particle_echoes import Echoes, find_echoes
 from simkit.sensors.sample import Reading
 from simkit.sensors.topics_and_frames import OPTICAL_POSE
 

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.pose import Vector
-from simkit.sensors.particle_clouds import has_sources
+from simkit.runtime.particle_clouds import has_sources
 from simkit.sensors.rays.geom_types import Ids
 from simkit.sensors.rays.lidar_measurement import LidarMeasurement, LidarReading
 from simkit.sensors.rays.numpy_rays import cast_on_shapes

@@ -17,10 +17,11 @@ from simkit.linear_algebra import matmul
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.runtime.array_rules import CannotBatchError, Ids, SensorRule, Ticks
+from simkit.runtime.particle_clouds import has_sources
 from simkit.scene import SceneSensor
 from simkit.sensors.base import Sensor
 from simkit.sensors.noise import Noise, NoiseModel, UniformNoise, read_noise
-from simkit.sensors.particle_clouds import find_echoes, has_sources
+from simkit.sensors.particle_echoes import find_echoes
 from simkit.sensors.rays.ray_fan import RayFan, RayFanRows, fan_directions
 from simkit.sensors.visibility_mask import ALL_VISIBLE, hidden_geoms, read_visibility_mask
 

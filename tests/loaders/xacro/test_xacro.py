@@ -205,7 +205,7 @@ def test_calls_of_unknown_macros_in_the_output_of_an_old_xacro_are_left_out_with
     [
         ('<xacro:property name="length" value="1"/>\n<link name="${lenth}"/>', 2, "'lenth' is not defined", "length"),
         ('<xacro:macro name="wheel"><a/></xacro:macro>\n<xacro:weel/>', 2, "unknown macro name", "wheel"),
-        ('\n\n<link name="$(arg side)"/>', 3, "the argument 'side' has no value", ""),
+        ('\n\n<link name="$(arg side)"/>', 3, "the argument 'side' has no value", "--xacro-arg side=VALUE"),
         ('<xacro:macro name="m" params="a"><a/></xacro:macro>\n<xacro:m/>', 2, "Undefined parameters [a]", ""),
         ('\n<xacro:if value="${3 +}"><a/></xacro:if>', 2, "invalid expression", ""),
         (
@@ -223,7 +223,24 @@ def test_a_mistake_is_reported_with_its_line_and_the_closest_name(load, content,
     (problem,) = (d for d in found if d.severity == "error")
     assert (problem.code, problem.line) == ("SK-XACRO-001", line)
     assert part in problem.message
-    assert problem.hint == (f"did you mean {hint!r}?" if hint else "")
+    assert problem.hint == (
+        f"did you mean {hint!r}?" if hint.isalpha() else hint and f"add {hint} (Python: xacro_args)"
+    )
+
+
+def test_all_arguments_without_a_value_are_told_at_once(load):
+    content = """<xacro:macro name="m"><link name="${xacro.arg('arm')}"/></xacro:macro>
+      <xacro:arg name="colour" default="red"/>
+      <xacro:m/>
+      <xacro:if value="$(arg mode)"><link name="$(arg colour)"/></xacro:if>
+      <link name="${length}"/><link name="$(arg never)"/>"""
+    scene, found = load(xacro(content))
+    assert scene.model is None
+    (problem,) = (d for d in found if d.severity == "error")
+    assert (problem.code, problem.line) == ("SK-XACRO-001", 1)
+    assert "the arguments 'arm', 'mode' have no value (arguments with values: colour)" in problem.message
+    assert "<xacro:m> of" in problem.message
+    assert problem.hint == "add --xacro-arg arm=VALUE --xacro-arg mode=VALUE (Python: xacro_args)"
 
 
 def test_the_macro_calls_that_led_to_a_mistake_are_listed(load):

@@ -271,3 +271,14 @@ def test_a_picture_changes_no_bit_of_the_run_and_shows_shadows(tmp_path: Path) -
     assert len(soft[0]) > len(hard[0]), "soft shadows have more shades"
     assert (tmp_path / "out.png").stat().st_size > 5000
     assert math.isfinite(float(images[2].mean()))
+
+
+def test_long_scans_on_open_ground_do_not_make_the_robot_small_and_a_room_is_shown_whole() -> None:
+    angles = np.linspace(-np.pi, np.pi, 90)
+    ring = np.stack((np.cos(angles), np.sin(angles), np.zeros(90)), axis=1)
+    far, near = ("robot", 30 * ring), ("robot", 4 * ring)
+    robot, wall = ("robot", "0 0 0", "1 1 1", False), ("wall", "29 0 0", "0.2 60 2", True)
+    for models, scans, width in (([robot], [far], 1.0), ([robot], [far, near], 8.0), ([robot, wall], [far], 60.0)):
+        with simkit.load(world(*models)) as sim:
+            points = find_subject(sim, [], scans=scans).points
+        assert np.ptp(points, axis=0)[:2].max() == pytest.approx(width, rel=0.01)

@@ -87,7 +87,7 @@ class ScaledMimic(RobotController):
         self.commands.values = self._scale * self.states.values
 
 
-class JointStatesOfFetch(JointStateBroadcaster):
+class RobotJointStates(JointStateBroadcaster):
     """Publishes `joint_states` at 100 Hz, as the plugins of Fetch and PR2 do themselves."""
 
     types = ("fetch_gazebo/JointStates", "pr2_controller_manager/JointStates")

@@ -19,8 +19,8 @@ _FREE_DEVIATION = math.pi / 6
 _LARGEST_DEVIATION = 1.5608
 """Deviation of the steering angle [rad] from which the wheel speed has its smallest value."""
 
-
 _STEER_BOT = "steer_bot_hardware_gazebo"
+"""Library of steer_drive_ros, and node whose parameters name the joints of both sides."""
 
 
 class SteeringDrive(ReferenceDrive):

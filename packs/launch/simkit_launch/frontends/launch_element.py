@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from simkit import Params
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.input_file import read_failure, read_input_text
 from simkit.loaders.resources.xml_reader import parse_file
-from simkit.params import Params
 from simkit.yaml_reader import NotYaml, compose_nodes, node_value
 from simkit_launch.frontends.launch_fault import LaunchFault
 from simkit_launch.launch_modules.launch.utilities.type_utils import get_typed_value, is_instance_of

@@ -11,11 +11,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
+from simkit import Params
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.errors import InputError
 from simkit.input_file import read_failure, read_input, read_input_text
 from simkit.loaders.resources.xml_reader import parse_file
-from simkit.params import Params
 from simkit.run_files import PackagePaths
 from simkit_launch.command_output import command_output
 from simkit_launch.frontends.launch_fault import LaunchFault

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
+from simkit import Params
 from simkit.diagnostics import Diagnostics
 from simkit.loaders.resources.xml_reader import parse_file
-from simkit.params import Params
 
 _NODE: Final = (
     *("pkg", "type", "name", "args", "machine", "respawn", "respawn_delay", "required", "ns", "clear_params"),

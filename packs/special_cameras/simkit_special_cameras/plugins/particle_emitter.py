@@ -23,7 +23,7 @@ from simkit.extend import (
     without_effect,
 )
 from simkit.msgs import valid_topic
-from simkit.sensors.particle_clouds import ParticleCloud, ParticleSource
+from simkit.runtime.particle_clouds import ParticleCloud, ParticleSource
 
 if TYPE_CHECKING:
     from simkit import Model
@@ -34,8 +34,9 @@ _MARKER, _PARAMETERS, _SWITCH = "visualization_msgs/msg/Marker", "ros_gz_interfa
 _QUOTA = 5000  # particles at once, as in gz-rendering
 _MARKER_RATE = 10.0  # [Hz]
 _KEPT = 60.0  # [s] for this time after its end, a sensor may still read a sample that contains a particle
-_OPACITY = 0.3  # of a sphere, which stands for a picture of smoke with a soft edge
-_SPHERE_LIST, _DELETE = 7, 2
+_OPACITY = 0.3  # of a sphere, which replaces a picture of smoke with a soft edge
+_SPHERE_LIST, _DELETE = 7, 2  # of a `Marker`
+_INTEGER, _DOUBLE = 2, 3  # types of a `rcl_interfaces/msg/ParameterValue`
 _BIRTH, _END, _SIZE, _GROWTH, _POSITION, _VELOCITY = 0, 1, 2, 3, slice(4, 7), slice(7, 10)
 """Columns of a particle: times [s], diameter [m] and its growth [m/s], position [m] and velocity [m/s] in the world."""
 
@@ -122,12 +123,12 @@ class ParticleEmitter(ModelPlugin, ParticleSource):
             return
         for parameter in message.params:
             value = parameter.value
-            number = float(value.double_value if value.type == 3 else value.integer_value)
+            given = float(value.double_value if value.type == _DOUBLE else value.integer_value)
             limits = _SETTINGS.get(parameter.name)
             if parameter.name == "emitting":
                 self._switch(bool(value.bool_value))
-            elif limits is not None and value.type in (2, 3) and limits[0] <= number <= limits[1]:
-                self._settings[parameter.name] = number
+            elif limits is not None and value.type in (_INTEGER, _DOUBLE) and limits[0] <= given <= limits[1]:
+                self._settings[parameter.name] = given
                 self._begun, self._count = self.sim.time, 0
             else:
                 what = f"parameter {parameter.name!r} is unknown, has a wrong type or is out of range; it is ignored"
@@ -194,8 +195,8 @@ class ParticleEmitter(ModelPlugin, ParticleSource):
         return c * along / 2, a * across / 2, b * up / 2
 
     def cloud_at(self, time: float) -> ParticleCloud | None:
-        all_of_them = self._particles
-        rows = all_of_them[(all_of_them[:, _BIRTH] <= time) & (all_of_them[:, _END] > time)]
+        particles = self._particles
+        rows = particles[(particles[:, _BIRTH] <= time) & (particles[:, _END] > time)]
         if not len(rows):
             return None
         ages = time - rows[:, _BIRTH]

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from simkit import msgs
 from simkit.linear_algebra import matmul
-from simkit.msgs.message_types import Message
+from simkit.msgs import Message
 from simkit.pose import rpy_from_quat
 from simkit_special_cameras.sensors.bounding_boxes import Box2D, Box3D, Projection
 from simkit_special_cameras.sensors.shape_corners import CUBE_EDGES

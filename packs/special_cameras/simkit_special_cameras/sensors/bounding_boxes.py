@@ -14,7 +14,7 @@ from simkit.compiler import Compiled, LinkBinding
 from simkit.extend import SceneVisual, Vector
 from simkit.linear_algebra import matmul
 from simkit.matrix_decompositions import eigh
-from simkit.runtime.engine.entity_structure import WorldStructure
+from simkit.runtime import WorldStructure
 from simkit.sensors.cameras.camera_model import CameraModel
 from simkit.sensors.cameras.rendering.view import Ids, View
 from simkit_special_cameras.sensors.labelled_objects import DrawnVisual, LabelledObject, LabelledObjects, Numbers

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from simkit import Params, Simulation
 from simkit.extend import Diagnostics, SceneSensor, did_you_mean
-from simkit.msgs.message_types import Message
+from simkit.msgs import Message
 from simkit.runtime import WorldStructure
 from simkit.sensors.cameras.camera_options import CameraOptions, extend_options
 from simkit.sensors.cameras.rendered_camera import RenderedCamera

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit import Simulation
-from simkit.compiler.name_map import NameMap
-from simkit.runtime.engine.entity_structure import WorldStructure
+from simkit.compiler import NameMap
+from simkit.runtime import WorldStructure
 
 Numbers = npt.NDArray[np.int32]
 

@@ -17,7 +17,7 @@ from simkit import Params, msgs
 from simkit.extend import NoiseModel, Options, Product, Vector, boolean, integer, number, text, without_effect
 from simkit.linear_algebra import matmul
 from simkit.matrix_decompositions import pinv
-from simkit_water_and_air.sensors.dvl import Dvl, DvlOptions
+from simkit_water_and_air.sensors.dvl import Dvl
 from simkit_water_and_air.sensors.dvl_options import Beam, DopplerVelocityLog
 
 if TYPE_CHECKING:
@@ -102,16 +102,14 @@ class DsrosDvl(Dvl):
     )
     cloud_frame = ""
 
-    def read_options(self, params: Params) -> DvlOptions:
+    def read_options(self, params: Params) -> DopplerVelocityLog:
         given = next((p.params for p in self.scene.plugins if p.filename == PLUGIN), None)
         if given is None:
             message = f"sensor {self.scoped!r} has its parameters in a <plugin filename={PLUGIN!r}>, which is missing"
             params.error("SK-PARAM-001", message, "copy the plugin from a sensor of the same type")
         options = self._given = DsrosDvlOptions(params if given is None else given)
         if given is None:
-            return DvlOptions(
-                DopplerVelocityLog("piston", (), {}, (0.0, 1.0, 1), 0.0, (0.0, 1.0)), np.eye(3), np.zeros(3)
-            )
+            return DopplerVelocityLog("piston", (), {}, (0.0, 1.0, 1), np.zeros(3), np.eye(3), 0.0, (0.0, 1.0))
         options.read_all()
         if options.low >= options.high:
             message = f"found a range from {options.low:g} to {options.high:g}; expected minRange < maxRange"
@@ -121,8 +119,7 @@ class DsrosDvl(Dvl):
         azimuths = (options.azimuth_1, options.azimuth_2, options.azimuth_3, options.azimuth_4)
         beams = tuple(Beam(i, 0.0, -math.radians(azimuth), tilt) for i, azimuth in enumerate(azimuths, 1))
         layer = (options.low, options.high, options.bins)
-        log = DopplerVelocityLog("piston", beams, {}, layer, 0.0, (options.low, options.high))
-        return DvlOptions(log, np.eye(3), np.zeros(3))
+        return DopplerVelocityLog("piston", beams, {}, layer, np.zeros(3), np.eye(3), 0.0, (options.low, options.high))
 
     def prepare(self) -> None:
         options = self._given

@@ -17,29 +17,13 @@ from simkit import Params, msgs
 from simkit.extend import Diagnostics, Noise, Product, SceneSensor, Sensor, Vector
 from simkit.linear_algebra import matmul
 from simkit.matrix_decompositions import pinv
-from simkit.number_text import number_or_nan
 from simkit.sensors.rays.nearest_in_cone import NearestInCone
-from simkit_water_and_air.sensors.dvl_options import Beam, DopplerVelocityLog, dvl_block, read_dvl
+from simkit_water_and_air.sensors.dvl_options import Beam, DopplerVelocityLog, read_dvl
 
 TYPE = "dave_interfaces/msg/DVL"
 _SEEN = (0, 3)
 _BODY = mujoco.mjtObj.mjOBJ_XBODY
 _FEWEST = 3  # beams that give a velocity
-
-
-@dataclass(frozen=True, slots=True)
-class DvlOptions:
-    """The `<gz:dvl>` block.
-
-    Attributes:
-        log: beams, modes and ranges.
-        frame: rotation matrix from the frame of the velocities to the sensor's frame.
-        water: velocity of the water [m/s], in world axes.
-    """
-
-    log: DopplerVelocityLog
-    frame: Vector
-    water: Vector
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,12 +78,12 @@ class Dvl(Sensor):
         "<aperture>4</aperture><rotation>120</rotation><tilt>30</tilt></beam><beam id='2'><aperture>4</aperture>"
         "<rotation>-120</rotation><tilt>30</tilt></beam></arrangement><tracking><bottom_mode/></tracking></dvl>"
     )
-    options: DvlOptions
+    options: DopplerVelocityLog
     noise: Noise
 
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
         super().__init__(scene, diagnostics)
-        log = self.options.log
+        log = self.options
         self._axes = np.array([_axis(beam) for beam in log.beams]).reshape(-1, 3)  # in the sensor's frame
         self._basis = matmul(self._axes, self.options.frame)  # in the frame of the velocities
         reach = log.range[1]
@@ -108,24 +92,16 @@ class Dvl(Sensor):
             for beam, axis in zip(log.beams, self._axes.tolist(), strict=True)
         ]
 
-    def read_options(self, params: Params) -> DvlOptions:
-        log = read_dvl(params)
-        block = dvl_block(params)
-        velocity = block.block("tracking").block("water_mass_mode").block("water_velocity")
-        water = [number_or_nan(velocity.text(axis, "0")) for axis in "xyz"]
-        if not all(map(math.isfinite, water)):
-            message = "<water_velocity> names data of an environment; the water of this sensor is at rest"
-            velocity.warning("SK-SENSOR-052", message, "write numbers [m/s]")
-            water = [0.0] * 3
-        return DvlOptions(log, block.pose("reference_frame").matrix, np.array(water))
+    def read_options(self, params: Params) -> DopplerVelocityLog:
+        return read_dvl(params)
 
     def describe(self) -> dict[str, object]:
         """Return the number of beams and the ranges [m]."""
-        low, high = self.options.log.range
+        low, high = self.options.range
         return {"dvl": {"beams": len(self._axes), "range_min": low, "range_max": high}}
 
     def prepare(self) -> None:
-        modes = self.options.log.modes
+        modes = self.options.modes
         names = ("bottom_mode", "water_mass_mode")
         self._modes = [name for name in names if name in modes and modes[name].when != "never"]
         models = [modes[name].noise for name in self._modes for _ in self._axes]
@@ -148,7 +124,7 @@ class Dvl(Sensor):
         origin, rotation = self._frame_in_world(data)
         body_axes = data.xmat[self._body].reshape(3, 3)
         own = self._velocity_in_world(model, data, matmul(body_axes, self._offset_position))
-        low, high = self.options.log.range
+        low, high = self.options.range
         ranges, speeds = np.full(len(self._axes), math.inf), np.zeros(len(self._axes))
         directions = matmul(self._axes, rotation.T)
         for index, cone in enumerate(self._cones):
@@ -161,7 +137,7 @@ class Dvl(Sensor):
 
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Any:
         _, own, directions, ranges, speeds = self._track_bottom(model, data)
-        modes = self.options.log.modes
+        modes = self.options.modes
         estimates = []
         for name in self._modes:
             variance = modes[name].noise.stddev ** 2
@@ -173,7 +149,7 @@ class Dvl(Sensor):
 
     def _through_water(self, own: Vector, directions: Vector, bottom: Vector, variance: float) -> Estimate:
         """Return the velocity through the layer of water; a bottom within the layer ends it."""
-        near, far, _ = self.options.log.layer
+        near, far, _ = self.options.layer
         is_open = bottom > near
         ranges = np.where(is_open, (near + np.minimum(far, bottom)) / 2, math.inf)
         speeds = np.where(is_open, matmul(directions, own - self.options.water), 0.0)
@@ -202,11 +178,11 @@ class Dvl(Sensor):
 
     def _message_of(self, reading: tuple[Estimate, ...], time_ns: int) -> msgs.Message:
         solved = [(estimate, *self._solve(estimate)) for estimate in reading]
-        kind = f"DVL_TYPE_{self.options.log.type.upper()}"
+        kind = f"DVL_TYPE_{self.options.type.upper()}"
         header = msgs.header(time_ns, self.frame_id)
         if not solved:
             return msgs.make(TYPE, header=header, type=kind)
-        modes = self.options.log.modes
+        modes = self.options.modes
         always = [s for s, name in zip(solved, self._modes, strict=True) if modes[name].when == "always"]
         estimate, velocity, covariance = (always or sorted(solved, key=lambda s: float(s[2].trace())))[0]
         beams = [
@@ -218,7 +194,7 @@ class Dvl(Sensor):
                 "velocity": _twist(speed * axis, estimate.variance * np.outer(axis, axis)),
             }
             for beam, distance, speed, axis in zip(
-                self.options.log.beams, estimate.ranges.tolist(), estimate.speeds.tolist(), self._basis, strict=True
+                self.options.beams, estimate.ranges.tolist(), estimate.speeds.tolist(), self._basis, strict=True
             )
         ]
         nearest = float(estimate.ranges.min())

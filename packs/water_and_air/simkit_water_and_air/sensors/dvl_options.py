@@ -6,8 +6,11 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from simkit import Params
-from simkit.extend import NoiseModel, read_noise
+from simkit.extend import NoiseModel, Vector, read_noise
+from simkit.number_text import number_or_nan
 
 _DVL_ELEMENTS = ("gz:dvl", "ignition:dvl")
 
@@ -38,24 +41,23 @@ class DopplerVelocityLog:
         type: `piston` or `phased_array`.
         modes: tracking modes by name; empty where the file has none.
         layer: nearest and farthest distance of the water-mass mode, and its number of bins.
+        water: velocity of the water [m/s], in world axes.
+        frame: rotation matrix from the frame of the velocities to the sensor's frame.
     """
 
     type: str
     beams: tuple[Beam, ...]
     modes: Mapping[str, TrackingMode]
     layer: tuple[float, float, int]
+    water: Vector
+    frame: Vector
     resolution: float
     range: tuple[float, float]
 
 
-def dvl_block(params: Params) -> Params:
-    """Return the block of a sensor in any of its spellings."""
-    return next((child for name in _DVL_ELEMENTS if (child := params.child(name))), params.block("dvl"))
-
-
 def read_dvl(params: Params) -> DopplerVelocityLog:
     """Read the `<gz:dvl>` of a Doppler velocity log, with Gazebo's defaults and checks."""
-    block = dvl_block(params)
+    block = next((child for name in _DVL_ELEMENTS if (child := params.child(name))), params.block("dvl"))
     reach = (block.number("minimum_range", 0.1, minimum=0), block.number("maximum_range", 100.0, minimum=0))
     if reach[0] >= reach[1]:
         block.error("SK-PARAM-002", f"found a range from {reach[0]:g} to {reach[1]:g}; expected min < max")
@@ -65,6 +67,8 @@ def read_dvl(params: Params) -> DopplerVelocityLog:
         beams=_read_beams(block.block("arrangement")),
         modes=modes,
         layer=layer,
+        water=_read_water(block.block("tracking").block("water_mass_mode").block("water_velocity")),
+        frame=block.pose("reference_frame").matrix,
         resolution=block.number("resolution", 0.01, minimum=1e-9),
         range=reach,
     )
@@ -89,6 +93,16 @@ def _read_beams(arrangement: Params) -> tuple[Beam, ...]:
     if arrangement.was_read and len(beams) < 3:
         arrangement.error("SK-PARAM-002", f"found {len(beams)} <beam>; expected three or more")
     return tuple(beams)
+
+
+def _read_water(velocity: Params) -> Vector:
+    """Read the velocity of the water; it is zero if the file names data of an environment instead of numbers."""
+    water = [number_or_nan(velocity.text(axis, "0")) for axis in "xyz"]
+    if not all(map(math.isfinite, water)):
+        message = "<water_velocity> names data of an environment, which are not used: the water is at rest"
+        velocity.warning("SK-PARAM-003", message, "write numbers [m/s]")
+        return np.zeros(3)
+    return np.array(water)
 
 
 def _read_tracking(tracking: Params, far: float) -> tuple[Mapping[str, TrackingMode], tuple[float, float, int]]:

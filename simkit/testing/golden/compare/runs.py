@@ -395,7 +395,7 @@ def _compare_left_out(golden: RunRecord, run: RunRecord, found: Comparison) -> N
 
 
 def _reason_for(name: str, run: RunRecord) -> str:
-    """Return the place of the warning with this name, which stands beside the reason in the output of the load."""
+    """Return the place of the warning with this name, which the load prints with the reason."""
     reported = () if run.simulation is None else run.simulation.diagnostics
     found = next((item for item in reported if item.code in LEFT_OUT_CODES and name in item.message), None)
     return "" if found is None else f" ({Where(found.file, found.line)}: {found.code})"

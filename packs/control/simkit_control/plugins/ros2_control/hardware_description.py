@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final
 
 from simkit import Params
-from simkit.diagnostics import NOWHERE
 from simkit.extend import Diagnostics, Where, did_you_mean
 from simkit.number_text import is_number, number_or_nan
 from simkit_control.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION, VELOCITY
@@ -104,7 +103,7 @@ class JointDescription:
     name: str
     commands: tuple[str, ...]
     states: tuple[str, ...]
-    where: Where = NOWHERE
+    where: Where = field(default_factory=Where)
     pids: dict[str, PidGains] = field(default_factory=dict)
     leader: str = ""
     multiplier: float = 1.0
@@ -118,7 +117,7 @@ class SensorDescription:
 
     name: str
     interfaces: tuple[str, ...]
-    where: Where = NOWHERE
+    where: Where = field(default_factory=Where)
 
 
 @dataclass(frozen=True, slots=True)

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     import mujoco
 
     from simkit import Simulation
-    from simkit.compiler.name_map import ActuatorRef
+    from simkit.compiler import ActuatorRef
     from simkit.extend import SpecBuilder
     from simkit_control.plugins.ros2_control.hardware_joint import HardwareJoint, PidGains
 

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from simkit import msgs
-from simkit.diagnostics import NOWHERE
 from simkit.extend import SharedByCopies, Vector, Where
 
 LARGEST_NUMBER: Final = 1e15
@@ -43,7 +42,7 @@ class Motion(SharedByCopies):
     name: str = ""
     usage: str = ""
     description: str = ""
-    where: Where = NOWHERE
+    where: Where = field(default_factory=Where)
 
     @property
     def duration(self) -> float:

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from simkit import ModelPlugin, Params, msgs
-from simkit.diagnostics import NOWHERE
-from simkit.extend import Diagnostics, acts, did_you_mean
+from simkit.extend import Diagnostics, Where, acts, did_you_mean
 from simkit.plugins.endpoints import offers_all
 from simkit.plugins.find_entities import find_plugin_file
 from simkit.plugins.ros_names import RosNames
@@ -119,7 +118,7 @@ class PlayMotion(ModelPlugin):
         uri = element.value
         file = find_plugin_file(self, uri, builder, ("motions", "config", "../motions"))
         with suppress(OSError, ValueError):  # the URI is not a valid file name
-            is_own = file is None and self.where == NOWHERE
+            is_own = file is None and self.where == Where()
             return Path(uri) if is_own and Path(uri).is_file() else file
         return file
 

@@ -35,7 +35,7 @@ from simkit_robots.plugins.classic.hector_error import HectorError
 if TYPE_CHECKING:
     from simkit import Model
     from simkit.extend import SceneModel, SpecBuilder
-    from simkit.runtime.communication.publisher import Publisher
+    from simkit.runtime import Publisher
     from simkit.sensors.rays.lidar import Lidar
 
 IMU: Final = "sensor_msgs/msg/Imu"

@@ -40,7 +40,9 @@ class TrafficLight(ModelPlugin):
                 self._materials[visual.scoped] = names
         if not self._materials:
             message = f"model {scene.scoped!r} has no visual with the textures of a traffic light; it does not change"
-            params.diagnostics.warning("SK-SDF-021", message, self.where, f"a script has {_LIGHTS[0][0]} and its like")
+            params.diagnostics.warning(
+                "SK-PLUGIN-003", message, self.where, f"a script has {_LIGHTS[0][0]} and its like"
+            )
 
     def load(self, parent: Model, params: Params) -> None:
         self._light, self._since_ns = 0, self.sim.time_ns

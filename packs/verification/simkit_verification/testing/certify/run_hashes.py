@@ -13,11 +13,10 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from simkit import Simulation, msgs
+from simkit import Plugin, Simulation, msgs
 from simkit.extend import Sensor
 from simkit.msgs import Message
 from simkit.packs import is_shipped_module
-from simkit.plugins import Plugin
 from simkit.recording.bags.bag_contents import matches_topic
 from simkit.recording.message_taps import TopicTaps
 from simkit.run_spec import JsonObject

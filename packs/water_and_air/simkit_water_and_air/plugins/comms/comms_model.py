@@ -143,8 +143,8 @@ class CommsModel(WorldPlugin):
                 if not listed or listed[0].model.scoped == plugin.model.scoped:
                     listed.append(plugin)
                 else:
-                    text = f"the address {plugin.address!r} belongs to model {listed[0].model.scoped!r}"
-                    self._once.left_out(plugin.scoped, f"{text}, so model {plugin.model.scoped!r} does not get it")
+                    owner = f"the address {plugin.address!r} belongs to model {listed[0].model.scoped!r}"
+                    self._once.left_out(plugin.scoped, f"{owner}, so model {plugin.model.scoped!r} does not get it")
         return table
 
     def before_step(self) -> None:

@@ -30,7 +30,7 @@ class RfRangeSensorOptions(Options):
 
 
 class RfRangeSensor(ModelPlugin):
-    """Is a radio on the model that contains its model; `RfRange` in the world measures the distances.
+    """Is a radio on the model that contains its model; `RFRange` in the world measures the distances.
 
     The readings are on `/world/<world>/model/<robot>/model/<sensor>/rfsensor`. Its blocks replace those of the world
     for all radios, if it is the first one with blocks.

@@ -36,10 +36,10 @@ class GenericMotorOptions(MotorModelOptions):
     low_duty: float = number(0.0, "µs", element="minDutyCycle")
     high_duty: float = number(0.0, "µs", element="maxDutyCycle")
     bidirectional: int = integer(0, element="bidirectionalMotor", minimum=0, maximum=1)
-    positive_thrust: str = text(element="positiveThrustPolynomial")
-    negative_thrust: str = text(element="negativeThrustPolynomial")
-    positive_torque: str = text(element="positiveTorquePolynomial")
-    negative_torque: str = text(element="negativeTorquePolynomial")
+    positive_thrust: str = text(element=_POLYNOMIALS[0])
+    negative_thrust: str = text(element=_POLYNOMIALS[1])
+    positive_torque: str = text(element=_POLYNOMIALS[2])
+    negative_torque: str = text(element=_POLYNOMIALS[3])
 
 
 class GenericMotorModel(MulticopterMotorModel):
@@ -65,13 +65,13 @@ class GenericMotorModel(MulticopterMotorModel):
         if options.control_method == "duty_cycle" and options.low_duty >= options.high_duty:
             message = f"found <minDutyCycle> {options.low_duty:g} and <maxDutyCycle> {options.high_duty:g}"
             params.error("SK-PARAM-002", f"{message}; expected min < max")
-        read = {name: _read_polynomial(params, name) for name in _POLYNOMIALS}
-        if not read[_POLYNOMIALS[0]]:
+        written = options.positive_thrust, options.negative_thrust, options.positive_torque, options.negative_torque
+        thrust, back_thrust, torque, back_torque = (
+            _parse_polynomial(text, params.block(name)) for name, text in zip(_POLYNOMIALS, written, strict=True)
+        )
+        if not thrust:
             params.error("SK-PARAM-001", "found no <positiveThrustPolynomial>, which the thrust follows")
-        self._polynomials = {
-            +1: (read[_POLYNOMIALS[0]], read[_POLYNOMIALS[2]]),
-            -1: (read[_POLYNOMIALS[1]] or read[_POLYNOMIALS[0]], read[_POLYNOMIALS[3]] or read[_POLYNOMIALS[2]]),
-        }
+        self._polynomials = {+1: (thrust, torque), -1: (back_thrust or thrust, back_torque or torque)}
 
     def command(self, speed: float) -> None:
         """Set the command from the next step on: a speed [rad/s], or a duty cycle [µs]."""
@@ -109,11 +109,10 @@ class GenericMotorModel(MulticopterMotorModel):
         links.push_some(data, {0: (x * thrust, y * thrust, z * thrust, 0.0, 0.0, 0.0)})
 
 
-def _read_polynomial(params: Params, name: str) -> tuple[float, ...]:
-    """Return the coefficients of an element such as `[0.0, 2.4, 149]`; none after an error or without the element."""
-    written = params.text(name, "")
+def _parse_polynomial(written: str, element: Params) -> tuple[float, ...]:
+    """Return the coefficients in a text such as `[0.0, 2.4, 149]`; none for an empty text or after an error."""
     values = tuple(number_or_nan(word) for word in written.strip(" []").replace(",", " ").split())
     if all(abs(value) <= 1e9 for value in values):
         return values
-    params.block(name).error("SK-PARAM-002", f"found <{name}>{written}</{name}>; expected numbers")
+    element.error("SK-PARAM-002", f"found <{element.name}>{written}</{element.name}>; expected numbers")
     return ()

@@ -32,6 +32,7 @@ from simkit.float_sum import float_sum
 from simkit.linear_algebra import matmul, norm
 from simkit.matrix_decompositions import pinv, svd
 from simkit.msgs import valid_topic
+from simkit.plugins.drives.odometry import COMMAND_TYPES
 from simkit.plugins.one_time_warnings import are_usable
 from simkit_water_and_air.plugins.fluids.link_forces import moving_data
 from simkit_water_and_air.plugins.gz.multicopter_motor_model import MulticopterMotorModel
@@ -42,7 +43,6 @@ if TYPE_CHECKING:
     from simkit.msgs import Bool, Twist, TwistStamped
 
 Triple = tuple[float, float, float]
-COMMAND_TYPES: Final = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 _MOST: Final = (LARGEST, LARGEST, LARGEST)
 _PARALLEL: Final = 1e-3  # square of the sine of the largest angle at which two directions count as parallel
 

@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from simkit.msgs import Message
 
 _PARAMS: Final = "uuv_gazebo_ros_plugins_msgs/srv/GetListParam"
-_PERIOD: Final = 0.05  # between two messages [s]
 _BASE: Final = "/{model}/fins/{fin_id}"
 _LIFT_DRAG: Final[dict[str, tuple[str, ...]]] = {
     "Quadratic": ("lift_constant", "drag_constant"),
@@ -75,6 +74,7 @@ class UuvFin(ModelPlugin):
     options = OptionsOf(UuvFinOptions)
     filenames = ("libuuv_fin_ros_plugin.so", "libuuv_fin_plugin.so")
     drives = True
+    after_step_rate = 20.0
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self.options.read_all()
@@ -94,7 +94,7 @@ class UuvFin(ModelPlugin):
         self._joint = JointAxis(self.sim.joint(self._joint_name))
         self._links = PushedLinks(self.sim, (self._link,))
         self._command, self._current, self._force = 0.0, (0.0, 0.0, 0.0), np.zeros(3)
-        self._next_message, self._has_begun = 0.0, False
+        self._has_begun = False
         base = f"/{parent.name}/fins/{options.id}"
         self.listen(options.input_topic or f"{base}/input", STAMPED, self._on_command)
         if options.current_topic:
@@ -162,10 +162,7 @@ class UuvFin(ModelPlugin):
         return lift * across - drag * along, -lift * along - drag * across
 
     def after_step(self) -> None:
-        """Publish the angle and the force, twenty times a second."""
-        if self.sim.time < self._next_message - 1e-9:
-            return
-        self._next_message = self.sim.time + _PERIOD
+        """Publish the angle and the force."""
         header = msgs.header(self.sim.time_ns, self._link.rsplit("::", 1)[-1])
         if self._angle_output.wanted:
             self._angle_output.publish(msgs.make(STAMPED, header=header, data=self._response.state))

@@ -78,7 +78,7 @@ class SphericalCoordinatesServices(WorldPlugin):
 
 
 class DaveSphericalCoordinatesServices(SphericalCoordinatesServices):
-    """Has the services of `SphericalCoordinatesServices` with the types of dave."""
+    """Has the services of `libuuv_sc_ros_interface_plugin.so`, with the types of dave."""
 
     package = "dave_gazebo_ros_plugins"
     endpoints = tuple(offers(f"/gazebo/{name}", f"dave_gazebo_ros_plugins/srv/{kind}") for name, kind in _NAMES.items())

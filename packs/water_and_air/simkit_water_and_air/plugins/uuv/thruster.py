@@ -37,7 +37,6 @@ STAMPED: Final = "uuv_gazebo_ros_plugins_msgs/msg/FloatStamped"
 WRENCH: Final = "geometry_msgs/msg/WrenchStamped"
 _SERVICES: Final = "uuv_gazebo_ros_plugins_msgs/srv"
 _FLOAT, _BOOL = "std_msgs/msg/Float64", "std_msgs/msg/Bool"
-_PERIOD: Final = 0.05  # between two messages of the state [s]
 _BASE: Final = "/{model}/thrusters/{thrusterID}"
 
 
@@ -83,6 +82,7 @@ class UuvThruster(ModelPlugin):
     options = OptionsOf(UuvThrusterOptions)
     filenames = ("libuuv_thruster_ros_plugin.so", "libuuv_thruster_plugin.so", "libthruster_ros_plugin.so")
     drives = True
+    after_step_rate = 20.0
     reads_at_load = ("inertial", "axes")
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
@@ -106,7 +106,6 @@ class UuvThruster(ModelPlugin):
         self._direction = (1.0, 0.0, 0.0)  # of the thrust, in the axes of the link
         self._is_on, self._has_begun = True, False
         self._efficiency = {"thrust": options.thrust_efficiency, "state": options.propeller_efficiency}
-        self._next_message = 0.0
         base = f"/{parent.name}/thrusters/{options.id}"
         self.listen(f"{base}/input", (STAMPED, _FLOAT), self._on_command)
         self._outputs = {
@@ -188,10 +187,7 @@ class UuvThruster(ModelPlugin):
         self._links.push_some(data, {0: (x * thrust, y * thrust, z * thrust, 0.0, 0.0, 0.0)})
 
     def after_step(self) -> None:
-        """Publish the thrust and the state, twenty times a second."""
-        if self.sim.time < self._next_message - 1e-9:
-            return
-        self._next_message = self.sim.time + _PERIOD
+        """Publish the thrust and the state."""
         outputs, time_ns = self._outputs, self.sim.time_ns
         frame = self._link.rsplit("::", 1)[-1]
         if outputs["thrust"].wanted:
@@ -214,5 +210,5 @@ def _range(params: Params, name: str, low: float, high: float) -> tuple[float, f
     if low < high:
         return low, high
     message = f"found <{name}Min> {low:g} and <{name}Max> {high:g}; both are left out, as in Gazebo"
-    params.warning("SK-PLUGIN-111", message, f"<{name}Min> is below <{name}Max>")
+    params.warning("SK-PARAM-008", message, f"<{name}Min> is below <{name}Max>")
     return -math.inf, math.inf

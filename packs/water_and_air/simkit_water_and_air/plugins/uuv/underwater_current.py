@@ -117,8 +117,8 @@ class UnderwaterCurrent(WorldPlugin):
             given: GaussMarkovOptions = getattr(current, name)
             process = GaussMarkovProcess(given.mean, given.low, given.high, given.mu, given.noise, given.mean)
             if not process.is_valid:
-                text = f"found a mean of {process.mean:g} with min {process.low:g} and max {process.high:g}"
-                given.params.error("SK-PARAM-002", f"{text}; expected min ≤ mean ≤ max and min < max")
+                message = f"found a mean of {process.mean:g} with min {process.low:g} and max {process.high:g}"
+                given.params.error("SK-PARAM-002", f"{message}; expected min ≤ mean ≤ max and min < max")
             self._processes[name] = process
         self._stream, self._index, self._next_message = self.random("current", 3), 0, 0.0
         base = self._base = "/" + options.namespace.strip("/") if options.namespace.strip("/") else ""

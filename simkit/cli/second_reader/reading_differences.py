@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from simkit.loaders.urdf.robot_reading import Part, RobotReading, Value, random_positions
+from simkit.cli.second_reader.robot_reading import Part, RobotReading, Value, random_positions
 
 _RELATIVE: Final = 1e-7
 """Largest relative difference of two numbers that count as equal; readers convert the same text."""

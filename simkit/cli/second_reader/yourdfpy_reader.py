@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from simkit.cli.second_reader.robot_reading import MOVING, Part, RobotReading, Value, limit_values, mimic_text
 from simkit.float_sum import float_sum
-from simkit.loaders.urdf.robot_reading import MOVING, Part, RobotReading, Value, limit_values, mimic_text
 from simkit.scene.model import MOST_LEADERS
 
 _IDENTITY = ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0, 1.0))

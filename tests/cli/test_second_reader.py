@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 
 from simkit.build import read_scene
-from simkit.loaders.urdf.reading_differences import reading_differences
-from simkit.loaders.urdf.robot_reading import Part, RobotReading, place_of, random_positions, scene_reading
+from simkit.cli.second_reader.reading_differences import reading_differences
+from simkit.cli.second_reader.robot_reading import Part, RobotReading, place_of, random_positions, scene_reading
 from simkit.scene import SceneModel
 
 pytest.importorskip("yourdfpy")
-from simkit.loaders.urdf.yourdfpy_reader import SecondReaderError, yourdfpy_reading
+from simkit.cli.second_reader.yourdfpy_reader import SecondReaderError, yourdfpy_reading
 
 MASS = '<inertial><origin xyz="0.1 0 0" rpy="0 0 0.3"/><mass value="2"/><inertia ixx="1" iyy="2" izz="2.5"/></inertial>'
 LIMIT = '<limit lower="-1" upper="2" effort="3" velocity="4"/>'

@@ -1,8 +1,7 @@
-"""Particles in the air, such as smoke: spheres in drawn images, and echoes of rendered lidars and depth cameras."""
+"""Particles in images and readings: spheres in drawn images, and echoes of rendered lidars and depth cameras."""
 
 from __future__ import annotations
 
-import abc
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -12,68 +11,13 @@ import numpy as np
 from simkit.linear_algebra import matmul
 from simkit.pose import Vector
 from simkit.runtime import Simulation
+from simkit.runtime.particle_clouds import find_clouds
 
 _SPHERE = int(mujoco.mjtGeom.mjGEOM_SPHERE)
 _MOST_DRAWN = 2000  # particles of one image
 _GLOW = 0.6  # share of the colour that is independent of light: smoke has no dark side
 _UPRIGHT = np.eye(3).reshape(9)
-_SPREAD_SHARE = 0.25  # of the extent of a cloud; see `ParticleCloud.spread`
 _LENGTH_OF_ONES = 3.0**0.5
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class ParticleCloud:
-    """Particles at one instant.
-
-    Attributes:
-        positions: positions in the world [m], shape (n, 3).
-        radii: radii [m], shape (n,).
-        colours: red, green, blue and opacity, shape (n, 4).
-        scatter_ratio: share of rays through a particle that have an echo.
-    """
-
-    positions: Vector
-    radii: Vector
-    colours: Vector
-    scatter_ratio: float
-
-    @property
-    def spread(self) -> float:
-        """Standard deviation of the way into the cloud to an echo [m], a quarter of its extent along the world's x.
-
-        Source: gz-rendering, Ogre2ParticleNoiseListener.cc.
-        """
-        x = self.positions[:, 0]
-        return float((x + self.radii).max() - (x - self.radii).min()) * _SPREAD_SHARE
-
-
-class ParticleSource(abc.ABC):
-    """Base class of plugins that have particles."""
-
-    @abc.abstractmethod
-    def cloud_at(self, time: float) -> ParticleCloud | None:
-        """Return the particles at a time [s] up to now, at least of the last seconds; None without any."""
-
-
-def find_clouds(sim: Simulation, time: float) -> list[ParticleCloud]:
-    """Return the clouds of all sources at a time [s]; empty clouds are left out."""
-    clouds = (source.cloud_at(time) for source in _sources(sim))
-    return [cloud for cloud in clouds if cloud is not None]
-
-
-def has_sources(sim: Simulation) -> bool:
-    """Check whether the world may have particles."""
-    return bool(_sources(sim))
-
-
-def _sources(sim: Simulation) -> tuple[ParticleSource, ...]:
-    structure = sim.engine.structure
-
-    def find() -> tuple[ParticleSource, ...]:
-        return tuple(plugin for plugin in structure.all_plugins() if isinstance(plugin, ParticleSource))
-
-    sources: tuple[ParticleSource, ...] = sim.engine.names.shared("sources of particles", find)
-    return sources
 
 
 def drawer_of_particles(sim: Simulation, time: float) -> Callable[[mujoco.MjvScene], None] | None:

@@ -11,8 +11,8 @@ from simkit.errors import InputError
 from simkit.install_command import install_command
 
 if TYPE_CHECKING:
-    from simkit.loaders.urdf.reading_differences import Difference
-    from simkit.loaders.urdf.robot_reading import RobotReading
+    from simkit.cli.second_reader.reading_differences import Difference
+    from simkit.cli.second_reader.robot_reading import RobotReading
     from simkit.run_spec import SourceOptions
 
 Against = Annotated[
@@ -22,7 +22,7 @@ Against = Annotated[
 
 
 def _yourdfpy(text: bytes) -> RobotReading:
-    from simkit.loaders.urdf.yourdfpy_reader import yourdfpy_reading
+    from simkit.cli.second_reader.yourdfpy_reader import yourdfpy_reading
 
     try:
         return yourdfpy_reading(text)
@@ -50,10 +50,10 @@ def compare_readers(
     Raises:
         InputError: SK-CLI-018 unknown program, SK-CLI-059 the program is not installed, SK-CLI-060 no URDF.
     """
+    from simkit.cli.second_reader.reading_differences import reading_differences
+    from simkit.cli.second_reader.robot_reading import CONFIGURATIONS, place_of, scene_reading
+    from simkit.cli.second_reader.yourdfpy_reader import SecondReaderError
     from simkit.loaders import Resolver, find_document, load_scene
-    from simkit.loaders.urdf.reading_differences import reading_differences
-    from simkit.loaders.urdf.robot_reading import CONFIGURATIONS, place_of, scene_reading
-    from simkit.loaders.urdf.yourdfpy_reader import SecondReaderError
     from simkit.scene.urdf_text import urdf_text
 
     validate_word("--against", reader, tuple(_READERS))
