@@ -44,7 +44,7 @@ class DsrosRosDvl(SensorPlugin):
         if not isinstance(parent, DsrosDvl):
             self.refuse(parent, "dsros_dvl")
             return
-        self._current = np.zeros(3)
+        self._sensor, self._current = parent, np.zeros(3)
         self._layers: tuple[tuple[float, Vector], ...] = ()
         self._has_current = False
         parent.water, parent.frame_id, parent.cloud_frame = self._velocity_at, options.frame, options.cloud_frame
@@ -79,12 +79,14 @@ class DsrosRosDvl(SensorPlugin):
     def _on_current(self, message: Message) -> None:
         current = current_of(message)
         if current is not None:
+            self._sensor.take_held()  # a pending reading belongs to the old current
             self._current, self._has_current = np.array(current), True
 
     def _on_layers(self, message: Message) -> None:
         velocities = [np.array((v.x, v.y, v.z)) for v in message.velocities]
         if len(velocities) != len(message.depths) or not np.isfinite([*message.depths, *np.ravel(velocities)]).all():
             return
+        self._sensor.take_held()
         self._layers = tuple(zip(map(float, message.depths), velocities, strict=True))
         if velocities and not self._has_current:
             self._current = sum(velocities, np.zeros(3)) / len(velocities)
