@@ -1070,6 +1070,64 @@ class ConveyorBeltControl_Response:
     success: bool
     __msgtype__: ClassVar[str]
 
+# dave_gazebo_ros_plugins
+
+@dataclass
+class dave_gazebo_ros_plugins__srv__GetOriginSphericalCoord_Request:
+    """`dave_gazebo_ros_plugins/srv/GetOriginSphericalCoord_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class dave_gazebo_ros_plugins__srv__GetOriginSphericalCoord_Response:
+    """`dave_gazebo_ros_plugins/srv/GetOriginSphericalCoord_Response`"""
+    latitude_deg: float
+    longitude_deg: float
+    altitude: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class dave_gazebo_ros_plugins__srv__SetOriginSphericalCoord_Request:
+    """`dave_gazebo_ros_plugins/srv/SetOriginSphericalCoord_Request`"""
+    latitude_deg: float
+    longitude_deg: float
+    altitude: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class dave_gazebo_ros_plugins__srv__SetOriginSphericalCoord_Response:
+    """`dave_gazebo_ros_plugins/srv/SetOriginSphericalCoord_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class dave_gazebo_ros_plugins__srv__TransformFromSphericalCoord_Request:
+    """`dave_gazebo_ros_plugins/srv/TransformFromSphericalCoord_Request`"""
+    latitude_deg: float
+    longitude_deg: float
+    altitude: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class dave_gazebo_ros_plugins__srv__TransformFromSphericalCoord_Response:
+    """`dave_gazebo_ros_plugins/srv/TransformFromSphericalCoord_Response`"""
+    output: Vector3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class dave_gazebo_ros_plugins__srv__TransformToSphericalCoord_Request:
+    """`dave_gazebo_ros_plugins/srv/TransformToSphericalCoord_Request`"""
+    input: Vector3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class dave_gazebo_ros_plugins__srv__TransformToSphericalCoord_Response:
+    """`dave_gazebo_ros_plugins/srv/TransformToSphericalCoord_Response`"""
+    latitude_deg: float
+    longitude_deg: float
+    altitude: float
+    __msgtype__: ClassVar[str]
+
 # dave_interfaces
 
 @dataclass
@@ -6577,6 +6635,22 @@ class play_motion_msgs__srv__ListMotions_Response:
     motions: list[MotionInfo]
     __msgtype__: ClassVar[str]
 
+# prius_msgs
+
+@dataclass
+class Control:
+    """`prius_msgs/msg/Control`"""
+    header: Header
+    throttle: float
+    brake: float
+    steer: float
+    shift_gears: int
+    NO_COMMAND: ClassVar[int] = 0
+    NEUTRAL: ClassVar[int] = 1
+    FORWARD: ClassVar[int] = 2
+    REVERSE: ClassVar[int] = 3
+    __msgtype__: ClassVar[str]
+
 # rcl_interfaces
 
 @dataclass
@@ -10955,13 +11029,13 @@ class GetCurrentModel_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetOriginSphericalCoord_Request:
+class uuv_world_ros_plugins_msgs__srv__GetOriginSphericalCoord_Request:
     """`uuv_world_ros_plugins_msgs/srv/GetOriginSphericalCoord_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetOriginSphericalCoord_Response:
+class uuv_world_ros_plugins_msgs__srv__GetOriginSphericalCoord_Response:
     """`uuv_world_ros_plugins_msgs/srv/GetOriginSphericalCoord_Response`"""
     latitude_deg: float
     longitude_deg: float
@@ -11011,7 +11085,7 @@ class SetCurrentVelocity_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetOriginSphericalCoord_Request:
+class uuv_world_ros_plugins_msgs__srv__SetOriginSphericalCoord_Request:
     """`uuv_world_ros_plugins_msgs/srv/SetOriginSphericalCoord_Request`"""
     latitude_deg: float
     longitude_deg: float
@@ -11019,13 +11093,13 @@ class SetOriginSphericalCoord_Request:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetOriginSphericalCoord_Response:
+class uuv_world_ros_plugins_msgs__srv__SetOriginSphericalCoord_Response:
     """`uuv_world_ros_plugins_msgs/srv/SetOriginSphericalCoord_Response`"""
     success: bool
     __msgtype__: ClassVar[str]
 
 @dataclass
-class TransformFromSphericalCoord_Request:
+class uuv_world_ros_plugins_msgs__srv__TransformFromSphericalCoord_Request:
     """`uuv_world_ros_plugins_msgs/srv/TransformFromSphericalCoord_Request`"""
     latitude_deg: float
     longitude_deg: float
@@ -11033,19 +11107,19 @@ class TransformFromSphericalCoord_Request:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class TransformFromSphericalCoord_Response:
+class uuv_world_ros_plugins_msgs__srv__TransformFromSphericalCoord_Response:
     """`uuv_world_ros_plugins_msgs/srv/TransformFromSphericalCoord_Response`"""
     output: Vector3
     __msgtype__: ClassVar[str]
 
 @dataclass
-class TransformToSphericalCoord_Request:
+class uuv_world_ros_plugins_msgs__srv__TransformToSphericalCoord_Request:
     """`uuv_world_ros_plugins_msgs/srv/TransformToSphericalCoord_Request`"""
     input: Vector3
     __msgtype__: ClassVar[str]
 
 @dataclass
-class TransformToSphericalCoord_Response:
+class uuv_world_ros_plugins_msgs__srv__TransformToSphericalCoord_Response:
     """`uuv_world_ros_plugins_msgs/srv/TransformToSphericalCoord_Response`"""
     latitude_deg: float
     longitude_deg: float

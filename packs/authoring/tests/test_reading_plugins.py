@@ -10,6 +10,7 @@ import pytest
 import simkit
 from simkit import ModelPlugin, Params, WorldPlugin
 from simkit.extend import Options, OptionsOf, listens, number, texts
+from simkit.msgs.shipped_interfaces import shipped_parts
 from simkit.plugins.discovery.find_plugin_class import plugin_kinds
 from simkit.plugins.discovery.python_plugins import as_class
 from simkit_authoring.catalogue import common_facts, facts_of
@@ -22,6 +23,11 @@ def parameter(facts: Facts, name: str) -> Parameter:
 
 def topics(facts: Facts) -> dict[str, Topic]:
     return {t.name: t for t in facts.topics}
+
+
+def test_simkit_has_the_types_of_all_declared_topics_and_services() -> None:
+    declared = {(cls.__name__, kind) for cls in plugin_kinds().values() for e in cls.endpoints for kind in e.types}
+    assert not [pair for pair in sorted(declared) if "/" in pair[1] and not shipped_parts(pair[1])]
 
 
 class Everything(ModelPlugin):

@@ -271,3 +271,15 @@ def test_a_chemical_sensor_measures_the_particles_near_it_and_the_salinity() -> 
 def test_a_plume_that_is_saltier_than_the_water_is_an_error() -> None:
     with pytest.raises(simkit.LoadError, match="SK-PARAM-002"):
         simkit.load(world(vehicle(CHEMICAL.format(gain=1, salinity=50))))
+
+
+@pytest.mark.parametrize("library", ["libuuv_sc_ros_interface_plugin.so", "libdave_sc_coordinates_interface.so"])
+def test_services_convert_positions_to_places_on_the_earth_and_back(library: str) -> None:
+    world = f'''<sdf version="1.6"><world name="sea"><spherical_coordinates><latitude_deg>56</latitude_deg>
+      <longitude_deg>10</longitude_deg></spherical_coordinates><plugin name="s" filename="{library}"/></world></sdf>'''
+    with simkit.load(world) as sim:
+        assert sim.call("/gazebo/get_origin_spherical_coordinates").latitude_deg == pytest.approx(56.0)
+        place = sim.call("/gazebo/transform_to_spherical_coordinates", {"input": {"x": 100.0, "y": 200.0, "z": -10.0}})
+        degrees = {"latitude_deg": place.latitude_deg, "longitude_deg": place.longitude_deg}
+        back = sim.call("/gazebo/transform_from_spherical_coordinates", {**degrees, "altitude": place.altitude}).output
+        assert (back.x, back.y, back.z) == pytest.approx((100.0, 200.0, -10.0), abs=1e-6)
