@@ -13,7 +13,7 @@ import numpy as np
 
 from simkit import Params, SensorPlugin
 from simkit.extend import OptionsOf, Vector, publishes
-from simkit_water_and_air.plugins.uuv.water_current import CURRENT_TYPES, LAYERS, absolute_topic, current_of
+from simkit_water_and_air.plugins.fluids.water_current import CURRENT_TYPES, LAYERS, absolute_topic, current_of
 from simkit_water_and_air.sensors.dsros_dvl import CLOUD, DVL, PLUGIN, PROFILE, RANGES, DsrosDvl, DsrosDvlOptions
 
 if TYPE_CHECKING:

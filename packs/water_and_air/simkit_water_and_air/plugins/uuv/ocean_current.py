@@ -15,6 +15,7 @@ from simkit import ModelPlugin, Params, msgs
 from simkit.extend import Options, OptionsOf, block, boolean, integer, number, offers, publishes, text, without_effect
 from simkit.input_file import read_failure, read_input_text
 from simkit.plugins.find_entities import find_plugin_file
+from simkit_water_and_air.plugins.fluids.water_current import LAYERS, TWIST, absolute_topic, current_message
 from simkit_water_and_air.plugins.uuv.tide import (
     Constituent,
     Date,
@@ -30,7 +31,6 @@ from simkit_water_and_air.plugins.uuv.underwater_current import (
     current_endpoints,
     velocity_of,
 )
-from simkit_water_and_air.plugins.uuv.water_current import LAYERS, TWIST, absolute_topic, current_message
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from simkit import Params, WorldPlugin
 from simkit.extend import Options, OptionsOf, block, number, offers, publishes, text
-from simkit_water_and_air.plugins.uuv.water_current import TWIST, current_message
+from simkit_water_and_air.plugins.fluids.water_current import TWIST, current_message
 
 if TYPE_CHECKING:
     from simkit import Simulation
