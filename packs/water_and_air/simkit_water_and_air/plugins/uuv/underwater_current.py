@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Final
 
 from simkit import Params, WorldPlugin, msgs
 from simkit.extend import Options, OptionsOf, block, number, offers, publishes, text
-from simkit_water_and_air.plugins.uuv.water_current import TWIST
+from simkit_water_and_air.plugins.fluids.water_current import TWIST
 
 if TYPE_CHECKING:
     from simkit import Simulation

@@ -1,4 +1,4 @@
-"""Velocity of the water on a topic, for the plugins of uuv_simulator that move in it."""
+"""Velocity of the water on a topic, for the plugins whose links move in it."""
 
 from __future__ import annotations
 
