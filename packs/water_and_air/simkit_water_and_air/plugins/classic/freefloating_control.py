@@ -105,7 +105,6 @@ class FreefloatingControl(ModelPlugin):
     options = OptionsOf(FreefloatingControlOptions)
     filenames = ("libfreefloating_gazebo_control.so",)
     drives = True
-    reads_at_load = ("pose",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         options = self.options.read_all()
