@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -81,3 +82,20 @@ def test_a_process_has_ended_only_after_its_end() -> None:
 @pytest.mark.parametrize("number", [0, -1, 1 << 70])
 def test_a_number_of_no_process_is_never_signalled(number: int) -> None:
     assert not has_ended(number)
+
+
+FIRST_CHILD = """
+import multiprocessing, signal
+from simkit.process_control import without_interrupts
+child = multiprocessing.get_context("spawn").Process(target=signal.raise_signal, args=(signal.SIGINT,))
+with without_interrupts():
+    child.start()
+child.join()
+raise SystemExit(child.exitcode)
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="this system cannot block a signal")
+def test_ctrl_c_reaches_no_child_process_not_even_the_first_one() -> None:
+    ended = subprocess.run([sys.executable, "-c", FIRST_CHILD], capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stderr) == (0, "")

@@ -41,7 +41,7 @@ PRIVATE_IMPORTS = {
     "navigation": 17,
     "nodes": 32,
     "open_rmf": 5,
-    "robots": 21,
+    "robots": 22,
     "ros": 10,
     "special_cameras": 18,
     "terminal": 15,

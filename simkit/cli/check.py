@@ -122,8 +122,18 @@ def _is_searched(file: str) -> bool:
     folder, where = Path(file), Where(file)
     if (folder / "model.config").exists() or (folder / "manifest.xml").exists():
         return False
-    has_model = model_file(folder, where, Diagnostics(), lambda _: True) is not None
-    return not has_model and not (find_bundled_world(file) or find_bundled_model(file))
+    model = model_file(folder, where, Diagnostics(), lambda _: True)
+    if model is not None:
+        return model.suffix == ".xml" and not _is_mjcf_folder(folder)
+    return not (find_bundled_world(file) or find_bundled_model(file))
+
+
+def _is_mjcf_folder(folder: Path) -> bool:
+    """Check whether a folder has files in MJCF and no other worlds, models or robots, also not in folders below it."""
+    from simkit.cli.scores.folder_search import find_files, root_element
+
+    files = find_files(folder).files
+    return bool(files) and all("/" not in name and root_element(folder / name) == "mujoco" for name in files)
 
 
 def _run_options(given: GivenOptions) -> Iterator[str]:

@@ -178,6 +178,7 @@ class SceneLink:
         enable_wind: true if the wind of the world acts on the link.
         fluid_added_mass: upper triangle of the added mass matrix of a fluid, row by row, in the link's frame: xx, xy,
             …, rr [kg, kg·m, kg·m²]; empty if the file has none.
+        plugin_elements: elements of the link in the file that only plugins read, such as `<buoyancy>`.
     """
 
     name: str
@@ -196,6 +197,7 @@ class SceneLink:
     velocity_decay: tuple[float, float] = (0.0, 0.0)
     enable_wind: bool = False
     fluid_added_mass: tuple[float, ...] = ()
+    plugin_elements: tuple[Params, ...] = ()
 
 
 MOST_LEADERS: Final = 100

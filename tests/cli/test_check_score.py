@@ -286,6 +286,33 @@ def test_a_folder_that_is_a_model_is_checked_as_a_model() -> None:
     assert run("repository").stdout.splitlines()[-1] == "0 errors, 0 warnings, 0 notes"
 
 
+def test_a_folder_of_worlds_with_one_other_xml_file_is_not_a_model() -> None:
+    write({"plugins.xml": "<library path='x'/>", "a.sdf": MODEL})
+    assert "1 of 1 run as they are" in run("repository").stdout
+
+
+def test_a_folder_of_mjcf_is_checked_as_a_model() -> None:
+    write({"robot.xml": "<mujoco><worldbody><geom size='1'/></worldbody></mujoco>"})
+    assert run("repository").stdout.splitlines()[-1] == "0 errors, 0 warnings, 0 notes"
+
+
+def test_files_named_sdf_and_urdf_without_xml_are_in_the_table_and_a_name_stays_in_its_line() -> None:
+    write({"a\nb.sdf": MODEL, "empty.urdf": "", "stage.world": "resolution 0.02"})
+    lines = run("repository").stdout.splitlines()
+    assert [line.split()[:2] for line in lines[1:3]] == [["100", "a\\nb.sdf"], ["0", "empty.urdf"]]
+    assert "stage.world" not in "".join(lines)
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="this user may read every folder")
+def test_folders_that_cannot_be_read_are_told() -> None:
+    write({"a.sdf": MODEL, "closed/b.sdf": MODEL})
+    Path("repository/closed").chmod(0)
+    try:
+        assert "not searched: closed, because this user may not read it" in run("repository").stdout
+    finally:
+        Path("repository/closed").chmod(0o700)
+
+
 def test_a_folder_without_files_is_an_error() -> None:
     write({"readme.txt": "nothing"})
     result = run("repository")
@@ -303,7 +330,10 @@ def test_links_pipes_and_hostile_names_are_harmless() -> None:
     assert find_files(Path("repository")).files == ["<b>\x1b[31m.sdf", "a.sdf", "c/c.sdf"]
     result = run("repository", "--jobs", "1", "--html", "page.html")
     assert "\x1b" not in result.stdout
-    assert "<b>" not in Path("page.html").read_text(encoding="utf-8").split("<table>")[1]
+    assert "3 of 3 run as they are" in result.stdout  # a name with < is not XML text
+    page = Path("page.html").read_text(encoding="utf-8")
+    assert "<b><b>" not in page
+    assert "<b>&lt;b&gt;" in page
 
 
 @pytest.mark.needs_packs

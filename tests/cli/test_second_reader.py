@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from importlib import metadata
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -166,3 +167,14 @@ def test_published_robots_are_read_equally(every: int) -> None:
         assert [str(d) for d, place in zip(found, places, strict=True) if place.line not in explained] == []
         compared += 1
     assert compared > 50 / every
+
+
+def test_a_chain_of_300_links_is_compared_in_seconds() -> None:
+    names = [f"l{number}" for number in range(300)]
+    links = "".join(f'<link name="{name}">{MASS}</link>' for name in names)
+    joints = "".join(
+        joint(f"j{child}", "revolute", parent, child, f'<axis xyz="0 0 1"/>{LIMIT}')
+        for parent, child in pairwise(names)
+    )
+    text = f'<robot name="r">{links}{joints}</robot>'
+    assert differences(text, text) == []

@@ -83,6 +83,7 @@ class FolderScore:
             "others": [
                 {"kind": kind.title, "reason": kind.reason, "files": files} for kind, files in self.found.others.items()
             ],
+            "unreadable_folders": self.found.unreadable,
             "is_complete": self.found.is_complete,
             "files": [score.as_dict() for score in self.files],
         }

@@ -34,6 +34,8 @@ _MOST_ENTRIES: Final = 500_000  # entries of folders; a search takes about 10 s 
 _MOST_DEPTH: Final = 40
 _HEAD: Final = 1 << 16  # bytes of a file in which its root element must begin
 _SUFFIXES: Final = (".sdf", ".world", ".urdf", ".xacro", ".xml", ".mjcf")
+_ONLY_OURS: Final = (".sdf", ".urdf")
+"""Suffixes of files that are worlds, models or robots even if no root element can be read."""
 _TEMPLATES: Final = tuple(f"{name}{end}" for name in _SUFFIXES for end in (".erb", ".em", ".jinja", ".j2", ".in"))
 _SKIPPED: Final = frozenset(
     ("build", "install", "devel", "log", "node_modules", "__pycache__", "venv", "site-packages")
@@ -71,11 +73,13 @@ class FolderFiles:
     Attributes:
         files: worlds, models and robots in the order of their paths.
         others: files that are listed only, by their kind.
+        unreadable: folders that this user may not read.
         is_complete: False if the folder has too many entries, so that the search stopped.
     """
 
     files: list[str] = field(default_factory=list)
     others: dict[OtherKind, list[str]] = field(default_factory=dict)
+    unreadable: list[str] = field(default_factory=list)
     is_complete: bool = True
 
 
@@ -85,7 +89,7 @@ def find_files(folder: Path) -> FolderFiles:
     Hidden folders and links are skipped, and folders with the results of a build.
     """
     found, kinds, roots = FolderFiles(), other_kinds(), frozenset(loader_kinds())
-    for path, is_last in _walk(folder):
+    for path, is_last in _walk(folder, found.unreadable):
         if is_last or len(found.files) >= MOST_FILES:
             found.is_complete = False
             break
@@ -93,13 +97,18 @@ def find_files(folder: Path) -> FolderFiles:
         kind = next((kind for kind in kinds if any(fnmatchcase(name, pattern) for pattern in kind.patterns)), None)
         if kind is not None:
             found.others.setdefault(kind, []).append(path)
-        elif name.lower().endswith(_SUFFIXES) and root_element(folder / path) in roots:
-            found.files.append(path)
+        elif name.lower().endswith(_SUFFIXES):
+            root = root_element(folder / path)
+            if root in roots or (not root and name.lower().endswith(_ONLY_OURS)):
+                found.files.append(path)
     return found
 
 
-def _walk(folder: Path) -> Iterator[tuple[str, bool]]:
-    """Yield the paths of all regular files in order, and True with the last one if there are too many entries."""
+def _walk(folder: Path, unreadable: list[str]) -> Iterator[tuple[str, bool]]:
+    """Yield the paths of all regular files in order, and True with the last one if there are too many entries.
+
+    Folders that cannot be read are added to `unreadable`.
+    """
     left = _MOST_ENTRIES
     waiting: list[tuple[str, int]] = [("", 0)]
     while waiting:
@@ -108,6 +117,7 @@ def _walk(folder: Path) -> Iterator[tuple[str, bool]]:
             with os.scandir(folder / below) as entries:
                 listed = sorted((entry for entry in entries if not is_link_entry(entry)), key=lambda entry: entry.name)
         except OSError:
+            unreadable.append(below or ".")
             continue
         left -= len(listed)
         folders = []

@@ -13,6 +13,7 @@ import time
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from simkit import progress
@@ -187,7 +188,7 @@ def _score_files(connection: Connection, arguments: LoadArguments, options: Scor
 def _score(file: str, arguments: LoadArguments, options: ScoreOptions) -> FileScore:
     """Score a file; an exception of simkit itself becomes an error of this file."""
     try:
-        return score_file(file, arguments, options)
+        return score_file(Path(file) if "<" in file else file, arguments, options)  # a text with < would be XML
     except (OutOfMemory, MemoryError):
         error = Diagnostic(STOPPED, "error", f"the check needs more than {MEMORY >> 30} GiB of memory", file)
     except SimkitError as raised:

@@ -65,21 +65,22 @@ class ScoreOptions:
     passes: int = 16
 
 
-def score_file(source: str, arguments: LoadArguments, options: ScoreOptions) -> FileScore:
+def score_file(source: str | Path, arguments: LoadArguments, options: ScoreOptions) -> FileScore:
     """Check a file and return its score.
 
     Args:
-        source: file, bare name or XML text.
+        source: file, bare name or XML text; a path is always a file.
         arguments: further arguments of `simkit.load`.
         options: what the score contains.
     """
     from simkit.build import check_and_visit
 
-    shown = "<string>" if "<" in source else source
+    text = source if isinstance(source, str) and "<" in source else ""
+    shown = "<string>" if text else str(source)
     results: list[FileScore] = []
 
     def visit(simulation: Simulation, diagnostics: Diagnostics) -> None:
-        scored = _score_parts(simulation, list(diagnostics), source, arguments, options.effect_of)
+        scored = _score_parts(simulation, list(diagnostics), text, arguments, options.effect_of)
         results.append(_loaded_score(shown, simulation, scored, list(diagnostics), options))
 
     found = list(check_and_visit(source, visit, **arguments))
@@ -116,7 +117,7 @@ def refused_score(shown: str, found: Sequence[Diagnostic], options: ScoreOptions
 def _score_parts(
     simulation: Simulation,
     found: Sequence[Diagnostic],
-    source: str,
+    text: str,
     arguments: LoadArguments,
     effect_of: EffectOf,
 ) -> list[tuple[Part, State, list[Diagnostic]]]:
@@ -129,7 +130,7 @@ def _score_parts(
 
     parts = list_parts(simulation.world, is_drive)
     effects = [(item, effect) for item in found if (effect := effect_of(item.code, item.severity)) != "none"]
-    places = PartPlaces(parts, [item for item, _ in effects], source if "<" in source else "")
+    places = PartPlaces(parts, [item for item, _ in effects], text)
     states: list[State] = ["used"] * len(parts)
     problems: dict[int, list[Diagnostic]] = {}
     absent: dict[Part, list[Diagnostic]] = {}

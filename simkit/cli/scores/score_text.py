@@ -81,10 +81,11 @@ def folder_lines(scores: Sequence[FileScore]) -> Iterator[str]:
     """Yield the table of the files of a folder, as wide as the terminal."""
     columns = shutil.get_terminal_size((_COLUMNS, 24)).columns
     widest = max(20, columns // 2 - 9)
-    width = max((min(len(score.file), widest) for score in scores), default=0)
+    names = [score.file.replace("\n", "\\n") for score in scores]
+    width = max((min(len(name), widest) for name in names), default=0)
     yield "score  file"
-    for score in scores:
-        name = score.file if len(score.file) <= width else "…" + score.file[1 - width :]  # the end of a path says more
+    for score, full_name in zip(scores, names, strict=True):
+        name = full_name if len(full_name) <= width else "…" + full_name[1 - width :]  # the end of a path says more
         number = "part" if score.status == "part" else str(score.score)
         yield f"{number:>5}  {name:{width}}  {shorten(row_text(score), max(20, columns - width - 9))}".rstrip()
 
@@ -138,6 +139,8 @@ def summary_lines(table: FolderScore) -> Iterator[str]:
             yield f"        and {len(missing) - _MOST_MISSING} more; list all with --json or --html"
     for title, count, reason, command in table.commands_of_others():
         yield f"not checked: {count} {title}: {reason}" + (f"; start one with: {command}" if command else "")
+    if unreadable := table.found.unreadable:
+        yield f"not searched: {shorten(', '.join(unreadable), _LONGEST)}, because this user may not read it"
     if not table.found.is_complete:
         yield "the folder has too many files; the search stopped, so check a folder in it"
     first = table.first_command()

@@ -13,6 +13,7 @@ import numpy as np
 
 from simkit.cli.second_reader.robot_reading import MOVING, Part, RobotReading, Value, limit_values, mimic_text
 from simkit.float_sum import float_sum
+from simkit.linear_algebra import matmul
 from simkit.scene.model import MOST_LEADERS
 
 _IDENTITY = ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0, 1.0))
@@ -58,11 +59,34 @@ def yourdfpy_reading(text: bytes) -> RobotReading:
                 # yourdfpy 0.0.59 needs numbers of NumPy
                 every = {name: np.float64(_position(name, laws, positions, MOST_LEADERS)) for name in moving}
                 urdf.update_cfg(every)
-                return {name: _pose_numbers(urdf.get_transform(name, urdf.base_link)) for name in urdf.link_map}
-            except Exception as error:  # noqa: BLE001 - for example, a link that no joint connects to the root
+                return _link_frames(urdf)
+            except SecondReaderError:
+                raise
+            except Exception as error:  # noqa: BLE001 - an invalid file may raise any exception
                 raise _read_error(error) from None
 
     return RobotReading(urdf.base_link, parts, frames)
+
+
+def _link_frames(urdf: Any) -> dict[str, tuple[float, ...]]:
+    """Return the poses of all links, in the order of the file, from the transforms of all joints.
+
+    The transform from the root to a link takes yourdfpy minutes in a chain of hundreds of links.
+    """
+    children: dict[str, list[str]] = {}
+    for joint in urdf.robot.joints:
+        children.setdefault(joint.parent, []).append(joint.child)
+    frames, waiting = {urdf.base_link: np.asarray(_IDENTITY)}, [urdf.base_link]
+    while waiting:
+        parent = waiting.pop()
+        for child in children.get(parent, ()):
+            if child not in frames:
+                frames[child] = matmul(frames[parent], urdf.get_transform(child, parent))
+                waiting.append(child)
+    apart = next((name for name in urdf.link_map if name not in frames), None)
+    if apart is not None:
+        raise SecondReaderError(f"no joint connects the link {apart!r} to its root link {urdf.base_link!r}")
+    return {name: _pose_numbers(frames[name]) for name in urdf.link_map}
 
 
 def _read_error(error: Exception) -> SecondReaderError:

@@ -29,9 +29,10 @@ _MODEL_SETTINGS = ("static", "self_collide", "enable_wind", "allow_auto_disable"
 
 
 def declare_model(source: EntitySource, outer: Scope, outer_scoped: str, workspace: Workspace) -> ModelDraft | None:
-    """Register a model and all named elements in it; return None if the model is left out.
+    """Register a model and all named elements in it.
 
-    That is a model beyond the limit of models, or one of missing includes only, which are reported instead.
+    Returns:
+        None if the limit of models is exceeded, or if the model only includes models that are not found.
     """
     if not workspace.count_model(source.where):
         return None
@@ -43,8 +44,8 @@ def declare_model(source: EntitySource, outer: Scope, outer_scoped: str, workspa
     missing = len(workspace.missing)
     _declare_content(draft, source.element, source.file, scope, workspace)
     draft.plugins.extend(source.plugins)
-    if not draft.links and not draft.models and len(workspace.missing) > missing:
-        source.element.mark_all_read()
+    if not draft.links and not draft.models and len(workspace.missing) > missing and not _is_static(source):
+        source.element.mark_all_read()  # the missing includes are reported, not the links that they would contain
         return None
     _choose_canonical(draft, source.element, workspace)
     return draft

@@ -28,6 +28,8 @@ _CONTACT_ELEMENTS = {
 }  # fmt: skip
 # Gazebo read the sensors of URDF files as SDF 1.4 when robots wrote one <noise> for a whole IMU.
 _SENSORS_VERSION = (1, 4)
+PLUGIN_ELEMENTS = ("buoyancy", "fluid")
+"""Elements of a link that `libfreefloating_gazebo_fluid.so` reads."""
 NO_MASS = Inertial(0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0), given=False)
 
 
@@ -64,7 +66,16 @@ def read_link(draft: RobotDraft, name: str, materials: Materials, windy: bool) -
             block.number("angular", decay or 0.0, minimum=0.0),
         ),
         enable_wind=windy if wind is None else wind,
+        plugin_elements=_plugin_elements(element),
     )
+
+
+def _plugin_elements(link: Params) -> tuple[Params, ...]:
+    """Return the elements of a link that only plugins of the world read."""
+    elements = tuple(child for child in link.children if child.name in PLUGIN_ELEMENTS)
+    for element in elements:
+        element.mark_all_read()
+    return elements
 
 
 def _inertial(name: str, link: Params) -> Inertial:

@@ -9,6 +9,7 @@ from simkit.diagnostics import Where, did_you_mean
 from simkit.loaders.sdf.element_table import sdf_elements
 from simkit.loaders.sdf.unread_elements import report_unread as report_sdf
 from simkit.loaders.urdf.gazebo_extensions import GazeboExtensions
+from simkit.loaders.urdf.link import PLUGIN_ELEMENTS
 from simkit.params import Params
 
 _Places = defaultdict[str, list[Where]]
@@ -61,6 +62,10 @@ def report_unread(robot: Params, extensions: GazeboExtensions) -> None:
     for (message, code, hint), places in warnings.items():
         robot.diagnostics.warning(code, message + _repeated(places), places[0], hint)
     _note_all("SK-URDF-011", "elements of other tools, without effect in simkit and in Gazebo", notes, robot)
+    water: _Places = defaultdict(list)
+    for child in (child for link in robot.all("link") for child in link.children if child.name in PLUGIN_ELEMENTS):
+        water[f"<{child.name}> in <link>"].append(child.where)
+    _note_all("SK-URDF-033", "elements for libfreefloating_gazebo_fluid.so of the world", water, robot)
 
 
 def _note_all(code: str, message: str, counted: _Places, robot: Params) -> None:
@@ -109,7 +114,8 @@ def _read_elements(robot: Params) -> Iterator[Params]:
     while stack:
         element = stack.pop()
         yield element
-        below = [c for c in element.children if c.was_read and not (element is robot and c.name in _KEPT)]
+        kept = _KEPT if element is robot else PLUGIN_ELEMENTS
+        below = [c for c in element.children if c.was_read and c.name not in kept]
         stack += reversed(below)
 
 

@@ -8,6 +8,7 @@ import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from shlex import quote
 from types import MappingProxyType
 from typing import Final
 
@@ -101,7 +102,7 @@ def find_plugin(
         reported = len(collector)
         cls = find_user_plugin(plugin, plugin_paths, collector)
         if cls is None and len(collector) == reported:
-            _report_unknown(plugin, collector)
+            _report_unknown(plugin, collector, parent)
     if parent == "any" and not plugin.scoped:
         parent = "world"
     if cls is not None and not _fits(cls, plugin, parent, collector):
@@ -121,7 +122,7 @@ def _fits(cls: type[Plugin], plugin: ScenePlugin, parent: ParentKind, diagnostic
     return False
 
 
-def _report_unknown(plugin: ScenePlugin, diagnostics: Diagnostics) -> None:
+def _report_unknown(plugin: ScenePlugin, diagnostics: Diagnostics, parent: ParentKind) -> None:
     names = aliases(plugin)
     if fault := next(filter(None, map(plugin_kinds().fault, names)), None):
         message = f"plugin {plugin.filename!r} (name {plugin.name!r}) cannot be imported: {fault}"
@@ -140,7 +141,12 @@ def _report_unknown(plugin: ScenePlugin, diagnostics: Diagnostics) -> None:
     spelled = plugin_kinds().written
     cores = {_core(name): spelled[name] for name in sorted(spelled, reverse=True)}
     near = next(filter(None, (closest(_core(name), cores) for name in names)), None)
-    others = "to write it in Python: docs/writing_a_plugin.md; or install the pack that has it"
+    on = "" if parent in ("any", "model") else f" --on {parent}"
+    new = f"simkit plugin new {quote(plugin.filename.rpartition('/')[2])}{on}"
+    others = (
+        f"`{new}` creates a Python class for this name, which `--plugin-path .` loads instead of the C++ library "
+        "(docs/writing_a_plugin.md); or install the pack that has it"
+    )
     known = f"did you mean {cores[near]!r}? Else, " if near else "`simkit plugin list` shows all names; "
     message = f"unknown plugin {plugin.filename!r} (name {plugin.name!r}); it is ignored"
     diagnostics.warning("SK-PLUGIN-001", message, plugin.where, known + others)
@@ -164,4 +170,4 @@ def _report_unsupported(plugin: ScenePlugin, known: UnsupportedPlugin | None, di
 
 def _core(name: str) -> str:
     """Return a normalised name without prefix and suffix that many names share, to compare two names."""
-    return re.sub(r"^(gazebo_ros_|gazebo_|gz-sim-|gz::sim::systems::)|-system$", "", name) or name
+    return re.sub(r"^(gazebo_ros_|gazebo_|gz-sim-|gz::sim::systems::)|-system$|(_gazebo)?_plugin$", "", name) or name

@@ -196,16 +196,6 @@ def test_missing_includes_are_warnings_in_a_world_with_others(load, write):
     assert [d.line for d in found if d.severity == "error"] == [2, 3, 4, 5]
 
 
-def test_a_model_of_missing_includes_only_is_left_out_of_a_world(load, write):
-    root = write("models/box/model.sdf", BOX).parents[1]
-    box = "<include><uri>model://box</uri></include>"
-    chair = "<model name='chair'><include><uri>model://chair</uri></include></model>"
-    world = f"<sdf version='1.9'><world name='w'>{box}{chair}<model name='room'>{chair}</model></world></sdf>"
-    scene, found = load(world, (root,))
-    assert [m.name for m in scene.world.models] == ["box"]
-    assert [(d.code, d.severity) for d in found if d.severity != "note"] == [("SK-URI-001", "warning")]
-
-
 def test_a_missing_include_of_a_bare_model_is_an_error(load, write):
     root = write("models/box/model.sdf", BOX).parents[1]
     includes = "<include><uri>model://box</uri></include><include><uri>model://lamp</uri></include>"
@@ -214,14 +204,29 @@ def test_a_missing_include_of_a_bare_model_is_an_error(load, write):
 
 
 def test_a_model_is_found_although_a_package_has_its_name(load, write):
-    root = write("project/robot_lamp/package.xml", "<package><name>robot_lamp</name></package>").parents[1]
+    write("project/robot_lamp/package.xml", "<package><name>robot_lamp</name></package>")
     write("project/.git/HEAD", "")
     write("project/robot_lamp/models/lamp/model.sdf", BOX)
     write("project/world/package.xml", "<package><name>world</name></package>")
     world = "<sdf version='1.9'><world name='w'><include><uri>model://lamp</uri></include></world></sdf>"
     scene, found = load(write("project/world/worlds/w.sdf", world))
     assert [m.name for m in scene.world.models] == ["box"], [str(d) for d in found]
-    assert root.is_dir()
+
+
+def test_a_model_of_missing_includes_is_left_out_with_them(load, write):
+    """The missing includes are reported, and not that the model around them has no link."""
+    root = write("models/box/model.sdf", BOX).parents[1]
+    course = "<model name='course'><include><uri>model://buoy</uri></include></model>"
+    others = "<include><uri>model://box</uri></include>"
+    scene, found = load(f"<sdf version='1.9'><world name='w'>{course}{others}</world></sdf>", (root,))
+    assert [m.name for m in scene.world.models] == ["box"]
+    assert [(d.code, d.severity) for d in found if d.severity != "note"] == [("SK-URI-001", "warning")]
+
+    _, found = load(f"<sdf version='1.9'><world name='w'>{course}</world></sdf>", (root,))
+    assert [d.code for d in found if d.severity == "error"] == ["SK-URI-001"]
+
+    _, found = load(f"<sdf version='1.9'>{course}</sdf>", (root,))
+    assert [d.code for d in found if d.severity == "error"] == ["SK-URI-001"]
 
 
 def test_a_name_alone_is_the_model_of_that_name(load, write):

@@ -331,8 +331,12 @@ class ControlPlugin(ModelPlugin):
 class GzRos2Control(ControlPlugin):
     """Runs the controllers that the files in `<parameters>` declare; see `docs/ros2_control.md`."""
 
-    filenames = ("libgz_ros2_control-system.so", "libign_ros2_control-system.so")
-    names = ("gz_ros2_control::GazeboSimROS2ControlPlugin", "ign_ros2_control::IgnitionROS2ControlPlugin")
+    filenames = ("libgz_ros2_control-system.so", "libign_ros2_control-system.so", "gz_quadruped_hardware-system")
+    names = (
+        "gz_ros2_control::GazeboSimROS2ControlPlugin",
+        "ign_ros2_control::IgnitionROS2ControlPlugin",
+        "gz_quadruped_hardware::GazeboSimQuadrupedPlugin",
+    )
 
 
 class GazeboRos2Control(ControlPlugin):

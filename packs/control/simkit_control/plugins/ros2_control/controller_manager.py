@@ -157,8 +157,13 @@ class ControllerManager(SharedByCopies):
         controller = cls(name, self.plugin, params, self.hardware)
         controller.remappings = self.remappings.get(name, ())
         controller.endpoints = self._endpoints.setdefault(name, controller.endpoints)
+        controller.endpoints.is_active = functools.partial(self._is_active, name)
         self.controllers[name] = LoadedController(controller, kind)
         return ""
+
+    def _is_active(self, name: str) -> bool:
+        loaded = self.controllers.get(name)
+        return loaded is not None and loaded.state == "active"
 
     def _parameters(self, name: str) -> Params:
         problems, entry = Diagnostics(), self.files.of_node(f"{self.namespace}/{name}")
@@ -247,9 +252,16 @@ class ControllerManager(SharedByCopies):
         """
         released = set(leaving)
         owners = {i: owner for i, owner in self.hardware.owners.items() if owner not in released} | dict(claims or {})
-        by_joint = {i.rpartition("/")[0]: owner for i, owner in owners.items() if owner != name}
+        joints = self.hardware.joints
+
+        def unit(interface: str) -> str:
+            """Return what one controller can claim: a joint, or one interface of a joint that adds up its commands."""
+            joint = interface.rpartition("/")[0]
+            return interface if joint in joints and joints[joint].has_gain_commands else joint
+
+        claimed = {unit(i): owner for i, owner in owners.items() if owner != name}
         needed = self.controllers[name].controller.command_interfaces()
-        return {i: by_joint[joint] for i in needed if (joint := i.rpartition("/")[0]) in by_joint}
+        return {i: claimed[unit(i)] for i in needed if unit(i) in claimed}
 
     def activate(self, name: str) -> None:
         """Activate a configured controller: claim its command interfaces and bind its state interfaces."""

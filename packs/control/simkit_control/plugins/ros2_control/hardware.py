@@ -21,6 +21,8 @@ from simkit_control.plugins.ros2_control.actuator_modes import (
 )
 from simkit_control.plugins.ros2_control.hardware_interfaces import (
     EFFORT,
+    KD,
+    KP,
     POSITION,
     VELOCITY,
     Indices,
@@ -60,6 +62,7 @@ class Hardware(SharedByCopies):
         owners: name of the claiming controller, by the name of the command interface.
         springs: kp and kd by joint, by the name of a controller that simulates springs at its joints.
         holds_position: true if an unclaimed joint holds its position, whatever interfaces it has.
+        forgets_commands: true if released gains and their commands become 0; else they act until the next commands.
         is_limp: true if an unclaimed joint moves freely, whatever interfaces it has.
         rivals: actuators of other plugins that drive a joint too, by the joint's name, each with True if this hardware
             moves the joint and False if the other plugin moves it.
@@ -75,12 +78,16 @@ class Hardware(SharedByCopies):
     owners: dict[str, str] = field(default_factory=dict)
     springs: dict[str, dict[str, tuple[float, float]]] = field(default_factory=dict)
     holds_position: bool = True
+    forgets_commands: bool = False
     is_limp: bool = False
     rivals: dict[str, list[tuple[ActuatorRef, bool]]] = field(default_factory=dict)
     _sim: Simulation = field(init=False, repr=False)
     _sources: Indices = field(default_factory=lambda: np.zeros(0, np.intp))
     # indices of joints without a claimed interface
     _unclaimed: Indices = field(default_factory=lambda: np.zeros(0, np.intp))
+    # indices of joints whose gains are commands, and the indices of their five commands
+    _sprung: Indices = field(default_factory=lambda: np.zeros(0, np.intp))
+    _spring_rows: Indices = field(default_factory=lambda: np.zeros((0, 5), np.intp))
     _read_interfaces: frozenset[str] = frozenset()  # state interfaces of the active controllers
     _model: mujoco.MjModel | None = None
     _plan: list[Reading | tuple[int, Callable[[], float]]] = field(default_factory=list)  # read at every update
@@ -173,12 +180,16 @@ class Hardware(SharedByCopies):
         """Claim command interfaces for a controller; they drive the joints from now on."""
         for name in names:
             self.owners[name] = owner
-            self.commands.values[self.commands.index(name)] = np.nan
+            if not self.joints[name.rpartition("/")[0]].has_gain_commands:
+                self.commands.values[self.commands.index(name)] = np.nan
         self._switch_modes()
 
     def release(self, owner: str) -> None:
         """Release the interfaces of a controller; its joints then hold their position or move freely."""
+        released = [name for name, claimant in self.owners.items() if claimant == owner]
         self.owners = {name: claimant for name, claimant in self.owners.items() if claimant != owner}
+        if self.forgets_commands:
+            self.commands.values[[self.commands.index(name) for name in released]] = np.nan
         self._switch_modes()
 
     def _switch_modes(self) -> None:
@@ -194,11 +205,24 @@ class Hardware(SharedByCopies):
             chosen = claimed.get(joint.name, "")
             self._sources[k] = self.commands.index(f"{joint.name}/{chosen}") if chosen else -1
             mode = _MODES[chosen] if chosen else self._idle_mode(joint, claimed.get(joint.leader, ""))
-            mode = SPRING_MODE if mode == EFFORT_MODE and joint.name in springy else mode
+            if joint.has_gain_commands or (mode == EFFORT_MODE and joint.name in springy):
+                mode = SPRING_MODE
             modes.append(self._settle_rivals(joint, mode, is_claimed=bool(chosen)))
         self._unclaimed = np.flatnonzero(self._sources < 0)
+        self._find_sprung_joints(springy)
         self._group_joints()
         self.actuated.switch(np.array(modes, np.intp))
+
+    def _find_sprung_joints(self, springy: Iterable[str]) -> None:
+        """Store the joints whose gains are commands, without those to which a controller has given a spring."""
+        joints = self.actuated.joints
+        sprung = [k for k, joint in enumerate(joints) if joint.has_gain_commands and joint.name not in springy]
+        rows = {name: row for row, name in enumerate(self.commands.names)}
+        names = (POSITION, VELOCITY, EFFORT, KP, KD)
+        self._sprung = np.array(sprung, np.intp)
+        self._spring_rows = np.array(
+            [[rows.get(f"{joints[k].name}/{name}", -1) for name in names] for k in sprung], np.intp
+        ).reshape(-1, 5)
 
     def _group_joints(self) -> None:
         """Number the joints by their controller, because the wheels of one controller wait for one another."""
@@ -303,7 +327,26 @@ class Hardware(SharedByCopies):
             commands = self.commands.values.take(self._sources)
             if len(self._unclaimed):
                 commands[self._unclaimed] = np.nan
+            if len(self._sprung):
+                commands[self._sprung] = self._spring_efforts()
             self.actuated.write(commands, period)
+
+    def _spring_efforts(self) -> Vector:
+        """Set the commanded gains, and return the efforts of their joints at position and velocity 0 [N·m or N].
+
+        A position without a command is the initial position, and any other command is then 0.
+        """
+        rows = self._spring_rows
+        given = np.where(rows < 0, np.nan, self.commands.values[rows])
+        given = np.where(np.isfinite(given), given, 0.0)
+        starts = [self.actuated.joints[k].initial for k in self._sprung.tolist()]
+        has_none = ~np.isfinite(np.where(rows[:, 0] < 0, np.nan, self.commands.values[rows[:, 0]]))
+        given[:, 0] = np.where(has_none & np.isfinite(starts), starts, given[:, 0])
+        position, velocity, effort, kp, kd = given.T
+        self.actuated.set_gains(self._sprung, kp, kd)
+        kp, kd = self.actuated.spring_gains([self.actuated.joints[k].name for k in self._sprung.tolist()])
+        efforts: Vector = effort + kp * position + kd * velocity
+        return efforts
 
     # ------------------------------------------------------------------ state
 
@@ -325,6 +368,8 @@ class Hardware(SharedByCopies):
         self.actuated.modes, self.actuated.targets, self.actuated.integrals = (values.copy() for values in drives)
         self.actuated.gravity_shares = None if shares is None else shares.copy()
         self._group_joints()
+        if len(self._sprung):
+            self._spring_efforts()
 
 
 def _hardware_joint(described: JointDescription, joint: SceneJoint) -> HardwareJoint:

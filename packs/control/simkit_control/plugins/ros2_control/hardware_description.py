@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 from simkit import Params
 from simkit.extend import Diagnostics, Where, did_you_mean
 from simkit.number_text import is_number, number_or_nan
-from simkit_control.plugins.ros2_control.hardware_interfaces import EFFORT, POSITION, VELOCITY
+from simkit_control.plugins.ros2_control.hardware_interfaces import EFFORT, KD, KP, POSITION, VELOCITY
 from simkit_control.plugins.ros2_control.hardware_joint import PidGains
 
 if TYPE_CHECKING:
@@ -83,6 +83,8 @@ def mimic_circle(name: str, leaders: Mapping[str, str]) -> Sequence[str]:
 
 
 MOTION_INTERFACES: Final = (POSITION, VELOCITY, EFFORT)
+GAIN_INTERFACES: Final = (KP, KD)
+"""Command interfaces of joints whose motors have a spring and a damper with commanded gains, as those of quadrupeds."""
 _ROS_1: Final = {"PositionJointInterface": POSITION, "VelocityJointInterface": VELOCITY, "EffortJointInterface": EFFORT}
 _SIMULATION_PLUGINS: Final = ("GazeboSystem", "GazeboSimSystem", "IgnitionSystem")
 
@@ -241,13 +243,14 @@ def _known_interfaces(
 ) -> tuple[str, ...]:
     """Return the names of the supported interfaces of a joint, and report the others."""
     known = []
+    supported = (*MOTION_INTERFACES, *GAIN_INTERFACES) if kind == "command" else MOTION_INTERFACES
     for name in (interface.attribute("name") for interface in interfaces):
-        if name in MOTION_INTERFACES or (kind == "command" and name.removesuffix("_pid") in MOTION_INTERFACES):
+        if name in supported or (kind == "command" and name.removesuffix("_pid") in MOTION_INTERFACES):
             known.append(name)
             continue
         message = f"joint {joint!r}: {kind} interface {name!r} is not supported "
-        message += f"(supported: {', '.join(MOTION_INTERFACES)})"
-        near = did_you_mean(name, MOTION_INTERFACES)
+        message += f"(supported: {', '.join(supported)})"
+        near = did_you_mean(name, supported)
         diagnostics.warning("SK-CONTROL-009", f"{message}; it is ignored", element.where, near)
     return tuple(known)
 

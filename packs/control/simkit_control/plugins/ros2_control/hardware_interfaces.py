@@ -17,6 +17,8 @@ Indices = npt.NDArray[np.intp]
 POSITION: Final = "position"
 VELOCITY: Final = "velocity"
 EFFORT: Final = "effort"
+KP: Final = "kp"
+KD: Final = "kd"
 
 
 def array_index(indices: Sequence[int]) -> slice | Indices:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from simkit import Params
+from simkit_control.plugins.ros2_control.hardware_interfaces import KD, KP
 
 if TYPE_CHECKING:
     from simkit import Joint
@@ -19,7 +20,7 @@ class HardwareJoint:
     Attributes:
         name: plain name.
         joint: joint handle of the simulation; None before the load.
-        command_interfaces: command interfaces among position, velocity and effort.
+        command_interfaces: command interfaces among position, velocity, effort, kp and kd.
         lower, upper: position limits [rad or m]; infinite without limits.
         max_velocity: velocity limit [rad/s or m/s]; infinite without one.
         max_effort: effort limit [N·m or N]; infinite without one.
@@ -43,6 +44,11 @@ class HardwareJoint:
     leader: str = ""
     multiplier: float = 1.0
     offset: float = 0.0
+
+    @property
+    def has_gain_commands(self) -> bool:
+        """True if stiffness and damping are commands: effort = e + kp (x_commanded − x) + kd (v_commanded − v)."""
+        return not {KP, KD}.isdisjoint(self.command_interfaces)
 
     @property
     def handle(self) -> Joint:

@@ -92,7 +92,7 @@ class JointActuators(SharedByCopies):
                 max_effort=j.max_effort,
                 max_velocity=j.max_velocity,
                 owner=owner,
-                has_rotor=bool({POSITION, VELOCITY} & set(j.command_interfaces)),
+                has_rotor=bool({POSITION, VELOCITY} & set(j.command_interfaces)) and not j.has_gain_commands,
             )
             for j in joints
         ]
@@ -106,7 +106,8 @@ class JointActuators(SharedByCopies):
         self.integrals, self.groups = np.zeros(count), np.zeros(count, np.intp)
         self._bind()
         self.targets = np.array(sim.mj_data.qpos[self._qpos])
-        idle = [POSITION_MODE if POSITION in joint.command_interfaces else FREE for joint in self.joints]
+        is_held = [POSITION in joint.command_interfaces and not joint.has_gain_commands for joint in self.joints]
+        idle = [POSITION_MODE if held else FREE for held in is_held]
         self.modes = np.full(count, -1)
         self.switch(np.array(idle, np.intp))
 
@@ -153,6 +154,23 @@ class JointActuators(SharedByCopies):
         for k, joint in enumerate(self.joints):
             if joint.name in springs:
                 self._loops.gains[k, SPRING_MODE] = np.minimum(springs[joint.name], self._loops.stable_springs[k])
+
+    def set_gains(self, indices: Indices, kp: Vector, kd: Vector) -> None:
+        """Set stiffness and damping of joints in `SPRING_MODE`, while they are driven; stable gains bound them.
+
+        Args:
+            indices: indices in `joints`.
+            kp: stiffness of each joint [N·m/rad or N/m].
+            kd: damping of each joint [N·m·s/rad or N·s/m].
+        """
+        self._rebind_if_needed()
+        gains = np.minimum(np.stack((kp, kd), 1), self._loops.stable_springs[indices])
+        if np.array_equal(gains, self._loops.gains[indices, SPRING_MODE]):
+            return
+        self._loops.gains[indices, SPRING_MODE] = gains
+        self._cached = None
+        now, biases = self._active_modes(), self._sim.engine.touch("actuator_biasprm")
+        biases[self._ids, 1], biases[self._ids, 2] = -now.kp, -now.kv
 
     def stable_gains(self, joint: str) -> tuple[float, float] | None:
         """Return the largest kp and kd of a joint that do not oscillate at the engine's step; None without actuator."""

@@ -5,19 +5,35 @@ Parameters, defaults and topics are those of `gazebo_motor_model.h` and `gazebo_
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Final
 
-from simkit import Params, Plugin
-from simkit.extend import Options, OptionsOf, boolean, listens, text, without_effect
+import numpy as np
+
+from simkit import ModelPlugin, Params, Plugin, msgs
+from simkit.extend import (
+    Options,
+    OptionsOf,
+    boolean,
+    find_named_link,
+    listens,
+    number,
+    publishes,
+    text,
+    without_effect,
+)
+from simkit.plugins.joint_states import JOINT_STATE, joint_readings, joint_state_message
 from simkit.plugins.joints.joint_commands import ACTUATORS
 from simkit_water_and_air.plugins.gz.multicopter_motor_model import MotorModelOptions, MulticopterMotorModel
 
 if TYPE_CHECKING:
     from simkit import Model
+    from simkit.extend import SceneModel, SpecBuilder
     from simkit.msgs import Message
 
 _MAV: Final = "mav_msgs/msg/Actuators"
 _COMMAND: Final = "command/motor_speed"
+_ROTOR: Final = re.compile(r"rotor_(\d{1,6})")
 
 
 class RotorsMotorOptions(MotorModelOptions):
@@ -65,11 +81,9 @@ class RotorsInterfaceOptions(Options):
     """Options of `RotorsInterface`."""
 
     namespace: bool = without_effect(element="robotNamespace")
-    link: bool = without_effect(element="linkName")
-    slowdown: bool = without_effect(element="rotorVelocitySlowdownSim")
-    topic: bool = without_effect(element="motorPubTopic")
-    states: bool = without_effect(element="jointStatePubTopic")
-    actuators: bool = without_effect(element="actuatorsPubTopic")
+    attitude: bool = without_effect(element="commandAttitudeThrustSubTopic")
+    rate: bool = without_effect(element="commandRateThrustSubTopic")
+    imu: bool = without_effect(element="imuSubTopic")
     command: bool = without_effect(element="commandMotorSpeedSubTopic")
     motors: bool = without_effect(element="motorSpeedCommandPubTopic")
 
@@ -82,8 +96,47 @@ class RotorsInterface(Plugin):
     filenames = (
         "librotors_gazebo_ros_interface_plugin.so",
         "librotors_gazebo_controller_interface.so",
-        "librotors_gazebo_multirotor_base_plugin.so",
     )
 
     def load(self, parent: Model, params: Params) -> None:
         self.options.read_all()
+
+
+class RotorsBaseOptions(Options):
+    """Options of `RotorsBase`."""
+
+    link: str = text(None, element="linkName", required=True)
+    topic: str = text("motor_speed", element="motorPubTopic")
+    slowdown: float = number(10.0, element="rotorVelocitySlowdownSim", minimum=1e-9, maximum=1e9)
+
+
+class RotorsBase(ModelPlugin):
+    """Publishes the speeds [rad/s] and the joints of all rotors, whose links have names with `rotor_<number>`."""
+
+    endpoints = (
+        publishes("/{robotNamespace}/motor_speed", _MAV, named_by=("motorPubTopic",)),
+        publishes("/{robotNamespace}/joint_states", JOINT_STATE),
+    )
+    options = OptionsOf(RotorsBaseOptions)
+    filenames = ("librotors_gazebo_multirotor_base_plugin.so",)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        self.options.read_all()
+        self._frame = find_named_link(scene, "linkName", params).rsplit("::", 1)[-1]
+        numbered = ((_ROTOR.search(joint.child_link), joint) for joint in scene.all_joints() if len(joint.axes) == 1)
+        rotors = sorted((int(found.group(1)), joint.scoped) for found, joint in numbered if found)
+        self._joint_names = [name for _, name in rotors]
+
+    def load(self, parent: Model, params: Params) -> None:
+        self._joints = [self.sim.joint(name) for name in self._joint_names]
+        self._speeds = self.advertise(self.options.topic, _MAV)
+        self._states = self.advertise("joint_states", JOINT_STATE)
+
+    def after_step(self) -> None:
+        """Publish the speeds and the states of the joints."""
+        if self._speeds.wanted:
+            speeds = [float(joint.velocity) * self.options.slowdown for joint in self._joints]
+            header = msgs.header(self.sim.time_ns, self._frame)
+            self._speeds.publish(msgs.make(_MAV, header=header, angular_velocities=np.array(speeds)))
+        if self._states.wanted:
+            self._states.publish(joint_state_message(self.sim.time_ns, joint_readings(self._joints)))

@@ -28,7 +28,9 @@ from simkit.float_sum import float_sum
 from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, BodyTwist, odometry_message, transforms
 from simkit.plugins.one_time_warnings import are_usable
 from simkit.pose import quat_conjugate, quat_rotate, rpy_from_quat
+from simkit_water_and_air.message_fields import xyz
 from simkit_water_and_air.plugins.fluids.link_forces import PushedLinks, moving_data
+from simkit_water_and_air.plugins.fluids.rigid_links import rigid_group
 from simkit_water_and_air.plugins.fluids.tuple_vectors import Triple, to_link_axes, to_world_axes
 
 if TYPE_CHECKING:
@@ -191,7 +193,7 @@ class SjtuDrone(ModelPlugin):
         self._link = find_named_link(scene, "bodyName", params) if options.body else scene.canonical_link
         links = {link.scoped: link.inertial for link in scene.all_links()}
         if self._link in links:
-            self._mass = float_sum(links[name].mass for name in _rigid_group(scene, self._link))
+            self._mass = float_sum(links[name].mass for name in rigid_group(scene, self._link))
             self._inertia = tuple(map(float, links[self._link].inertia[:3]))
 
     def load(self, parent: Model, params: Params) -> None:
@@ -364,8 +366,8 @@ class SjtuDrone(ModelPlugin):
         """Publish the true pose of the link."""
         pose = self.sim.link(self._link).pose
         w, x, y, z = pose.quaternion.tolist()
-        position = dict(zip("xyz", pose.position.tolist(), strict=True))
-        self._poses.publish(msgs.make(_POSE, position=position, orientation={"x": x, "y": y, "z": z, "w": w}))
+        orientation = {"x": x, "y": y, "z": z, "w": w}
+        self._poses.publish(msgs.make(_POSE, position=xyz(pose.position), orientation=orientation))
 
     def publish_velocity(self) -> None:
         """Publish the true velocity in the axes of the link."""
@@ -377,7 +379,7 @@ class SjtuDrone(ModelPlugin):
 
     def _in_link(self, vector: Vector | Triple) -> Message:
         turned = quat_rotate(quat_conjugate(self.sim.link(self._link).pose.quaternion), vector)
-        return msgs.make(_TWIST, linear=dict(zip("xyz", turned.tolist(), strict=True)))
+        return msgs.make(_TWIST, linear=xyz(turned))
 
     def publish_odometry(self) -> None:
         """Publish the true pose and twist."""
@@ -400,15 +402,3 @@ def _along_heading(yaw: float, x: float, y: float) -> tuple[float, float]:
     """Return the components of a horizontal vector ahead and to the left."""
     cos, sin = math.cos(yaw), math.sin(yaw)
     return cos * x + sin * y, cos * y - sin * x
-
-
-def _rigid_group(scene: SceneModel, link: str) -> list[str]:
-    """Return the links that fixed joints connect to a link, and the link itself; Gazebo merges them in a URDF file."""
-    group, fixed = [link], [joint for joint in scene.all_joints() if joint.type == "fixed"]
-    known = {each.scoped for each in scene.all_links()}
-    for name in group:
-        for joint in fixed:
-            pair = joint.parent_link, joint.child_link
-            if name in pair:
-                group += [other for other in pair if other in known and other not in group]
-    return group

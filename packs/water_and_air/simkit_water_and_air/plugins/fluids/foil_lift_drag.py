@@ -13,6 +13,7 @@ stream at a right angle to the span.
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from typing import TYPE_CHECKING, Final
 
 from simkit import Params
@@ -28,16 +29,23 @@ if TYPE_CHECKING:
 _MOST: Final = 1e9
 
 
-class FoilOptions(Options):
-    """Options of a foil."""
+class FoilShapeOptions(Options):
+    """Options of all foils."""
 
     link_name: str = text(None, required=True)
-    cp: tuple[float, float, float] = vector3((0.0, 0.0, 0.0), "m", required=True)
-    fluid_density: float = number(1.2, "kg/m³", minimum=0, maximum=_MOST)
-    radial_symmetry: bool = boolean(True)
+    cp: tuple[float, float, float] = vector3((0.0, 0.0, 0.0), "m")
+    fluid_density: float = number(1000.1, "kg/m³", minimum=0, maximum=_MOST)
     forward: tuple[float, float, float] = vector3((1.0, 0.0, 0.0))
     upward: tuple[float, float, float] = vector3((0.0, 0.0, 1.0))
     area: float = number(1.0, "m²", minimum=0, maximum=_MOST)
+
+
+class FoilOptions(FoilShapeOptions):
+    """Options of a foil of asv_sim."""
+
+    cp: tuple[float, float, float] = vector3((0.0, 0.0, 0.0), "m", required=True)
+    fluid_density: float = number(1.2, "kg/m³", minimum=0, maximum=_MOST)
+    radial_symmetry: bool = boolean(True)
     a0: float = number(0.0, "rad", minimum=-_MOST, maximum=_MOST)
     alpha_stall: float = number(1 / (2 * math.pi), "rad", minimum=0)
     cla: float = number(2 * math.pi, "1/rad", minimum=-_MOST, maximum=_MOST)
@@ -46,22 +54,19 @@ class FoilOptions(Options):
 
 
 class FoilBase(WingBase):
-    """Base class of foils in air and water."""
+    """Base class of foils in air and water, whose lift changes its sign with the side of the stream."""
 
-    options = OptionsOf(FoilOptions)
-
-    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        options = self.options.read_all()
+    def read_foil(self, scene: SceneModel, params: Params, options: FoilShapeOptions) -> None:
+        """Read the options; called in `prepare`."""
+        self._shape = options.read_all()
         self._scoped = find_named_link(scene, "link_name", params)
         self._centre = options.cp
         forward, upward = read_directions(params, options.forward, options.upward)
         self._forward, self._span = forward, unit(cross(forward, upward))
-        if not options.radial_symmetry:
-            message = "found <radial_symmetry>false</radial_symmetry>; expected true: the foil is symmetric"
-            params.error("SK-PARAM-002", message)
 
-    def load(self, parent: Model, params: Params) -> None:
-        """Do nothing; all parameters are known."""
+    @abstractmethod
+    def coefficients(self, alpha: float) -> tuple[float, float]:
+        """Return the coefficients of lift and drag at an angle of attack from 0 to π."""
 
     def find_load(self, velocity: Triple, spin: Triple) -> tuple[Triple, Triple]:
         """Return the force at the centre of pressure; there is no moment."""
@@ -70,18 +75,33 @@ class FoilBase(WingBase):
         speed = math.sqrt(dot(stream, stream))
         if speed <= SLOWEST:
             return ZERO, ZERO
-        options = self.options
+        shape = self._shape
         way: Triple = (stream[0] / speed, stream[1] / speed, stream[2] / speed)
         up = cross(way, self._span)
         alpha = math.acos(max(-1.0, min(1.0, -dot(self._forward, way))))
-        lift, drag = self._coefficients(alpha)
+        lift, drag = self.coefficients(alpha)
         if dot(self._forward, up) < 0:
             lift = -lift
-        pressed = 0.5 * options.fluid_density * speed * speed * options.area
+        pressed = 0.5 * shape.fluid_density * speed * speed * shape.area
         force = tuple(pressed * (lift * a + drag * b) for a, b in zip(up, way, strict=True))
         return (force[0], force[1], force[2]), ZERO
 
-    def _coefficients(self, alpha: float) -> tuple[float, float]:
+
+class AsvFoil(FoilBase):
+    """Base class of the foils of asv_sim."""
+
+    options = OptionsOf(FoilOptions)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        self.read_foil(scene, params, self.options)
+        if not self.options.radial_symmetry:
+            message = "found <radial_symmetry>false</radial_symmetry>; expected true: the foil is symmetric"
+            params.error("SK-PARAM-002", message)
+
+    def load(self, parent: Model, params: Params) -> None:
+        """Do nothing; all parameters are known."""
+
+    def coefficients(self, alpha: float) -> tuple[float, float]:
         """Return the coefficients of lift and drag at an angle of attack from 0 to π."""
         options = self.options
         is_from_behind = alpha >= math.pi / 2
@@ -91,7 +111,7 @@ class FoilBase(WingBase):
         return -lift if is_from_behind else lift, options.cda * angle
 
 
-class FoilLiftDrag(FoilBase):
+class FoilLiftDrag(AsvFoil):
     """Applies lift and drag to a keel, a rudder or another flat foil in water at rest."""
 
     is_in_wind = False
@@ -99,7 +119,7 @@ class FoilLiftDrag(FoilBase):
     names = ("gz::sim::systems::FoilLiftDrag",)
 
 
-class SailLiftDrag(FoilBase):
+class SailLiftDrag(AsvFoil):
     """Applies lift and drag of the wind to a sail."""
 
     filenames = ("libasv_sim2-sail-lift-drag-system.so", "libSailLiftDragSystem.so", "libSailPlugin.so")

@@ -37,6 +37,11 @@ class WingBase(ModelPlugin):
             spin: Angular velocity of the link [rad/s], in the link's frame.
         """
 
+    def fluid_velocity(self) -> Triple:
+        """Return the velocity of the air or the water in the world [m/s]."""
+        x, y, z = self.sim.engine.wind.at(self.sim.tick) if self.is_in_wind else ZERO
+        return x, y, z
+
     def before_step(self) -> None:
         """Apply the force and the moment to the link for the next step."""
         sim = self.sim
@@ -69,7 +74,7 @@ class WingBase(ModelPlugin):
         gx, gy, gz = data.subtree_com[model.body_rootid[body]].tolist()
         wx, wy, wz, vx, vy, vz = data.cvel[body].tolist()  # cvel refers to the centre of mass of the whole tree
         rx, ry, rz = ox + px - gx, oy + py - gy, oz + pz - gz
-        ax, ay, az = self.sim.engine.wind.at(self.sim.tick) if self.is_in_wind else ZERO
+        ax, ay, az = self.fluid_velocity()
         velocity = vx + wy * rz - wz * ry - ax, vy + wz * rx - wx * rz - ay, vz + wx * ry - wy * rx - az
         mx, my, mz = data.xipos[body].tolist()
         return (ox + px - mx, oy + py - my, oz + pz - mz), velocity, axes

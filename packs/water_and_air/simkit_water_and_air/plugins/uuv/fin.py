@@ -27,9 +27,9 @@ from simkit.extend import (
 from simkit.linear_algebra import matmul
 from simkit.plugins.one_time_warnings import are_usable
 from simkit_water_and_air.plugins.fluids.link_forces import PushedLinks, moving_data
+from simkit_water_and_air.plugins.fluids.water_current import CURRENT_TYPES, absolute_topic, current_of
 from simkit_water_and_air.plugins.uuv.rotor_response import read_response
 from simkit_water_and_air.plugins.uuv.thruster import STAMPED, WRENCH
-from simkit_water_and_air.plugins.uuv.water_current import CURRENT_TYPES, absolute_topic, current_of
 
 if TYPE_CHECKING:
     from simkit import Model

@@ -18,9 +18,9 @@ from simkit.linear_algebra import matmul
 from simkit.pose import quat_from_rpy
 from simkit_water_and_air.plugins.fluids.collision_volumes import link_size
 from simkit_water_and_air.plugins.fluids.link_forces import PushedLinks, moving_data
+from simkit_water_and_air.plugins.fluids.water_current import CURRENT_TYPES, VECTOR, absolute_topic, current_of
 from simkit_water_and_air.plugins.uuv.hydrodynamic_model import SCALES, SEA_WATER, HydrodynamicModel
 from simkit_water_and_air.plugins.uuv.uuv_sensor import TRANSFORMS
-from simkit_water_and_air.plugins.uuv.water_current import CURRENT_TYPES, VECTOR, absolute_topic, current_of
 
 if TYPE_CHECKING:
     from simkit import Model
