@@ -28,6 +28,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGES = {
     **dict.fromkeys(("ray", "gpu_ray", "gpu_lidar"), "lidar"),
     "depth": "depth_camera",
+    "dsros_dvl": "dvl",
     "gps": "navsat",
     "thermal": "thermal_camera",
     "wideanglecamera": "wide_angle_camera",

@@ -66,3 +66,9 @@ def test_a_reset_and_a_snapshot_repeat_the_path_bit_for_bit() -> None:
         sim.reset()
         sim.run(2.0)
         assert sim.model("pillar").pose == expected
+
+
+def test_two_plugins_on_one_model_load() -> None:
+    with load(CLASSIC + CLASSIC.replace("obstacle1", "obstacle2")) as sim:
+        sim.run(0.1)
+        assert not [d for d in sim.diagnostics if d.severity == "error"]

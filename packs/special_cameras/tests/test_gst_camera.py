@@ -127,3 +127,25 @@ def test_without_the_encoder_a_warning_names_other_ways(monkeypatch: pytest.Monk
         sim.run(0.2)
         warning = next(d for d in sim.diagnostics if d.code == "SK-SENSOR-151")
         assert IMAGES in str(warning)
+
+
+def test_a_camera_with_one_pixel_gives_a_warning_and_no_stream(receiver: socket.socket) -> None:
+    pytest.importorskip("av")
+    text = world(f"<udp_port>{port(receiver)}</udp_port>").replace(">64<", ">1<").replace(">48<", ">1<")
+    with simkit.load(text) as sim:
+        sim.publish(f"{IMAGES}/enable_streaming", {"data": True})
+        sim.run(0.5)
+        assert "SK-SENSOR-151" in {d.code for d in sim.diagnostics}
+    assert received(receiver) == []
+
+
+@pytest.mark.parametrize("rate", ["0.0001", "1e6"])
+def test_an_extreme_update_rate_streams(rate: str, receiver: socket.socket) -> None:
+    pytest.importorskip("av")
+    text = world(f"<udp_port>{port(receiver)}</udp_port>").replace(">10</update_rate>", f">{rate}</update_rate>")
+    with simkit.load(text) as sim:
+        sim.publish(f"{IMAGES}/enable_streaming", {"data": True})
+        sim.run(0.05)
+        sim.publish(f"{IMAGES}/enable_streaming", {"data": False})
+        sim.run(0.01)
+    assert received(receiver)

@@ -142,6 +142,19 @@ def test_without_a_stream_there_is_no_force_and_the_elements_of_px4_models_are_k
     assert "CL_0" in unread[0]
 
 
+def test_the_plugin_of_px4_for_gazebo_classic_has_the_same_forces() -> None:
+    text = world(tags(STEADY), wind="-15 0 -1")
+    classic = text.replace(PLUGIN, 'filename="libAdvancedLiftDragPlugin.so" name="wing"')
+    with (
+        simkit.load(text) as sim,
+        simkit.load(classic.replace("<CL0>", "<windSubTopic>w</windSubTopic><CL0>")) as other,
+    ):
+        assert not [found for found in other.diagnostics if found.severity == "warning"]
+        expected = wrench(sim)
+        assert np.any(expected != 0)
+        assert np.array_equal(wrench(other), expected)
+
+
 def test_the_number_of_control_surfaces_is_compared_with_their_elements() -> None:
     for count, effect in (("", 0.0), ("<num_ctrl_surfaces>2</num_ctrl_surfaces>", -SURFACE["CL"] * math.degrees(0.1))):
         with simkit.load(world(surface() + count, wind="-15 0 0")) as sim:

@@ -190,6 +190,30 @@ def test_frames_of_a_state() -> None:
         assert codes(sim) == ["SK-PILOT-005"]  # true values, because there is no plugin of an IMU
 
 
+def test_the_airspeed_sensor_measures_the_wind_and_the_motion_along_its_link() -> None:
+    air = """<plugin name="air" filename="libgazebo_airspeed_plugin.so"><robotNamespace/>
+      <DiffPressureStdev>0</DiffPressureStdev></plugin>"""
+    text = iris(sensors=SENSORS + air).replace(
+        "<gravity>", "<wind><linear_velocity>-3 0 0</linear_velocity></wind><gravity>"
+    )
+    assert "<wind>" in text
+    with simkit.load(text) as sim:
+        sim.step(1)
+        peer = MavlinkPeer(plugin_of(sim).port)
+        sim.model("quad").set_velocity((12.0, 0.0, 0.0))
+        readings = []
+        for _ in range(100):
+            sim.step(1)
+            sensor = peer.receive()["HIL_SENSOR"]
+            peer.send(np.zeros(4))
+            if sensor["fields_updated"] & 1 << 10:
+                readings.append(sensor["diff_pressure"])
+        peer.close()
+    assert 2 <= len(readings) <= 5  # 10 Hz in 0.4 s or less, and the first reading
+    density = 1.225 / (288.0 / (288.0 - 0.0065 * 490.0)) ** 4.256
+    assert readings[0] == pytest.approx(0.005 * density * 15.0**2, rel=0.02)
+
+
 def test_disarmed_outputs_and_old_commands_stop_the_motors() -> None:
     with connected(iris("<simkit:peer_timeout>0.3</simkit:peer_timeout>")) as (sim, peer):
         peer.receive()

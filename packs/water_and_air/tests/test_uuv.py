@@ -222,6 +222,57 @@ def test_a_thruster_without_dynamics_is_reported_at_its_line() -> None:
     assert any(d.code == "SK-PARAM-001" and "<dynamics>" in d.message for d in report)
 
 
+def test_a_receiver_publishes_its_position_on_the_topic_of_the_vehicle() -> None:
+    place = """<spherical_coordinates><latitude_deg>56.7</latitude_deg><longitude_deg>5.9</longitude_deg>
+      <elevation>0</elevation></spherical_coordinates>"""
+    sensor = """<model name="buoy"><static>1</static><pose>0 1000 2 0 0 0</pose><link name="l">
+      <sensor name="gps" type="gps"><update_rate>5</update_rate>
+      <plugin name="g" filename="libuuv_gazebo_ros_gps_plugin.so">
+      <robot_namespace>rexrov</robot_namespace><sensor_topic>gps</sensor_topic><update_rate>5</update_rate>
+      <horizontal_pos_std_dev>2.0</horizontal_pos_std_dev></plugin></sensor></link></model>"""
+    with simkit.load(world(place + sensor)) as sim:
+        assert not [d for d in sim.diagnostics if d.severity != "note"]
+        fixes = sim.subscribe("/rexrov/gps", keep=1)
+        sim.run(1.0)
+        fix = fixes.messages[-1]
+        assert fix.header.frame_id == "rexrov/gps_link"
+        assert fix.latitude == pytest.approx(56.7 + 1000 / 111_350, abs=1e-4)  # metres of a degree at this latitude
+        assert fix.longitude == pytest.approx(5.9, abs=1e-6)
+
+
+CHEMICAL = """<plugin name="c" filename="libuuv_gazebo_ros_cpc_plugin.so"><robot_namespace>rov</robot_namespace>
+  <link_name>rov/base_link</link_name><plume_topic>/plume</plume_topic><sensor_topic>cpc</sensor_topic>
+  <update_rate>10</update_rate><gamma>0.001</gamma><radius>3</radius><gain>{gain}</gain>
+  <plume_salinity_value>{salinity}</plume_salinity_value><salinity_output_topic>salinity</salinity_output_topic>
+  <enable_local_ned_frame>false</enable_local_ned_frame></plugin>"""
+
+
+def test_a_chemical_sensor_measures_the_particles_near_it_and_the_salinity() -> None:
+    with simkit.load(world(vehicle(CHEMICAL.format(gain=100, salinity=5)))) as sim:
+        concentrations, salinities = sim.subscribe("/rov/cpc", keep=1), sim.subscribe("/rov/salinity", keep=1)
+        sim.run(0.5)
+        assert not concentrations.messages[-1].is_measuring
+        assert salinities.messages[-1].salinity == 35.0
+        depth = float(sim.link("rov::rov/base_link").pose.position[2])
+        points = [{"x": 0.0, "y": 0.0, "z": depth}, {"x": 4.5, "y": 0.0, "z": depth}, {"x": 50.0, "y": 0.0, "z": depth}]
+        cloud = {"points": points, "channels": [{"name": "time", "values": [0.0, 0.0, 0.0]}]}
+        sim.publish("/plume", cloud)  # stamp 0: all particles are new
+        sim.run(0.2)
+        last = concentrations.messages[-1]
+        expected = 100 * (4.0 + 0.5**3) / (4 * math.pi * 27.0)
+        assert last.is_measuring
+        assert last.concentration == pytest.approx(expected, rel=1e-3)
+        assert last.position.z == pytest.approx(depth, abs=1e-3)
+        assert salinities.messages[-1].salinity == pytest.approx(35 - 30 * min(expected, 1.0), rel=1e-3)
+        sim.run(6.0)
+        assert concentrations.messages[-1].concentration == 0.0
+
+
+def test_a_plume_that_is_saltier_than_the_water_is_an_error() -> None:
+    with pytest.raises(simkit.LoadError, match="SK-PARAM-002"):
+        simkit.load(world(vehicle(CHEMICAL.format(gain=1, salinity=50))))
+
+
 @pytest.mark.parametrize("library", ["libuuv_sc_ros_interface_plugin.so", "libdave_sc_coordinates_interface.so"])
 def test_services_convert_positions_to_places_on_the_earth_and_back(library: str) -> None:
     world = f'''<sdf version="1.6"><world name="sea"><spherical_coordinates><latitude_deg>56</latitude_deg>

@@ -138,9 +138,8 @@ class Turtlebot3Obstacle(KinematicPlugin):
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         record = builder.records[scene.scoped.split("::")[0]]
         for link in scene.all_links():
-            body = builder.names.link(link.scoped).body_name
-            if not scene.static and body != _WORLD:
-                name = f"{link.scoped}#path"
+            body, name = builder.names.link(link.scoped).body_name, f"{link.scoped}#path"
+            if not scene.static and body != _WORLD and name not in record.excludes:  # another plugin may move it, too
                 builder.spec.add_exclude(name=name, bodyname1=_WORLD, bodyname2=body)
                 record.excludes.append(name)
 

@@ -11,7 +11,7 @@ from simkit import Params, SensorPlugin, msgs
 from simkit.extend import Options, OptionsOf, boolean, integer, listens, text, without_effect
 from simkit.install_command import install_command
 from simkit.msgs import valid_topic
-from simkit_special_cameras.plugins.video_stream import LOOPBACK, VideoStream
+from simkit_special_cameras.plugins.video_stream import LOOPBACK, StreamError, VideoStream
 
 if TYPE_CHECKING:
     from simkit.extend import SceneSensor, Sensor, SpecBuilder
@@ -59,7 +59,10 @@ class VideoStreamPlugin(SensorPlugin):
         if pixels.dtype == np.uint16:
             pixels = (pixels >> 8).astype(np.uint8)
         if pixels.dtype == np.uint8:
-            self._stream.send(pixels[..., :3] if pixels.ndim == 3 else np.repeat(pixels[..., None], 3, axis=2))
+            try:
+                self._stream.send(pixels[..., :3] if pixels.ndim == 3 else np.repeat(pixels[..., None], 3, axis=2))
+            except StreamError as error:
+                self._once.warn("SK-SENSOR-151", "encoder", f"there is no stream, because the encoder failed ({error})")
 
     def close(self) -> None:
         """End the stream."""

@@ -19,6 +19,13 @@ _SETTINGS: Final = {"preset": "veryfast", "tune": "zerolatency", "g": "10", "b":
 """Those of x264 with low latency; a program that connects late waits for at most ten images."""
 
 
+_RATES: Final = (0.01, 1000.0)  # [Hz] slowest and fastest stream
+
+
+class StreamError(Exception):
+    """The encoder does not take the images; the message has its reason."""
+
+
 class VideoStream(SharedByCopies):
     """Sender of images. A snapshot shares the stream, because a program that watches cannot go back in time.
 
@@ -34,7 +41,8 @@ class VideoStream(SharedByCopies):
     def __init__(self, port: int, rate: float, is_rtp: bool) -> None:
         self._format = "rtp" if is_rtp else "mpegts"
         self._address = f"rtp://{LOOPBACK}:{port}" if is_rtp else f"udp://{LOOPBACK}:{port}?pkt_size=1316"
-        self._rate = Fraction(rate).limit_denominator(1000) if rate > 0 else Fraction(30)
+        slowest, fastest = _RATES
+        self._rate = Fraction(min(max(rate, slowest), fastest)).limit_denominator(1000) if rate > 0 else Fraction(30)
         self._av: Any = None
         self._container: Any = None
         self._stream: Any = None
@@ -52,14 +60,26 @@ class VideoStream(SharedByCopies):
         self._av = av
 
     def send(self, image: npt.NDArray[np.uint8]) -> None:
-        """Send an image, shape (height, width, 3), without an odd last row or column."""
+        """Send an image, shape (height, width, 3), without an odd last row or column.
+
+        Raises:
+            StreamError: the encoder does not take the image; the stream is closed.
+        """
         height, width = (size - size % 2 for size in image.shape[:2])
-        if self._container is None:
-            self._begin(width, height)
-        frame = self._av.VideoFrame.from_ndarray(np.ascontiguousarray(image[:height, :width]), format="rgb24")
-        frame.pts, frame.time_base = self._count, 1 / self._rate
-        self._count += 1
-        self._send(self._stream.encode(frame))
+        if not (width and height):
+            self.close()
+            raise StreamError("it needs images of at least 2 x 2 pixels")
+        try:
+            if self._container is None:
+                self._begin(width, height)
+            frame = self._av.VideoFrame.from_ndarray(np.ascontiguousarray(image[:height, :width]), format="rgb24")
+            frame.pts, frame.time_base = self._count, 1 / self._rate
+            self._count += 1
+            self._send(self._stream.encode(frame))
+        except self._av.FFmpegError as error:
+            self._container = None
+            self.close()
+            raise StreamError(f"{width} x {height} pixels, {float(self._rate):g} Hz: {error}") from None
 
     def close(self) -> None:
         """Send the last images and end the stream."""

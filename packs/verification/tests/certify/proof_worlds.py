@@ -56,6 +56,16 @@ FIVE = "".join(tags(left_joint=n) for n in ("fl_joint", "rl_joint")) + "".join(
 )
 PUSHED = tags(wind_obj=tags(name="car", link_name="base", coeff_vector="0.5 0.5 0.3"))
 SWELL = tags(wave=tags(model="CWR", number=2, amplitude=0.1, period=0.5, tau=0.1))
+SPEED = tags(mean=1, min=0, max=5, mu=0.1, noiseAmp=0.2)
+CURRENT = plugin(
+    "libdave_ocean_current_plugin.so", tags(namespace="hydrodynamics", constant_current=tags(velocity=SPEED))
+)
+DSROS_LOG = plugin(
+    "libdsros_ros_dvl.so",
+    tags(frameName="log", pointcloudFrame="base", updateRateHZ=0, gaussianNoiseBeamVel=0.1, minRange=0.01, maxRange=20)
+    + tags(beamAngleDeg=30, beamAzimuthDeg1=-135, beamAzimuthDeg2=135, beamAzimuthDeg3=45, beamAzimuthDeg4=-45)
+    + tags(enableWaterTrack=1, waterTrackBins=3),
+)
 EKF = tags(odom0="/odom", odom0_config="1 1 0  0 0 1  1 1 0  0 0 1  0 0 0", base_link_frame="base", two_d_mode=1)
 DENSITY = tags(uniform_fluid_density=40)
 CREATE = plugin("libgazebo_ros_create_{}.so")
@@ -394,6 +404,37 @@ WORLDS: dict[str, str] = {
             "libasv_sim2-sail-lift-drag-system.so", tags(link_name="base", cp="0 0 1"), "gz::sim::systems::SailLiftDrag"
         )
     ),
+    "OceanCurrent": lab(world=CURRENT),
+    "VehicleCurrent": lab(world=CURRENT, model=plugin("libdave_ocean_current_model_plugin.so")),
+    "DsrosRosDvl": sensed("dsros_dvl", DSROS_LOG, world=CURRENT),
+    "UuvGps": sensed("gps", plugin("libuuv_gazebo_ros_gps_plugin.so", tags(robot_namespace="car", sensor_topic="gps"))),
+    "UuvChemicalSensor": lab(
+        model=plugin(
+            "libuuv_gazebo_ros_cpc_plugin.so",
+            tags(robot_namespace="car", link_name="base", plume_topic="/plume", sensor_topic="cpc", update_rate=50),
+        )
+    ),
+    "AcousticPinger": lab(
+        model=plugin(
+            "libAcousticPingerPlugin.so",
+            tags(position="5 0 0", update_rate=50)
+            + '<range_noise><noise type="gaussian"><stddev>0.1</stddev></noise></range_noise>',
+        )
+    ),
+    "BallShooter": lab(
+        model=plugin("libBallShooterPlugin.so", tags(projectile=tags(model_name="load", link_name="l"))), world=BALL
+    ),
+    "FlipperControl": lab(model=plugin("libflipper_control_plugin.so", tags(joint_name="door"))),
+    "LaserRotate": lab(
+        model=plugin(
+            "liblaser_rotate_plugin.so", tags(joint_name="door", initial_velocity=1, rotation_angular_limit=0.02)
+        )
+    ),
+    "Px4Airspeed": lab(model=plugin("libgazebo_airspeed_plugin.so")),
+    "Px4Wind": lab(
+        world=plugin("libgazebo_wind_plugin.so", tags(publishRate=50, windVelocityMean=4, windVelocityVariance=1))
+        + gz("wind-effects", tags(force_approximation_scaling_factor=0.5), "WindEffects")
+    ),
     "UsvWind": lab(
         world=plugin(
             "libUSVWind.so",
@@ -638,6 +679,7 @@ IDLE: dict[str, Idle] = {
     "GraspFix": Idle("attaches nothing here; its test lifts a cube"),
     "ArduPilotPlugin": Idle("waits for an autopilot here; its test plays one"),
     "GazeboMavlinkInterface": Idle("waits for an autopilot here; its test plays one"),
+    "Px4Wind": Idle("moves the air, which only other plugins and sensors feel"),
     "MultirotorBase": Idle("stands for a plugin of PX4 that only publishes"),
     "Px4GroundTruth": Idle("stands for a plugin of PX4 that only publishes"),
     "BuiltInSystem": Idle("stands for what simkit does anyway"),

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
@@ -48,6 +48,23 @@ class Estimate:
         return np.isfinite(self.ranges)
 
 
+class BottomTrack(NamedTuple):
+    """Measurement of the beams over the bottom, in world axes.
+
+    Attributes:
+        origin, own: position [m] and velocity [m/s] of the sensor.
+        directions: unit vectors of the beams, shape (n, 3).
+        ranges: ranges of the beams [m]; `inf` without a target.
+        speeds: velocities relative to the targets along the beams [m/s]; 0 without a target.
+    """
+
+    origin: Vector
+    own: Vector
+    directions: Vector
+    ranges: Vector
+    speeds: Vector
+
+
 class Dvl(Sensor):
     """Doppler velocity log, `dvl` (`<sensor type="custom" gz:type="dvl">`): its velocity over the bottom [m/s].
 
@@ -71,7 +88,7 @@ class Dvl(Sensor):
         self._basis = matmul(self._axes, self.options.frame)  # in the frame of the velocities
         reach = log.range[1]
         self._cones = [
-            NearestInCone(max(beam.aperture / 2, 1e-3), tuple(axis), _SEEN, reach)
+            NearestInCone(beam.aperture / 2, tuple(axis), _SEEN, reach)
             for beam, axis in zip(log.beams, self._axes.tolist(), strict=True)
         ]
 
@@ -102,7 +119,8 @@ class Dvl(Sensor):
         for cone in self._cones:
             cone.bind(model, names, self._body, names.link(self.scene.parent).ray_geoms)
 
-    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Estimate, ...]:
+    def _track_bottom(self, model: mujoco.MjModel, data: mujoco.MjData) -> BottomTrack:
+        """Return what the beams measure over the bottom."""
         origin, rotation = self._frame_in_world(data)
         body_axes = data.xmat[self._body].reshape(3, 3)
         own = self._velocity_in_world(model, data, matmul(body_axes, self._offset_position))
@@ -115,6 +133,10 @@ class Dvl(Sensor):
                 point = origin + distance * directions[index]
                 target = _velocity_of(model, data, int(model.geom_bodyid[geom]), point)
                 ranges[index], speeds[index] = distance, float(matmul(own - target, directions[index]))
+        return BottomTrack(origin, own, directions, ranges, speeds)
+
+    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Any:
+        _, own, directions, ranges, speeds = self._track_bottom(model, data)
         modes = self.options.modes
         estimates = []
         for name in self._modes:
@@ -133,7 +155,7 @@ class Dvl(Sensor):
         speeds = np.where(is_open, matmul(directions, own - self.options.water), 0.0)
         return Estimate("WATER_MASS", ranges, speeds, variance)
 
-    def perturb(self, reading: tuple[Estimate, ...], index: int) -> tuple[Estimate, ...]:
+    def perturb(self, reading: Any, index: int) -> Any:
         if self.noise.is_silent or not reading:
             return reading
         noisy = self.noise.apply(np.concatenate([estimate.speeds for estimate in reading]), index)

@@ -20,7 +20,7 @@ from simkit_water_and_air.plugins.autopilots.mavlink import Value
 if TYPE_CHECKING:
     from simkit import Link
 
-_MOTION, _FIELD, _PRESSURE = 0b111111, 0b111 << 6, 0b1101 << 9  # bits of fields_updated
+_MOTION, _FIELD, _PRESSURE, _AIR = 0b111111, 0b111 << 6, 0b1101 << 9, 1 << 10  # bits of fields_updated
 _NED_OF_ENU: Final = (0.0, math.sqrt(0.5), math.sqrt(0.5), 0.0)
 _FRD_OF_FLU: Final = (0.0, 1.0, 0.0, 0.0)
 _FLIP: Final = np.array((1.0, -1.0, -1.0))
@@ -28,7 +28,12 @@ _SATELLITES: Final = 10
 
 
 def sensor_message(
-    time: int, gyro: Vector, force: Vector, field: Vector | None, pressure: tuple[float, float, float] | None
+    time: int,
+    gyro: Vector,
+    force: Vector,
+    field: Vector | None,
+    pressure: tuple[float, float, float] | None,
+    air: float | None = None,
 ) -> dict[str, float]:
     """Return the fields of HIL_SENSOR.
 
@@ -38,6 +43,7 @@ def sensor_message(
         force: specific force, forward-left-up [m/s²].
         field: magnetic field, forward-left-up [gauss]; None if there is no new reading.
         pressure: pressure [hPa], altitude [m] and temperature [°C]; None if there is no new reading.
+        air: pressure of the air that flows by [hPa]; None if there is no new reading.
     """
     names = ("xacc", "yacc", "zacc", "xgyro", "ygyro", "zgyro", "xmag", "ymag", "zmag")
     vectors = (force * _FLIP, gyro * _FLIP, np.zeros(3) if field is None else field * _FLIP)
@@ -48,6 +54,9 @@ def sensor_message(
     if pressure is not None:
         updated |= _PRESSURE
         fields["abs_pressure"], fields["pressure_alt"], fields["temperature"] = pressure
+    if air is not None:
+        updated |= _AIR
+        fields["diff_pressure"] = air
     return {**fields, "time_usec": time, "fields_updated": updated}
 
 

@@ -15,6 +15,7 @@ from simkit import Params, WorldPlugin, msgs
 from simkit.extend import Options, OptionsOf, listens, number, publishes, text, vector3, without_effect
 from simkit.linear_algebra import matmul
 from simkit.pose import quat_conjugate, quat_rotate
+from simkit_water_and_air.message_fields import xyz
 from simkit_water_and_air.plugins.fluids.freefloating_link import FreefloatingLink, read_freefloating_link
 from simkit_water_and_air.plugins.fluids.link_forces import PushedLinks, moving_data
 from simkit_water_and_air.plugins.fluids.tuple_vectors import to_link_axes, to_world_axes
@@ -180,15 +181,11 @@ class FreefloatingFluid(WorldPlugin):
         w, x, y, z = pose.quaternion.tolist()
         back = quat_conjugate(pose.quaternion)
         linear, angular = quat_rotate(back, velocity[3:]), quat_rotate(back, velocity[:3])
-        place = {"position": _xyz(pose.position), "orientation": {"x": x, "y": y, "z": z, "w": w}}
+        place = {"position": xyz(pose.position), "orientation": {"x": x, "y": y, "z": z, "w": w}}
         return msgs.make(
             _ODOMETRY,
             header=msgs.header(self.sim.time_ns, "world"),
             child_frame_id="base_link",
             pose={"pose": place},
-            twist={"twist": {"linear": _xyz(linear), "angular": _xyz(angular)}},
+            twist={"twist": {"linear": xyz(linear), "angular": xyz(angular)}},
         )
-
-
-def _xyz(vector: Vector) -> dict[str, float]:
-    return dict(zip("xyz", vector.tolist(), strict=True))

@@ -38,6 +38,7 @@ from simkit_water_and_air.plugins.autopilots.hil_messages import gps_message, se
 from simkit_water_and_air.plugins.autopilots.joint_channel import ChannelKind, JointChannel
 from simkit_water_and_air.plugins.autopilots.mavlink import MavlinkMessage, encode
 from simkit_water_and_air.plugins.classic.px4_sensors import (
+    Px4Airspeed,
     Px4Barometer,
     Px4Gps,
     Px4Imu,
@@ -168,7 +169,7 @@ class GazeboMavlinkInterface(AutopilotPlugin):
                 kind = cast("ChannelKind", channel.kind.removesuffix("_kinematic"))
                 self._joints[place] = JointChannel(JointAxis(self.sim.joint(name)), _pid(channel.pid), kind)
         self._link, self._planet = self.sim.link(self._base), WorldOnPlanet(home_of(self.sim))
-        self._sent_gps = self._sent_baro = self._sent_mag = 0
+        self._sent_gps = self._sent_baro = self._sent_mag = self._sent_air = 0
         self._heartbeat_ns, self._sequence, self._connections = -_HEARTBEAT_PERIOD_NS, 0, 0
         timeout, lock = options.peer_timeout, options.lock_step
         self._connection = HilLink(self.name, self._place, lock, timeout, self._once, self.period)
@@ -255,7 +256,7 @@ class GazeboMavlinkInterface(AutopilotPlugin):
             return b""
         if connection.connections != self._connections:  # a new PX4 gets every sensor
             self._connections = connection.connections
-            self._sent_gps = self._sent_baro = self._sent_mag = -1
+            self._sent_gps = self._sent_baro = self._sent_mag = self._sent_air = -1
             self._heartbeat_ns = -_HEARTBEAT_PERIOD_NS
         imu = self._sensor(Px4Imu)
         motion = self._true_motion() if imu is None else imu.update()
@@ -287,12 +288,15 @@ class GazeboMavlinkInterface(AutopilotPlugin):
 
     def _sensors(self, time: int, gyro: np.ndarray, force: np.ndarray) -> dict[str, float]:
         magnetometer, barometer = self._sensor(Px4Magnetometer), self._sensor(Px4Barometer)
-        field = pressure = None
+        airspeed = self._sensor(Px4Airspeed)
+        field = pressure = air = None
         if magnetometer is not None and magnetometer.update() is not None and magnetometer.number != self._sent_mag:
             self._sent_mag, field = magnetometer.number, magnetometer.reading
         if barometer is not None and barometer.update() is not None and barometer.number != self._sent_baro:
             self._sent_baro, pressure = barometer.number, barometer.reading
-        return sensor_message(time, gyro, force, field, pressure)
+        if airspeed is not None and airspeed.update() is not None and airspeed.number != self._sent_air:
+            self._sent_air, air = airspeed.number, airspeed.reading
+        return sensor_message(time, gyro, force, field, pressure, air)
 
     def _encode(self, name: str, fields: Mapping[str, Value]) -> bytes:
         self._sequence = (self._sequence + 1) & 0xFF

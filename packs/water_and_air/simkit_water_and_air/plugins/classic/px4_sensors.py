@@ -40,6 +40,7 @@ _GAUSS: Final = 1e4  # per tesla
 _HOME: Final = SphericalCoordinates(math.radians(47.397742), math.radians(8.545594), 488.0)  # Zurich, as in the sources
 _TEMPERATURE, _LAPSE, _PRESSURE, _DENSITY = 288.0, 0.0065, 101325.0, 1.225  # ISA of the source [K, K/m, Pa, kg/m³]
 _GPS_TIME_CONSTANT: Final = 60.0
+_AIRSPEED_RATE: Final = 10.0  # [Hz]
 
 
 def home_of(sim: Simulation) -> SphericalCoordinates:
@@ -228,6 +229,42 @@ class Px4Barometer(Px4Sensor, ModelPlugin):
         density = _DENSITY / ratio**4.256
         gravity = max(norm(self.sim.mj_model.opt.gravity), 1e-3)
         return pressure / 100, altitude - error / (gravity * density), temperature - 273.0
+
+
+class AirspeedOptions(NamespaceOptions):
+    """Options of `Px4Airspeed`."""
+
+    topic: bool = without_effect()
+    link: bool = without_effect(element="linkName")
+    spread: float = number(0.01, "hPa", element="DiffPressureStdev", minimum=0.0, maximum=LARGEST)
+
+
+class Px4Airspeed(Px4Sensor):
+    """Measures the dynamic pressure [hPa] of the air along the x axis of its link, ten times a second.
+
+    It is negative if the air comes from behind. The air moves with the world's wind.
+    """
+
+    parent_kind = ("model", "sensor")
+    options = OptionsOf(AirspeedOptions)
+    filenames = ("libgazebo_airspeed_plugin.so",)
+
+    def prepare(self, scene: SceneModel | SceneSensor, params: Params, builder: SpecBuilder) -> None:
+        self.options.read_all()
+        self._name = scene.parent if isinstance(scene, SceneSensor) else scene.canonical_link
+
+    def load(self, parent: Model | Sensor, params: Params) -> None:
+        self.begin(self.sim.link(self._name), _AIRSPEED_RATE)
+        self._home, self._stream = home_of(self.sim).elevation, self.random("noise", 1)
+
+    def measure(self) -> float:
+        link = self._link
+        altitude = self._home + float(link.pose.position[2])
+        density = _DENSITY / (_TEMPERATURE / max(_TEMPERATURE - _LAPSE * altitude, 1.0)) ** 4.256
+        wind = np.array(self.sim.engine.wind.at(max(self.sim.tick - 1, 0)))
+        speed = float(matmul(link.linear_velocity - wind, link.pose.matrix)[0])
+        error = self.options.spread * float(np.asarray(self._stream.normal(self.sim.tick))[0])
+        return float(0.005 * density * speed * abs(speed) + error)
 
 
 class GpsOptions(NamespaceOptions):

@@ -30,6 +30,7 @@ from simkit.extend import (
 )
 from simkit.linear_algebra import matmul
 from simkit.pose import quat_conjugate, quat_multiply, quat_rotate
+from simkit_water_and_air.message_fields import xyz
 from simkit_water_and_air.plugins.classic.px4_sensors import ImuOptions, Px4Imu
 
 if TYPE_CHECKING:
@@ -84,9 +85,9 @@ class RotorsImu(Px4Imu):
             header=msgs.header(self.sim.time_ns, self._link.name),
             orientation={"x": x, "y": y, "z": z, "w": w},
             orientation_covariance=np.full(9, -1.0),
-            angular_velocity=_xyz(gyro),
+            angular_velocity=xyz(gyro),
             angular_velocity_covariance=self._variances[0],
-            linear_acceleration=_xyz(force),
+            linear_acceleration=xyz(force),
             linear_acceleration_covariance=self._variances[1],
         )
         self._output.publish(message)
@@ -214,10 +215,10 @@ class RotorsOdometry(ModelPlugin):
         options = self.options
         header = msgs.header(time_ns, options.parent_frame)
         w, x, y, z = pose.quaternion.tolist()
-        point, turn = _xyz(pose.position), {"x": x, "y": y, "z": z, "w": w}
+        point, turn = xyz(pose.position), {"x": x, "y": y, "z": z, "w": w}
         place = {"position": point, "orientation": turn}
         covered = {"pose": place, "covariance": np.diag(self._normal[:6] ** 2).reshape(36)}
-        motion = {"linear": _xyz(twist[:3]), "angular": _xyz(twist[3:])}
+        motion = {"linear": xyz(twist[:3]), "angular": xyz(twist[3:])}
         moved = {"twist": motion, "covariance": np.diag(self._normal[6:] ** 2).reshape(36)}
         child = options.child_frame
         transform = {"header": header, "child_frame_id": child, "transform": {"translation": point, "rotation": turn}}
@@ -312,7 +313,7 @@ class RotorsMagnetometer(ModelPlugin):
         message = msgs.make(
             _FIELD,
             header=msgs.header(self.sim.time_ns, self._link.name),
-            magnetic_field=_xyz(matmul(field, self._link.pose.matrix)),
+            magnetic_field=xyz(matmul(field, self._link.pose.matrix)),
             magnetic_field_covariance=np.diag(self._noise**2).reshape(9),
         )
         self._output.publish(message)
@@ -361,10 +362,6 @@ class RotorsGps(SensorPlugin):
             drawn = np.asarray(self._stream.normal(self.sim.tick))
             velocity: Vector = self._link.linear_velocity + self._spread * drawn
             message: Message = msgs.make(
-                _TWIST, header=msgs.header(self.sim.time_ns, self._link.name), twist={"linear": _xyz(velocity)}
+                _TWIST, header=msgs.header(self.sim.time_ns, self._link.name), twist={"linear": xyz(velocity)}
             )
             self._output.publish(message)
-
-
-def _xyz(vector: Vector) -> dict[str, float]:
-    return dict(zip("xyz", vector.tolist(), strict=True))

@@ -25,8 +25,10 @@ from simkit.extend import (
     without_effect,
 )
 from simkit.float_sum import float_sum
+from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, BodyTwist, odometry_message, transforms
 from simkit.plugins.one_time_warnings import are_usable
 from simkit.pose import quat_conjugate, quat_rotate, rpy_from_quat
+from simkit_water_and_air.message_fields import xyz
 from simkit_water_and_air.plugins.fluids.link_forces import PushedLinks, moving_data
 from simkit_water_and_air.plugins.fluids.rigid_links import rigid_group
 from simkit_water_and_air.plugins.fluids.tuple_vectors import Triple, to_link_axes, to_world_axes
@@ -39,7 +41,6 @@ if TYPE_CHECKING:
 LANDED, FLYING, TAKING_OFF, LANDING = 0, 1, 2, 3
 """Numbers on the topic `state`."""
 _TWIST, _POSE, _BOOL = "geometry_msgs/msg/Twist", "geometry_msgs/msg/Pose", "std_msgs/msg/Bool"
-_ODOMETRY, _TRANSFORMS = "nav_msgs/msg/Odometry", "tf2_msgs/msg/TFMessage"
 _EMPTY, _INT8, _STRING = "std_msgs/msg/Empty", "std_msgs/msg/Int8", "std_msgs/msg/String"
 _FACTORS: Final = {LANDED: 0.0, FLYING: 1.0, TAKING_OFF: 1.5, LANDING: 0.8}
 _NEXT_STATES: Final = {TAKING_OFF: (0.5, FLYING), LANDING: (1.0, LANDED)}  # duration [s] and the state after it
@@ -177,8 +178,8 @@ class SjtuDrone(ModelPlugin):
         publishes("cmd_mode", _STRING),
         publishes("gt_pose", _POSE),
         *(publishes(name, _TWIST) for name in ("gt_vel", "gt_acc")),
-        publishes("odom", _ODOMETRY, named_by=("pub_odom",)),
-        publishes("/tf", _TRANSFORMS, named_by=("pub_odom",)),
+        publishes("odom", ODOMETRY, named_by=("pub_odom",)),
+        publishes("/tf", TRANSFORMS, named_by=("pub_odom",)),
     )
     options = OptionsOf(SjtuDroneOptions)
     option_types = tuple(_GAINS.values())
@@ -224,7 +225,7 @@ class SjtuDrone(ModelPlugin):
         publish_while_subscribed(self, self._velocities, 0, "publish_velocity")
         publish_while_subscribed(self, self._accelerations, 0, "publish_acceleration")
         if self.options.publishes_odometry:
-            self._odometry, self._tf = self.advertise("odom", _ODOMETRY), self.advertise("/tf", _TRANSFORMS)
+            self._odometry, self._tf = self.advertise("odom", ODOMETRY), self.advertise("/tf", TRANSFORMS)
             publish_while_subscribed(self, self._odometry, self.options.odometry_rate, "publish_odometry")
             publish_while_subscribed(self, self._tf, self.options.odometry_rate, "publish_transform")
 
@@ -363,12 +364,10 @@ class SjtuDrone(ModelPlugin):
 
     def publish_pose(self) -> None:
         """Publish the true pose of the link."""
-        self._poses.publish(msgs.make(_POSE, **self._pose()))
-
-    def _pose(self) -> dict[str, dict[str, float]]:
         pose = self.sim.link(self._link).pose
         w, x, y, z = pose.quaternion.tolist()
-        return {"position": _xyz(pose.position), "orientation": {"x": x, "y": y, "z": z, "w": w}}
+        orientation = {"x": x, "y": y, "z": z, "w": w}
+        self._poses.publish(msgs.make(_POSE, position=xyz(pose.position), orientation=orientation))
 
     def publish_velocity(self) -> None:
         """Publish the true velocity in the axes of the link."""
@@ -380,31 +379,19 @@ class SjtuDrone(ModelPlugin):
 
     def _in_link(self, vector: Vector | Triple) -> Message:
         turned = quat_rotate(quat_conjugate(self.sim.link(self._link).pose.quaternion), vector)
-        return msgs.make(_TWIST, linear=_xyz(turned))
+        return msgs.make(_TWIST, linear=xyz(turned))
 
     def publish_odometry(self) -> None:
         """Publish the true pose and twist."""
         link, (frame, child) = self.sim.link(self._link), self._frames()
-        velocity, back = link.spatial_velocity(), quat_conjugate(link.pose.quaternion)
-        linear, angular = _xyz(quat_rotate(back, velocity[3:])), _xyz(quat_rotate(back, velocity[:3]))
-        message = msgs.make(
-            _ODOMETRY,
-            header=msgs.header(self.sim.time_ns, frame),
-            child_frame_id=child,
-            pose={"pose": self._pose()},
-            twist={"twist": {"linear": linear, "angular": angular}},
-        )
-        self._odometry.publish(message)
+        pose, velocity = link.pose, link.spatial_velocity()
+        back = quat_conjugate(pose.quaternion)
+        twist = BodyTwist(quat_rotate(back, velocity[3:]), quat_rotate(back, velocity[:3]))
+        self._odometry.publish(odometry_message(self.sim.time_ns, frame, child, pose, twist))
 
     def publish_transform(self) -> None:
         """Publish the true pose as a transform."""
-        (frame, child), pose = self._frames(), self._pose()
-        transform = {
-            "header": msgs.header(self.sim.time_ns, frame),
-            "child_frame_id": child,
-            "transform": {"translation": pose["position"], "rotation": pose["orientation"]},
-        }
-        self._tf.publish(msgs.make(_TRANSFORMS, transforms=[transform]))
+        self._tf.publish(transforms(self.sim.time_ns, (*self._frames(), self.sim.link(self._link).pose)))
 
     def _frames(self) -> tuple[str, str]:
         start = f"{self.ros.namespace}/".lstrip("/")
@@ -415,7 +402,3 @@ def _along_heading(yaw: float, x: float, y: float) -> tuple[float, float]:
     """Return the components of a horizontal vector ahead and to the left."""
     cos, sin = math.cos(yaw), math.sin(yaw)
     return cos * x + sin * y, cos * y - sin * x
-
-
-def _xyz(vector: Vector) -> dict[str, float]:
-    return dict(zip("xyz", vector.tolist(), strict=True))

@@ -67,6 +67,9 @@ class ControlSurfaceOptions(Options):
 class AdvancedLiftDragOptions(Options):
     """Options of `AdvancedLiftDrag`."""
 
+    namespace: bool = without_effect(element="robotNamespace")
+    wind_topic: bool = without_effect(element="windSubTopic")
+    force_topic: bool = without_effect(element="topic_name")
     link_name: str = text(None, required=True)
     forward: tuple[float, float, float] = vector3((1.0, 0.0, 0.0))
     upward: tuple[float, float, float] = vector3((0.0, 0.0, 1.0))
@@ -126,7 +129,7 @@ class AdvancedLiftDrag(WingBase):
     """
 
     options = OptionsOf(AdvancedLiftDragOptions)
-    filenames = ("gz-sim-advanced-lift-drag-system",)
+    filenames = ("gz-sim-advanced-lift-drag-system", "libAdvancedLiftDragPlugin.so")
     names = ("gz::sim::systems::AdvancedLiftDrag",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:

@@ -78,11 +78,12 @@ class WaveHydrodynamics(ModelPlugin):
         )
         self._surfaces: dict[str, Vector] = {}
         for link in scene.all_links():
-            scopes = ["::".join(link.scoped.split("::")[i:j]) for i in range(8) for j in range(i + 1, 9)]
-            if not options.enable or any(name in scopes for name in options.enable):
+            scope = f"::{link.scoped}::"
+            if not options.enable or any(f"::{name}::" in scope for name in options.enable):
                 triangles = link_triangles(link)
                 if len(triangles):
                     self._surfaces[link.scoped] = triangles
+        self._areas = {name: _area(triangles) for name, triangles in self._surfaces.items()}
         if not self._surfaces:
             names = ", ".join(repr(name) for name in options.enable) or "the model"
             params.warning("SK-PLUGIN-111", f"no link of {names} has a collision, so the water lifts nothing")
@@ -107,13 +108,16 @@ class WaveHydrodynamics(ModelPlugin):
             if float(corners[:, :, 2].min()) >= 0.0:
                 continue
             wet, waterline = wet_triangles(corners)
-            edges = surface[:, 1] - surface[:, 0], surface[:, 2] - surface[:, 0]
-            doubled = np.cross(*edges)
-            area = math.fsum(np.sqrt(np.einsum("ij,ij->i", doubled, doubled)).tolist()) / 2
             centre, turning = data.xipos[body], data.cvel[body, :3]
             linear = velocities[row] + np.cross(turning, centre - data.xpos[body])
             motion = np.concatenate((linear, turning))
             forces[row], torques[row] = surface_wrench(
-                wet, area, waterline, centre, motion, weight, _DENSITY, self._drag
+                wet, self._areas[name], waterline, centre, motion, weight, _DENSITY, self._drag
             )
         links.push(data, forces, torques)
+
+
+def _area(triangles: Vector) -> float:
+    """Return the area of triangles [m²], shape (n, 3, 3)."""
+    doubled = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    return math.fsum(np.sqrt(np.einsum("ij,ij->i", doubled, doubled)).tolist()) / 2

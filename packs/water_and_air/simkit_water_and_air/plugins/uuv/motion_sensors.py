@@ -15,8 +15,9 @@ from simkit import Pose, msgs
 from simkit.extend import OptionsOf, Vector, boolean, number, publishes, vector3
 from simkit.linear_algebra import matmul
 from simkit.pose import quat_conjugate, quat_from_rpy, quat_multiply
+from simkit_water_and_air.message_fields import diagonal, xyz
 from simkit_water_and_air.plugins.classic.px4_sensors import GaussMarkovNoise
-from simkit_water_and_air.plugins.uuv.uuv_sensor import UuvSensor, UuvSensorOptions, diagonal, xyz
+from simkit_water_and_air.plugins.uuv.uuv_sensor import UuvSensor, UuvSensorOptions
 
 _IMU: Final = "sensor_msgs/msg/Imu"
 _ODOMETRY: Final = "nav_msgs/msg/Odometry"

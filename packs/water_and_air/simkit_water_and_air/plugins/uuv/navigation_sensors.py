@@ -15,7 +15,8 @@ import numpy as np
 from simkit import Params, msgs
 from simkit.extend import OptionsOf, Vector, find_link, number, publishes, text, without_effect
 from simkit.linear_algebra import matmul
-from simkit_water_and_air.plugins.uuv.uuv_sensor import UuvSensor, UuvSensorOptions, diagonal, xyz
+from simkit_water_and_air.message_fields import diagonal, xyz
+from simkit_water_and_air.plugins.uuv.uuv_sensor import UuvSensor, UuvSensorOptions
 
 if TYPE_CHECKING:
     from simkit.extend import SceneModel, SpecBuilder

@@ -11,17 +11,17 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
-from simkit import Params, WorldPlugin, msgs
+from simkit import Params, WorldPlugin
 from simkit.extend import Options, OptionsOf, block, number, offers, publishes, text
-from simkit_water_and_air.plugins.fluids.water_current import TWIST
+from simkit_water_and_air.plugins.fluids.water_current import TWIST, current_message
 
 if TYPE_CHECKING:
     from simkit import Simulation
     from simkit.msgs import Message
 
-_SERVICES: Final = "uuv_world_ros_plugins_msgs/srv"
+_TYPES: Final = "uuv_world_ros_plugins_msgs"
 _PERIOD: Final = 0.05  # between two messages [s]
 _MODELS: Final = ("velocity", "horz_angle", "vert_angle")
 
@@ -74,6 +74,23 @@ class GaussMarkovProcess:
         return self.low <= self.mean <= self.high and self.low < self.high and self.noise >= 0 and 0 <= self.mu <= 1
 
 
+def velocity_of(speed: float, around: float, above: float) -> tuple[float, float, float]:
+    """Return a velocity [m/s] from the speed and the angles in the horizontal plane and above it [rad]."""
+    flat = speed * math.cos(above)
+    return flat * math.cos(around), flat * math.sin(around), speed * math.sin(above)
+
+
+def current_endpoints(types: str) -> tuple[Any, ...]:
+    """Return the topic and the services of a current, whose types are those of a package."""
+    return (
+        publishes("/{namespace}/current_velocity", TWIST, named_by=("constant_current/topic",)),
+        offers("/{namespace}/set_current_velocity", f"{types}/srv/SetCurrentVelocity"),
+        *(offers(f"/{{namespace}}/set_current_{name}", f"{types}/srv/SetCurrentDirection") for name in _MODELS[1:]),
+        *(offers(f"/{{namespace}}/set_current_{name}_model", f"{types}/srv/SetCurrentModel") for name in _MODELS),
+        *(offers(f"/{{namespace}}/get_current_{name}_model", f"{types}/srv/GetCurrentModel") for name in _MODELS),
+    )
+
+
 class UnderwaterCurrent(WorldPlugin):
     """Publishes the velocity of the water [m/s] on `/<namespace>/<topic>`, twenty times a second.
 
@@ -82,15 +99,10 @@ class UnderwaterCurrent(WorldPlugin):
     processes.
     """
 
-    endpoints = (
-        publishes("/{namespace}/current_velocity", TWIST, named_by=("constant_current/topic",)),
-        offers("/{namespace}/set_current_velocity", f"{_SERVICES}/SetCurrentVelocity"),
-        *(offers(f"/{{namespace}}/set_current_{name}", f"{_SERVICES}/SetCurrentDirection") for name in _MODELS[1:]),
-        *(offers(f"/{{namespace}}/set_current_{name}_model", f"{_SERVICES}/SetCurrentModel") for name in _MODELS),
-        *(offers(f"/{{namespace}}/get_current_{name}_model", f"{_SERVICES}/GetCurrentModel") for name in _MODELS),
-    )
+    types: ClassVar[str] = _TYPES
+    endpoints: ClassVar[tuple[Any, ...]] = current_endpoints(_TYPES)
     options = OptionsOf(UnderwaterCurrentOptions)
-    filenames = (
+    filenames: ClassVar[tuple[str, ...]] = (
         "libuuv_underwater_current_ros_plugin.so",
         "libuuv_underwater_current_plugin.so",
         "libunderwater_current_ros_plugin.so",
@@ -98,7 +110,7 @@ class UnderwaterCurrent(WorldPlugin):
     )
 
     def load(self, parent: Simulation, params: Params) -> None:
-        options = self.options.read_all()
+        options, types = self.options.read_all(), self.types
         current = options.current
         self._processes: dict[str, GaussMarkovProcess] = {}
         for name in _MODELS:
@@ -109,27 +121,26 @@ class UnderwaterCurrent(WorldPlugin):
                 given.params.error("SK-PARAM-002", f"{message}; expected min ≤ mean ≤ max and min < max")
             self._processes[name] = process
         self._stream, self._index, self._next_message = self.random("current", 3), 0, 0.0
-        base = "/" + options.namespace.strip("/") if options.namespace.strip("/") else ""
+        base = self._base = "/" + options.namespace.strip("/") if options.namespace.strip("/") else ""
         self._output = self.advertise(f"{base}/{current.topic.strip('/')}", TWIST)
-        self.offer(f"{base}/set_current_velocity", f"{_SERVICES}/SetCurrentVelocity", self._set_velocity)
+        self.offer(f"{base}/set_current_velocity", f"{types}/srv/SetCurrentVelocity", self._set_velocity)
         for name in _MODELS:
             self.offer(
-                f"{base}/set_current_{name}_model", f"{_SERVICES}/SetCurrentModel", partial(self._set_process, name)
+                f"{base}/set_current_{name}_model", f"{types}/srv/SetCurrentModel", partial(self._set_process, name)
             )
             self.offer(
-                f"{base}/get_current_{name}_model", f"{_SERVICES}/GetCurrentModel", partial(self._get_process, name)
+                f"{base}/get_current_{name}_model", f"{types}/srv/GetCurrentModel", partial(self._get_process, name)
             )
             if name != "velocity":
                 self.offer(
-                    f"{base}/set_current_{name}", f"{_SERVICES}/SetCurrentDirection", partial(self._set_angle, name)
+                    f"{base}/set_current_{name}", f"{types}/srv/SetCurrentDirection", partial(self._set_angle, name)
                 )
 
     @property
     def velocity(self) -> tuple[float, float, float]:
         """Velocity of the water [m/s] in world axes."""
         speed, around, above = (self._processes[name].value for name in _MODELS)
-        flat = speed * math.cos(above)
-        return flat * math.cos(around), flat * math.sin(around), speed * math.sin(above)
+        return velocity_of(speed, around, above)
 
     def before_step(self) -> None:
         """Advance the processes, and publish the velocity when it is due."""
@@ -140,10 +151,11 @@ class UnderwaterCurrent(WorldPlugin):
             self._processes[name] = self._processes[name].after(step, 0.5 * number_of_name)
         if self.sim.time >= self._next_message - 1e-9:
             self._next_message = self.sim.time + _PERIOD
-            linear = dict(zip("xyz", self.velocity, strict=True))
-            self._output.publish(
-                msgs.make(TWIST, header=msgs.header(self.sim.time_ns, "/world"), twist={"linear": linear})
-            )
+            self.publish()
+
+    def publish(self) -> None:
+        """Publish the velocity."""
+        self._output.publish(current_message(self.sim.time_ns, self.velocity))
 
     def _set_mean(self, name: str, mean: float) -> bool:
         changed = replace(self._processes[name], mean=mean, value=mean)

@@ -172,14 +172,3 @@ class UuvSensor(ModelPlugin):
         self._last = self.sim.time
         self.measure(np.asarray(self._stream.normal(self._readings)), elapsed)
         self._readings += 1
-
-
-def xyz(vector: Vector) -> dict[str, float]:
-    """Return the fields of a `Vector3` or `Point`."""
-    return dict(zip("xyz", vector.tolist(), strict=True))
-
-
-def diagonal(size: int, *values: float) -> Vector:
-    """Return a covariance matrix as a list of numbers, with the values on its diagonal."""
-    matrix: Vector = np.diag(np.array(values, float)).reshape(size)
-    return matrix

@@ -1,0 +1,1 @@
+"""Plugins of Gazebo for the robots of the SubT challenge."""
