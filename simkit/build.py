@@ -188,6 +188,7 @@ def load(
                 raise
     try:
         simulation.communication.report_remapping(diagnostics)
+        _report_first_state(simulation, diagnostics)
         _report_unused(structure, diagnostics, strict=strict)
     except BaseException:
         simulation.close()
@@ -308,6 +309,17 @@ def _compiled_structure(
     diagnostics.raise_if_errors(run.options["strict"])
     movable = frozenset(m.name for m in world.models if m.moved_by is not None)
     return WorldStructure(builder, compiled, {m.name: m for m in world.models}, movable, parts)
+
+
+def _report_first_state(sim: Simulation, diagnostics: Diagnostics) -> None:
+    """Report joints that start outside 0 and bodies that overlap, after plugins have set their initial positions."""
+    from simkit.compiler.model_compilation import report_overlaps
+    from simkit.compiler.start_positions import report_starts
+
+    compiled = sim.engine.structure.compiled
+    model, names = compiled.model, compiled.names
+    report_starts(model, sim.engine.mj_data, names, diagnostics)
+    report_overlaps(model, sim.engine.mj_data, names, diagnostics, sim.world.where)
 
 
 def _report_unused(structure: WorldStructure, diagnostics: Diagnostics, *, strict: bool) -> None:

@@ -61,7 +61,7 @@ def record_golden(spec: RunSpec, folder: Path, *, force: bool = False) -> RunRec
     with chdir("."):  # a plugin may change the working directory while it is loaded
         sim = open_scenario(spec)
     try:
-        record = record_run(resolve_commands(spec, sim.communication.bus.topics()), sim=sim)
+        record = record_run(resolve_commands(spec, sim.communication.bus), sim=sim)
         if record.error is not None:
             raise record.error
         write_golden(folder, record)

@@ -339,7 +339,7 @@ class Session:
         topics, has_nodes = self.sim.communication.bus.topics(), bool(self.sim.nodes)
         commands = []
         if self.spec.velocity is not None and not has_nodes:
-            commands.append(steady_velocity(self.spec.velocity, topics))
+            commands.append(steady_velocity(self.spec.velocity, topics, self.sim.communication.bus.idle_topics()))
         if self.spec.script is not None:
             commands += read_script(self.spec.script, None if has_nodes else topics)
         return commands

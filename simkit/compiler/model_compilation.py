@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Callable, Iterable, Sequence
 from typing import Final
 
@@ -168,8 +169,19 @@ _REPORTED_MOST: Final = 20
 def report_overlaps(
     model: mujoco.MjModel, data: mujoco.MjData, names: NameMap, diagnostics: Diagnostics, where: Where
 ) -> None:
-    """Warn of each pair of collisions that overlap deeply in the first state, with the depth of the overlap."""
-    mujoco.mj_collision(model, data)
+    """Warn of each pair of collisions that overlap deeply in the first state, with the depth of the overlap.
+
+    Call this after the plugins are loaded, because a plugin may move joints before the first step.
+    """
+    first = mujoco.MjData(model)  # the state of a run stays as it is
+    first.qpos[:], first.mocap_pos[:], first.mocap_quat[:] = data.qpos, data.mocap_pos, data.mocap_quat
+    with warnings.catch_warnings(record=True) as engine_warnings:
+        warnings.simplefilter("always")
+        for compute in (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_flex, mujoco.mj_collision):
+            compute(model, first)
+    for text in dict.fromkeys(str(w.message) for w in engine_warnings):
+        diagnostics.warning("SK-PHYS-025", f"the engine warns: {text}", where)
+    data = first
     deepest: dict[tuple[str, str], float] = {}
     for i in (data.contact.dist < -REPORTED_DEPTH).nonzero()[0] if data.ncon else ():
         first, second = (names.geom_owner(g)[1] for g in data.contact.geom[i])
@@ -309,11 +321,10 @@ def _make_plate(spec: mujoco.MjSpec, mesh: mujoco.MjsMesh, *, is_refused: bool) 
 
 def finish_model(
     spec: mujoco.MjSpec, model: mujoco.MjModel, world: SceneWorld, records: list[ModelRecord], diagnostics: Diagnostics
-) -> mujoco.MjData:
+) -> None:
     """Set the fields that need the compiled model: inertias, groups, damping, gains.
 
-    Returns:
-        First state with the poses of all bodies. All functions share it, because another `MjData` takes 0.5 ms.
+    All functions share one first state with the poses of all bodies, because another `MjData` takes 0.5 ms.
 
     Raises:
         LoadError: SK-PHYS-028.
@@ -328,4 +339,3 @@ def finish_model(
     apply_velocity_decay(model, records)
     add_idle_armature(spec, model, records, diagnostics)
     tune_servos(spec, model, [ref for r in records for ref in r.actuators], data)
-    return data

@@ -157,7 +157,7 @@ class ActuatorRef:
     kind: str
     joint: str
     axis: int
-    max_effort: float
+    max_effort: float = field(compare=False)  # a second plugin that shares a servo may raise it
     owner: str
     kp: float | None = None
     kv: float | None = None

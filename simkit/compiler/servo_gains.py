@@ -163,11 +163,15 @@ def add_actuator(spec: mujoco.MjSpec, ref: ActuatorRef, joint_name: str) -> None
     if ref.kind == "drive":
         actuator.dyntype = mujoco.mjtDyn.mjDYN_INTEGRATOR
     actuator.gainprm[0] = 1.0 if ref.kind in ("motor", "drive") else 0.0
-    limited = math.isfinite(ref.max_effort)
+    set_effort_limit(actuator, ref.max_effort)
+
+
+def set_effort_limit(actuator: mujoco.MjsActuator, max_effort: float) -> None:
+    """Set the effort limit of an actuator [N·m or N]; infinite for none."""
+    limited = math.isfinite(max_effort)
     actuator.forcelimited = mujoco.mjtLimited.mjLIMITED_TRUE if limited else mujoco.mjtLimited.mjLIMITED_FALSE
-    if limited:
-        most = max(ref.max_effort, 1e-12)
-        actuator.forcerange = (-most, most)
+    most = max(max_effort, 1e-12) if limited else 0.0
+    actuator.forcerange = (-most, most)
 
 
 def add_armature(joint: mujoco.MjsJoint, scoped: str, diagnostics: Diagnostics, where: Where) -> None:

@@ -19,12 +19,12 @@ from simkit.compiler.geoms import WorldGeoms
 from simkit.compiler.kinematic_tree import WORLD, JointIndex
 from simkit.compiler.lights import add_light, report_light, report_lights
 from simkit.compiler.meshes.parallel_conversion import convert_meshes
-from simkit.compiler.model_compilation import compile_spec, finish_model, report_overlaps
+from simkit.compiler.model_compilation import compile_spec, finish_model
 from simkit.compiler.model_writer import FIRST_OWN_BIT, PAIRS_MOST, ModelWriter
 from simkit.compiler.name_map import ActuatorRef, JointBinding, LightBinding, ModelRecord, NameMap, lookup
 from simkit.compiler.overlapping_hulls import exclude_overlapping_hulls
-from simkit.compiler.servo_gains import add_actuator, add_armature, add_drive_armature
-from simkit.compiler.start_positions import place_joints, report_starts
+from simkit.compiler.servo_gains import add_actuator, add_armature, add_drive_armature, set_effort_limit
+from simkit.compiler.start_positions import place_joints
 from simkit.compiler.state_transfer import transfer_state
 from simkit.diagnostics import Diagnostics
 from simkit.loaders.sdf.material_script import find_material, find_texture
@@ -65,6 +65,7 @@ class SpecBuilder:
         find_file: function that returns the file of a URI, relative to a folder; None for a missing one.
         files_read: files that plugins have read.
         parameter_files: parameter files of the run; only the control plugins read them.
+        shared_servos: servos that a further plugin requested, once for each request.
     """
 
     def __init__(
@@ -82,6 +83,7 @@ class SpecBuilder:
         spec.modelname = world.name
         self._world_geoms, self.assets = WorldGeoms(spec), Assets(spec)
         self.records: dict[str, ModelRecord] = {"": ModelRecord(SceneModel(name="", scoped="", pose_world=Pose()))}
+        self.shared_servos: list[ActuatorRef] = []
         self._names: NameMap | None = None
         self._cut: list[tuple[SceneJoint, bool]] = []
         self._world_joints = JointIndex(world.joints)
@@ -300,8 +302,8 @@ class SpecBuilder:
     ) -> ActuatorRef:
         """Add a servo whose control is a velocity [rad/s or m/s].
 
-        A joint axis has one velocity motor, as in Gazebo: two drivers of one axis share the servo of the first one, and
-        the last command counts.
+        A joint axis has one velocity motor, as in Gazebo: two drivers of one axis share the servo of the first one. The
+        last command and the larger effort limit count.
 
         Args:
             joint_scoped: scoped name of the joint.
@@ -321,6 +323,11 @@ class SpecBuilder:
             shared = (r for r in refs if (r.kind, r.joint, r.axis, r.kv) == ("velocity", joint_scoped, axis, None))
             if (ref := next(shared, None)) is not None:
                 self._report_shared(ref, owner)
+                self.shared_servos.append(ref)
+                limit = self._effort_limit(joint_scoped, axis, max_effort) if joint_limit else max_effort
+                if limit > ref.max_effort:
+                    refs[refs.index(ref)] = ref = replace(ref, max_effort=limit)
+                    set_effort_limit(self.spec.actuator(ref.name), limit)
                 return ref
         return self._add_actuator(
             "velocity", joint_scoped, axis, max_effort, owner, None, kv, has_joint_limit=joint_limit
@@ -386,6 +393,11 @@ class SpecBuilder:
             hint = "remove one of them; Gazebo Classic and Gazebo each load only their own"
             self.diagnostics.warning("SK-JOINT-019", f"{text}; the last command of either counts", model.where, hint)
 
+    def _effort_limit(self, scoped: str, axis: int, max_effort: float) -> float:
+        """Return the smaller one of an effort limit and the limit of the joint [N·m or N]."""
+        axes = self.names.joint(scoped).scene.axes
+        return min(max_effort, axes[axis].effort) if axis < len(axes) else max_effort
+
     def _add_actuator(
         self,
         kind: str,
@@ -402,8 +414,8 @@ class SpecBuilder:
         if not 0 <= axis < len(joint.joint_names):
             raise KeyError(f"joint {scoped!r} ({joint.type}) has no axis {axis} to drive")
         record = self.records[joint.model]
-        if has_joint_limit and axis < len(joint.scene.axes) and kind != "drive":
-            max_effort = min(max_effort, joint.scene.axes[axis].effort)
+        if has_joint_limit and kind != "drive":
+            max_effort = self._effort_limit(scoped, axis, max_effort)
         if max_effort == 0.0:
             message = f"{owner} drives joint {scoped}, but the joint's effort limit is 0: it never moves"
             self.diagnostics.warning(
@@ -444,16 +456,11 @@ class SpecBuilder:
         with warnings.catch_warnings(record=True) as engine_warnings:
             warnings.simplefilter("always")
             model = self._compile_model()
-            first = self._finish(model)
+            self._finish(model)
             names = NameMap.of(self.records.values(), model)
             data = mujoco.MjData(model)
-            starts = place_joints(model, data, names.joints.values())
-            report_starts(names.joints.values(), starts, self.diagnostics)
+            place_joints(model, data, names.joints.values())
             report_lights(model, self.diagnostics, self.world.where)
-            if starts:
-                first.qpos[:] = data.qpos
-                mujoco.mj_kinematics(model, first)
-            report_overlaps(model, first, names, self.diagnostics, self.world.where)
         for text in dict.fromkeys(str(w.message) for w in engine_warnings):
             if not mjcf_attachment.is_expected_warning(text):
                 self.diagnostics.warning("SK-PHYS-025", f"the engine warns: {text}", self.world.where)
@@ -473,9 +480,7 @@ class SpecBuilder:
         """
         model = self._compile_model()
         fresh, names = mujoco.MjData(model), NameMap.of(self.records.values(), model)
-        starts = place_joints(model, fresh, names.joints.values())
-        new = [joint for joint in names.joints.values() if joint.scoped not in compiled.names.joints]
-        report_starts(new, starts, self.diagnostics)
+        place_joints(model, fresh, names.joints.values())
         transfer_state(compiled.model, data, model, fresh)
         model.opt.gravity[:] = compiled.model.opt.gravity
         self._finish(model)
@@ -489,8 +494,8 @@ class SpecBuilder:
             model = compile_spec(self.spec, self.world, records, self.diagnostics)
         return model
 
-    def _finish(self, model: mujoco.MjModel) -> mujoco.MjData:
-        return finish_model(self.spec, model, self.world, list(self.records.values()), self.diagnostics)
+    def _finish(self, model: mujoco.MjModel) -> None:
+        finish_model(self.spec, model, self.world, list(self.records.values()), self.diagnostics)
 
     def copy(self) -> SpecBuilder:
         """Return an independent builder with the same content."""
@@ -500,5 +505,6 @@ class SpecBuilder:
         spec = self.spec.copy()
         other._world_geoms, other.assets = self._world_geoms.copy_to(spec), Assets(spec, self.assets.known)
         other.records = {name: record.copy() for name, record in self.records.items()}
+        other.shared_servos = list(self.shared_servos)
         other._names, other._cut, other._world_joints = None, list(self._cut), self._world_joints
         return other

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable
 from typing import Final
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from simkit.compiler.name_map import JointBinding
+from simkit.compiler.name_map import JointBinding, NameMap
 from simkit.diagnostics import Diagnostics
 from simkit.elementary_functions import arctan2
 from simkit.linear_algebra import dot, norm
@@ -58,9 +58,32 @@ def place_joints(model: mujoco.MjModel, data: mujoco.MjData, joints: Iterable[Jo
     return starts
 
 
-def report_starts(joints: Iterable[JointBinding], starts: Mapping[str, float], diagnostics: Diagnostics) -> None:
-    """Report the joints whose limits exclude 0, and the joints that do not start at 0 because of them."""
+def report_starts(
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    names: NameMap,
+    diagnostics: Diagnostics,
+    models: Container[str] | None = None,
+) -> None:
+    """Report the joints whose limits exclude 0, and the joints that do not start at 0 because of them.
+
+    Call this after the plugins are loaded: a joint to which a plugin gave another position, such as an `initial_value`
+    of ros2_control, is not reported.
+
+    Args:
+        model: compiled model.
+        data: first state.
+        names: names of the compiled model.
+        diagnostics: receives the warnings.
+        models: top-level models whose joints are reported; None for all models.
+    """
+    joints = names.joints.values()
+    starts = place_joints(model, mujoco.MjData(model), joints)
     for joint in joints:
+        if models is not None and joint.model not in models:
+            continue
+        if len(joint.qpos) == 1 and data.qpos[joint.qpos[0]] != starts.get(joint.scoped, 0.0):
+            continue
         limits = [(axis, limit) for axis in joint.scene.axes if joint.qpos and (limit := _nearest_limit(axis))]
         for axis, limit in limits:
             start = f"it starts at {limit:g}" if joint.scoped in starts else "the first steps push it inside"

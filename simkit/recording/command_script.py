@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import heapq
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
@@ -141,7 +141,8 @@ class LateVelocity:
         """Send the commands that are due at the present tick, if the world has a topic for them."""
         if self._commands is None and self._sim.tick >= self._next_look:
             try:
-                command = steady_velocity(self._text, self._topics())
+                idle = self._sim.communication.bus.idle_topics()
+                command = steady_velocity(self._text, self._topics(), idle)
             except InputError as error:
                 self.problem = error.message
                 self._next_look = self._sim.tick + max(1, round(1.0 / _RATE / self._sim.timestep))
@@ -158,7 +159,7 @@ class LateVelocity:
         return dict(sorted({**subscribed, **bus.topics()}.items()))
 
 
-def steady_velocity(text: str, topics: Mapping[str, str]) -> Command:
+def steady_velocity(text: str, topics: Mapping[str, str], idle: Collection[str] = ()) -> Command:
     """Parse `--cmd-vel LINEAR,ANGULAR`: a Twist on `/cmd_vel`, or on the world's only Twist topic.
 
     The command is repeated until the end, because many controllers stop 0.5 s after their last command.
@@ -166,6 +167,7 @@ def steady_velocity(text: str, topics: Mapping[str, str]) -> Command:
     Args:
         text: forward speed [m/s] and yaw rate [rad/s], separated by a comma.
         topics: topic -> type, for all topics of the world.
+        idle: topics of inactive controllers. One of them is used only if there is no other topic.
 
     Raises:
         InputError: SK-CLI-010 the numbers are invalid, or the topic is not unique.
@@ -175,6 +177,7 @@ def steady_velocity(text: str, topics: Mapping[str, str]) -> Command:
     # a controller of ros2_control takes commands without a stamp on a second topic and publishes its limited commands
     companions = {f"{topic}{suffix}" for topic in twists for suffix in ("_unstamped", "_out")}
     twist_topics = [topic for topic in twists if topic not in companions]
+    twist_topics = [topic for topic in twist_topics if topic not in idle] or twist_topics
     topic = twist_topics[0] if len(twist_topics) == 1 else _outermost_cmd_vel(twist_topics)
     if topic is None:
         topics_text = f"several ({', '.join(twist_topics)}); choose one in a --script" if twist_topics else "none"

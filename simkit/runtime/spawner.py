@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
+from simkit.compiler.start_positions import report_starts
 from simkit.compiler.state_transfer import copy_fields_by_name, restore_compiled_fields
 from simkit.diagnostics import MOST_ERRORS, Diagnostic, Diagnostics
 from simkit.errors import InputError, LoadError, SimkitError
@@ -109,7 +110,7 @@ class Spawner:
             scenes.append((scene, None, None))
         changes = old.changed("spawn", scenes)
         self.switch(replace(self._recompiled(builder), models=models, parts=parts, changes=changes))
-        self._start_or_restore([parts[name] for name in names], diagnostics, before)
+        self._start_or_restore([parts[name] for name in names], diagnostics, before, names)
         return names
 
     def read(self, source: object) -> SceneModel:
@@ -148,8 +149,10 @@ class Spawner:
         plugins = [replace(entry, order=(FROM_SPAWN, self._spawned, *entry.order)) for entry in parts.plugins]
         return replace(parts, plugins=plugins)
 
-    def _start_or_restore(self, added: list[SensorsAndPlugins], diagnostics: Diagnostics, before: Snapshot) -> None:
-        """Start added sensors and plugins; a failure undoes all changes."""
+    def _start_or_restore(
+        self, added: list[SensorsAndPlugins], diagnostics: Diagnostics, before: Snapshot, models: Sequence[str] = ()
+    ) -> None:
+        """Start added sensors and plugins, and report the first positions of added models; a failure undoes all."""
         try:
             self.start(added, diagnostics)
         except SimkitError:
@@ -160,6 +163,9 @@ class Spawner:
                 sensor.scene.params.report_unread("SK-PARAM-003", f"sensor {sensor.scoped!r}")
             for entry in parts.plugins:
                 entry.plugin.report_unread()
+        if models:
+            compiled = self._engine.structure.compiled
+            report_starts(compiled.model, self._engine.mj_data, compiled.names, diagnostics, models)
         self._report(diagnostics)
 
     def _report(self, diagnostics: Diagnostics) -> None:

@@ -76,6 +76,15 @@ def test_a_constant_velocity_is_sent_on_the_remapped_topic_of_a_controller() -> 
         steady_velocity("1,0", {**topics, "/other/cmd_vel": twist})
 
 
+def test_a_constant_velocity_is_not_sent_to_an_inactive_controller() -> None:
+    twist = "geometry_msgs/msg/Twist"
+    topics = {"/base/cmd_vel": twist, "/spare/cmd_vel": twist}
+    assert steady_velocity("1,0", topics, {"/spare/cmd_vel"}).topic == "/base/cmd_vel"
+    with pytest.raises(InputError, match="several"):
+        steady_velocity("1,0", topics, topics)
+    assert steady_velocity("1,0", {"/spare/cmd_vel": twist}, {"/spare/cmd_vel"}).topic == "/spare/cmd_vel"
+
+
 @pytest.mark.parametrize(
     ("text", "topics", "reason"),
     [

@@ -137,6 +137,27 @@ def test_the_initial_positions_come_from_the_description(tmp_path: Path) -> None
         assert position(sim, "j1") == pytest.approx([0.7])
 
 
+@pytest.mark.parametrize("start", ["", "1.5707963"])
+def test_overlaps_and_limits_are_judged_at_the_initial_positions(tmp_path: Path, start: str) -> None:
+    """At its nearest limit, 0.2 rad, the arm reaches into the ground; its initial position points upwards."""
+    urdf = f"""<robot name="arm"><link name="world"/>
+<link name="base"><inertial><mass value="1"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="fix" type="fixed"><parent link="world"/><child link="base"/><origin xyz="0 0 0.1"/></joint>
+<link name="upper"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision><origin xyz="0.5 0 -0.3"/><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+<joint name="lift" type="revolute"><parent link="base"/><child link="upper"/><axis xyz="0 -1 0"/>
+<limit lower="0.2" upper="2" effort="100" velocity="2"/></joint>
+<ros2_control name="c" type="system"><hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>
+<joint name="lift"><command_interface name="position"/><state_interface name="position">
+<param name="initial_value">{start}</param></state_interface></joint></ros2_control>
+<gazebo><plugin filename="gz_ros2_control-system" name="gz_ros2_control::GazeboSimROS2ControlPlugin"/></gazebo>
+</robot>"""
+    with simkit.load(urdf, model_world="ground") as sim:
+        codes = {"SK-PHYS-024", "SK-JOINT-007"} & {d.code for d in sim.diagnostics}
+        assert codes == (set() if start else {"SK-PHYS-024", "SK-JOINT-007"})
+
+
 @pytest.mark.parametrize("where", ["in the URDF", "in the hardware", "in the hardware, with commands"])
 def test_a_mimic_follows_its_leader(tmp_path: Path, where: str) -> None:
     second = '<mimic joint="j1" multiplier="-0.5" offset="0.1"/>' if where == "in the URDF" else ""

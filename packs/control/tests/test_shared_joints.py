@@ -80,3 +80,21 @@ def test_a_manager_that_does_not_hold_its_joints_leaves_them_to_the_drive(tmp_pa
 def test_ros_1_holds_wheels_with_a_velocity_interface(tmp_path: Path, kind: str, ros: str, speed: float) -> None:
     robot = wheels(ROS_1.format(""), CLASSIC_DRIVE.format(ros), kind=kind)
     assert speed_and_warning(tmp_path, robot)[0] == pytest.approx(speed, abs=0.01)
+
+
+def test_the_velocity_of_a_run_goes_to_the_active_one_of_two_drives(tmp_path: Path) -> None:
+    drive = "{left_wheel_names: [left], right_wheel_names: [right], wheel_separation: 0.4, wheel_radius: 0.1}"
+    kind = "{type: diff_drive_controller/DiffDriveController}"
+    controllers = f"""controller_manager: {{ros__parameters: {{update_rate: 100, base: {kind}, spare: {kind}}}}}
+base: {{ros__parameters: {drive}}}
+spare: {{ros__parameters: {drive}}}
+"""
+    with simkit.load(files(tmp_path, wheels(GZ.format("")), controllers)) as sim:
+        assert sim.communication.bus.idle_topics() == {"/spare/cmd_vel"}
+        state = sim.snapshot()
+        request = {"activate_controllers": ["spare"], "deactivate_controllers": ["base"], "strictness": 2}
+        assert sim.call("/controller_manager/switch_controller", request).ok
+        sim.run(0.05)
+        assert sim.communication.bus.idle_topics() == {"/base/cmd_vel"}
+        sim.restore(state)
+        assert sim.communication.bus.idle_topics() == {"/spare/cmd_vel"}

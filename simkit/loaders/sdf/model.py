@@ -29,7 +29,11 @@ _MODEL_SETTINGS = ("static", "self_collide", "enable_wind", "allow_auto_disable"
 
 
 def declare_model(source: EntitySource, outer: Scope, outer_scoped: str, workspace: Workspace) -> ModelDraft | None:
-    """Register a model and all named elements in it; return None if the limit of models is exceeded."""
+    """Register a model and all named elements in it.
+
+    Returns:
+        None if the limit of models is exceeded, or if the model only includes models that are not found.
+    """
     if not workspace.count_model(source.where):
         return None
     model_name = scoped(outer_scoped, source.name)
@@ -37,8 +41,12 @@ def declare_model(source: EntitySource, outer: Scope, outer_scoped: str, workspa
     frame = Frame(source.name, "model", model_name, outer, source.pose, source.relative_to, where=source.where)
     frame.inside, frame.placement, frame.pose_where = scope, source.placement, source.pose_where
     draft = ModelDraft(source, model_name, frame, scope)
+    missing = len(workspace.missing)
     _declare_content(draft, source.element, source.file, scope, workspace)
     draft.plugins.extend(source.plugins)
+    if not draft.links and not draft.models and len(workspace.missing) > missing and not _is_static(source):
+        source.element.mark_all_read()  # the missing includes are reported, not the links that they would contain
+        return None
     _choose_canonical(draft, source.element, workspace)
     return draft
 

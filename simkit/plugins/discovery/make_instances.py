@@ -229,7 +229,8 @@ class InstanceMaker:
         if failure is not None or not instance.has_hook("prepare"):
             return entry
         builder = self._builder
-        before = {id(ref) for record in builder.records.values() for ref in record.actuators}
+        before = {ref for record in builder.records.values() for ref in record.actuators}
+        shared = len(builder.shared_servos)
         try:
             call_plugin(instance, "prepare", instance.prepare, scene, instance.params, builder)
         except SimkitError:
@@ -239,7 +240,8 @@ class InstanceMaker:
                 raise  # the cause may be an entity that was dropped because of an earlier error
             failure = "prepare", error  # handled at load time, because no simulation exists yet
         after = [ref for record in builder.records.values() for ref in record.actuators]
-        return replace(entry, actuators=tuple(ref for ref in after if id(ref) not in before), failure=failure)
+        added = [ref for ref in after if ref not in before]
+        return replace(entry, actuators=(*added, *builder.shared_servos[shared:]), failure=failure)
 
 
 def _make_plugin(cls: type[Plugin], plugin: ScenePlugin) -> tuple[Plugin, tuple[str, Exception] | None]:

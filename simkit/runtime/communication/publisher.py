@@ -260,14 +260,17 @@ class Listener(InProcess):
 
     Attributes:
         last: last message, for the explanation of a divergence; None before the first one.
+        is_ready: function that returns False while the owner ignores messages, for example an inactive controller; None
+            if the owner always uses them.
     """
 
-    __slots__ = ("_bus", "active", "callback", "last", "owner", "topic", "types")
+    __slots__ = ("_bus", "active", "callback", "is_ready", "last", "owner", "topic", "types")
 
     def __init__(self, bus: PublishingBus, topic: str, types: Sequence[str], callback: Callback, owner: object) -> None:
         self._bus, self.topic, self.types, self.callback, self.owner = bus, topic, tuple(types), callback, owner
         self.active = True
         self.last: Message | None = None
+        self.is_ready: Callable[[], bool] | None = None
 
     def close(self) -> None:
         """Close the command input permanently."""

@@ -272,6 +272,15 @@ class TopicBus:
         """Return the number of command inputs of a topic."""
         return sum(li.active for li in self._listeners.get(topic, ()))
 
+    def idle_topics(self) -> frozenset[str]:
+        """Return the topics whose owners all ignore messages at present, such as those of an inactive controller."""
+        return frozenset(
+            topic
+            for topic, listeners in self._listeners.items()
+            if (active := [listener for listener in listeners if listener.active])
+            and all(listener.is_ready is not None and not listener.is_ready() for listener in active)
+        )
+
     def topics(self) -> dict[str, str]:
         """Return the types by topic, sorted, except unlisted topics and topics that only have subscriptions."""
         return {t: kind for t, kind in self.all_topics().items() if t not in self.unlisted or self.wanted(t)}

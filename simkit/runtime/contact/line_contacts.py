@@ -1,6 +1,7 @@
 """Exact contacts of cylinders and capsules along lines, in place of the engine's contacts of these pairs.
 
-`simkit.runtime.contact.line_geometry` computes the contacts. They are a function of the poses alone. This module writes
+`simkit.runtime.contact.line_geometry` computes the contacts, and `height_field_corners` those of corners on a height
+field. They are a function of the poses alone. This module writes
 them over the engine's contacts of a pair, appends missing ones, excludes surplus ones, and lets the engine build the
 constraints again.
 """
@@ -14,6 +15,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.runtime.contact.height_field_corners import HeightFieldCorners
 from simkit.runtime.contact.line_geometry import (
     PARALLEL,
     LineContact,
@@ -81,13 +83,16 @@ class LineContacts:
         rods = trees[_CYLINDER] | trees[_CAPSULE]
         # only bodies of different trees, because a robot with two wheels would need a search in every step
         self._has_edges = model.nflex == 0 and _differ(trees[_CYLINDER], trees[_BOX])
-        self._can_meet = self._has_edges or (model.nflex == 0 and _differ(rods, rods))
+        self._has_lines = self._has_edges or (model.nflex == 0 and _differ(rods, rods))
+        self._corners = HeightFieldCorners(model)
+        self._has_corners = model.nflex == 0 and bool(self._corners)
+        self._can_meet = self._has_lines or self._has_corners
 
     def __bool__(self) -> bool:
         return self._can_meet
 
     def correct(self, data: mujoco.MjData) -> bool:
-        """Replace the engine's contacts of pairs that touch along a line.
+        """Replace the engine's contacts of pairs that touch along a line or stand on corners.
 
         Args:
             data: MuJoCo's data with contacts, constraints and velocities.
@@ -97,10 +102,12 @@ class LineContacts:
         """
         if not self._can_meet:
             return False
-        pairs, ids = self._pairs(data)
-        if not pairs:
-            return False
-        exact = self._exact_contacts(data, pairs, ids)
+        exact: list[ExactContacts] = []
+        if self._has_lines:
+            pairs, ids = self._pairs(data)
+            exact = self._exact_contacts(data, pairs, ids) if pairs else []
+        if self._has_corners:
+            exact += self._corners.exact_contacts(data)
         if not exact:
             return False
         if _replace(self._model, data, exact):

@@ -212,7 +212,7 @@ class PluginFaults:
         engine.log.warning("%s: %s (%s)", plugin.where, text, line)
         self._apply()
         engine.callbacks.abandon(plugin, f"plugin {plugin.name!r} is disabled: {last}")
-        release_servos(engine, plugin)
+        release_servos(engine, plugin, self.is_disabled)
         self._reschedule()
 
     def _apply(self) -> None:
@@ -233,11 +233,16 @@ class PluginFaults:
             self._apply()
 
 
-def release_servos(engine: EngineState, plugin: AttachedPlugin) -> None:
-    """Release the joints that a plugin's servos and motors hold; a restore or reset restores the servos and motors."""
+def release_servos(engine: EngineState, plugin: AttachedPlugin, is_disabled: Callable[[AttachedPlugin], bool]) -> None:
+    """Release the joints that a plugin's servos and motors hold; a restore or reset restores the servos and motors.
+
+    A servo that another plugin shares stays, until that plugin is disabled as well.
+    """
     present = {ref.name for record in engine.structure.builder.records.values() for ref in record.actuators}
     entry = engine.structure.entry_of(plugin)
-    refs = [ref for ref in (() if entry is None else entry.actuators) if ref.name in present]
+    others = [p for p in engine.structure.all_plugins() if p is not plugin and not is_disabled(p)]
+    shared = {ref for p in others if (other := engine.structure.entry_of(p)) is not None for ref in other.actuators}
+    refs = [ref for ref in (() if entry is None else entry.actuators) if ref.name in present and ref not in shared]
     if refs:
         gains, biases = engine.touch("actuator_gainprm"), engine.touch("actuator_biasprm")
         for ref in refs:

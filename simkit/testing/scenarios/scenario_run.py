@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Literal
@@ -20,6 +20,7 @@ from simkit.testing.scenarios.code_permission import permit_code
 if TYPE_CHECKING:
     from simkit.recording.bags.playback import Playback
     from simkit.runtime import Simulation
+    from simkit.runtime.communication.topic_bus import TopicBus
     from simkit.testing.conditions import CheckResult
 
 
@@ -174,12 +175,12 @@ def run_scenario(
         return ScenarioResult(reason, watch.results(reason))
 
 
-def resolve_commands(spec: RunSpec, topics: Mapping[str, str]) -> RunSpec:
+def resolve_commands(spec: RunSpec, bus: TopicBus) -> RunSpec:
     """Return a run specification whose `velocity` and `script` are converted to commands.
 
     Args:
         spec: Run specification.
-        topics: Topics of the world with their types.
+        bus: Topics of the world.
 
     Raises:
         InputError: SK-CLI-010 invalid velocity, or no topic for it; SK-CLI-011 invalid script.
@@ -187,7 +188,8 @@ def resolve_commands(spec: RunSpec, topics: Mapping[str, str]) -> RunSpec:
     if spec.velocity is None and spec.script is None:
         return spec
 
-    requested = [] if spec.velocity is None else [steady_velocity(spec.velocity, topics)]
+    topics = bus.topics()
+    requested = [] if spec.velocity is None else [steady_velocity(spec.velocity, topics, bus.idle_topics())]
     if spec.script is not None:
         requested += read_script(spec.script, None if spec.nodes else topics)
     commands = (*spec.commands, *(command.plain() for command in requested))
@@ -208,7 +210,7 @@ class ScenarioCommands:
     def __init__(self, scenario: RunSpec, sim: Simulation) -> None:
         topics = sim.communication.bus.topics()
         self._commands = Commands(
-            sim, commands_of(resolve_commands(scenario, topics).commands, None if sim.nodes else topics)
+            sim, commands_of(resolve_commands(scenario, sim.communication.bus).commands, None if sim.nodes else topics)
         )
         self._played: Playback | None = None
         if scenario.played_bag is not None:

@@ -203,6 +203,22 @@ def test_a_missing_include_of_a_bare_model_is_an_error(load, write):
     assert [d.code for d in found if d.severity == "error"] == ["SK-URI-001"]
 
 
+def test_a_model_of_missing_includes_is_left_out_with_them(load, write):
+    """The missing includes are reported, and not that the model around them has no link."""
+    root = write("models/box/model.sdf", BOX).parents[1]
+    course = "<model name='course'><include><uri>model://buoy</uri></include></model>"
+    others = "<include><uri>model://box</uri></include>"
+    scene, found = load(f"<sdf version='1.9'><world name='w'>{course}{others}</world></sdf>", (root,))
+    assert [m.name for m in scene.world.models] == ["box"]
+    assert [(d.code, d.severity) for d in found if d.severity != "note"] == [("SK-URI-001", "warning")]
+
+    _, found = load(f"<sdf version='1.9'><world name='w'>{course}</world></sdf>", (root,))
+    assert [d.code for d in found if d.severity == "error"] == ["SK-URI-001"]
+
+    _, found = load(f"<sdf version='1.9'>{course}</sdf>", (root,))
+    assert [d.code for d in found if d.severity == "error"] == ["SK-URI-001"]
+
+
 def test_a_name_alone_is_the_model_of_that_name(load, write):
     write("project/models/platform/model.sdf", "<sdf version='1.9'><model name='p'><link name='l'/></model></sdf>")
     write("project/models/platform/model.config", "<model><sdf version='1.9'>model.sdf</sdf></model>")

@@ -58,3 +58,29 @@ def test_a_reset_and_a_restore_keep_the_shared_servo() -> None:
 def test_one_drive_alone_is_no_conflict() -> None:
     with simkit.load(cart(CLASSIC)) as sim:
         assert "SK-JOINT-019" not in [d.code for d in sim.diagnostics]
+
+
+@pytest.mark.parametrize("plugins", [("weak", "gz"), ("gz", "weak")], ids=["weak first", "weak last"])
+def test_the_larger_effort_limit_of_both_drives_counts(plugins: tuple[str, str]) -> None:
+    """A motor of 0.01 N·m alone reaches 1 rad/s of a wheel of 0.01 kg m² in a second."""
+    weak = CLASSIC.replace("<max_wheel_torque>100<", "<max_wheel_torque>0.01<")
+    with simkit.load(cart(weak)) as sim:
+        sim.publish("/cmd_vel", {"linear": {"x": 0.5}})
+        sim.run(1.0)
+        assert sim.joint("cart::left_joint").velocity < 1.1
+    with simkit.load(cart(*({"weak": weak, "gz": GZ}[name] for name in plugins))) as sim:
+        sim.publish("/model/cart/cmd_vel", {"linear": {"x": 0.5}})
+        sim.run(1.0)
+        assert sim.joint("cart::left_joint").velocity == pytest.approx(5.0, rel=0.02)
+
+
+@pytest.mark.parametrize("first", [CLASSIC, GZ], ids=["classic first", "gz first"])
+def test_the_second_drive_works_if_the_first_is_disabled(first: str) -> None:
+    second = GZ if first == CLASSIC else CLASSIC
+    topic = "/model/cart/cmd_vel" if second == GZ else "/cmd_vel"
+    with simkit.load(cart(first, second), on_error="disable") as sim:
+        plugin = next(iter(sim.plugins.values()))
+        sim.engine.faults.disable(plugin, "on_update", RuntimeError("broken"))
+        sim.publish(topic, {"linear": {"x": 0.5}})
+        sim.run(1.0)
+        assert sim.joint("cart::left_joint").velocity == pytest.approx(5.0, rel=0.02)

@@ -62,6 +62,12 @@ class ControllerClient:
         rclpy.spin_until_future_complete(self.node, future)
         return future.result()
 
+    @property
+    def is_ros1(self) -> bool:
+        """True if the manager is that of ROS 1, which has no parameters of its own."""
+        names = {name for name, _ in self.node.get_service_names_and_types()}
+        return f"{self.manager}/list_controllers" in names and f"{self.manager}/set_parameters" not in names
+
     def controllers(self) -> dict[str, Any]:
         """Return the loaded controllers by name."""
         response = self.call("list_controllers", ListControllers, ListControllers.Request())

@@ -100,13 +100,19 @@ class Spawner(Node):
         self.is_ros1 = False
 
     def start(self) -> bool:
-        """Start the controllers; return whether all of them were started."""
+        """Start the controllers; return whether all of them were started.
+
+        The spawner of ROS 1 starts those that it could load, and does not fail because of the others.
+        """
         if self._options.wait_for:
             self._wait_for(self._options.wait_for)
         started = []
         for controller in self._controllers:
             if not self._prepare(controller):
-                return False
+                if not self._client.is_ros1:
+                    return False
+                self.is_ros1 = True
+                continue
             is_wanted = not (controller.inactive or controller.load_only or self._options.stopped)
             if is_wanted and self._state(controller.name) not in ("active", "running"):
                 started.append(controller.name)

@@ -172,3 +172,24 @@ def test_after_a_reset_the_controllers_wait_for_their_spawner_again(sim: Simulat
     sim.reset()
     sim.run(0.2)
     assert states(sim) == {"arm_controller": "active"} and not messages
+
+
+def test_the_spawner_of_ros_1_starts_the_controllers_that_it_could_load(tmp_path: Path) -> None:
+    """PR2's launch file names controllers of the casters first, which do not run here."""
+    transmission = """<transmission name="t"><type>transmission_interface/SimpleTransmission</type>
+<joint name="elbow"><hardwareInterface>hardware_interface/PositionJointInterface</hardwareInterface></joint>
+<actuator name="m"/></transmission><gazebo><plugin filename="libgazebo_ros_control.so" name="control">
+<robotNamespace>/</robotNamespace></plugin></gazebo>"""
+    begin, end = ROBOT.index("<ros2_control"), ROBOT.index("</robot>")
+    (tmp_path / "arm.urdf").write_text(ROBOT[:begin] + transmission + ROBOT[end:])
+    parameters = """
+base_controller: {type: pr2_mechanism_controllers/Pr2BaseController}
+arm_controller: {type: position_controllers/JointPositionController, joint: elbow}
+"""
+    (tmp_path / "arm.yaml").write_text(parameters)
+    with simkit.load(tmp_path / "arm.urdf", params_files=[tmp_path / "arm.yaml"]) as sim:
+        node = sim.add_node("pr2_controller_manager/spawner", args=["base_controller", "arm_controller"])
+        sim.run(0.5)
+        assert states(sim) == {"arm_controller": "running"}
+        assert not node.done  # in ROS 1, the spawner stops its controllers when it ends
+        assert any("base_controller" in line for line in node.log)

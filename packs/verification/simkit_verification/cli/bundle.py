@@ -49,7 +49,7 @@ def bundle(
     with open_scenario(scenario) as sim:
         print_diagnostics(sim.diagnostics, verbose=False)
         recorder = BundleRecorder(sim, last, topic, scenario)
-        scenario = resolve_commands(scenario, sim.communication.bus.topics())
+        scenario = resolve_commands(scenario, sim.communication.bus)
         failure = None
         try:
             ended = run_scenario(scenario, sim)

@@ -46,7 +46,7 @@ def certify(
     scenario = scenario_spec(world, given, allow_code=allow_code, usual_duration=_DEFAULT_DURATION)
     if scenario.velocity is not None or scenario.script is not None:
         with open_scenario(scenario) as sim:
-            scenario = resolve_commands(scenario, sim.communication.bus.topics())
+            scenario = resolve_commands(scenario, sim.communication.bus)
     print_ = stdout_console().print
 
     def print_row(row: certificate.Row) -> None:

@@ -39,11 +39,13 @@ class ControllerEndpoints(SharedByCopies):
 
     Attributes:
         handlers: callbacks of the current controller, by the kind and the name of the endpoint.
+        is_active: function that checks whether the current controller is active, if a manager has set it.
     """
 
     def __init__(self) -> None:
         self._handles: dict[Key, Any] = {}
         self.handlers: dict[Key, Relay] = {}
+        self.is_active: Callable[[], bool] | None = None
 
     def open(self, key: Key, make: Callable[[], Handle]) -> Handle:
         """Return the endpoint of a key; create it if it does not exist yet."""
@@ -173,6 +175,7 @@ class Controller(SharedByCopies, abc.ABC):
         name, key = self.topic(topic), ("listen", f"{self.topic(topic)} {types}")
         relay = self.endpoints.relay(key, callback)
         listener: Listener = self.endpoints.open(key, lambda: self.plugin.listen(name, types, relay))
+        listener.is_ready = self.endpoints.is_active
         return listener
 
     def offer(self, service: str, type_name: str, handler: Callable[[Message], object]) -> Service:

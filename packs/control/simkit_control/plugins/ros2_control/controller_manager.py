@@ -157,8 +157,13 @@ class ControllerManager(SharedByCopies):
         controller = cls(name, self.plugin, params, self.hardware)
         controller.remappings = self.remappings.get(name, ())
         controller.endpoints = self._endpoints.setdefault(name, controller.endpoints)
+        controller.endpoints.is_active = functools.partial(self._is_active, name)
         self.controllers[name] = LoadedController(controller, kind)
         return ""
+
+    def _is_active(self, name: str) -> bool:
+        loaded = self.controllers.get(name)
+        return loaded is not None and loaded.state == "active"
 
     def _parameters(self, name: str) -> Params:
         problems, entry = Diagnostics(), self.files.of_node(f"{self.namespace}/{name}")
