@@ -102,11 +102,11 @@ def test_a_dissimilar_name_gets_no_other_name() -> None:
 
 
 def test_common_ends_of_names_do_not_make_two_plugins_similar() -> None:
-    plugin = named("libteeterbot_gazebo_plugin.so")
+    plugin = named("libwobblebot_gazebo_plugin.so")
     assert find_plugin(plugin, parent="world") is None
     (found,) = plugin.params.diagnostics
     assert "did you mean" not in found.hint
-    assert "`simkit plugin new libteeterbot_gazebo_plugin.so --on world`" in found.hint
+    assert "`simkit plugin new libwobblebot_gazebo_plugin.so --on world`" in found.hint
 
 
 def test_an_unsupported_gazebo_plugin_is_reported_as_such() -> None:

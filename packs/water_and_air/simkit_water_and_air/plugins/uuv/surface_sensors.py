@@ -13,9 +13,10 @@ import numpy as np
 from simkit import Params, SensorPlugin, msgs
 from simkit.extend import Options, OptionsOf, Vector, choice, number, publishes, text, without_effect
 from simkit.sensors.environment.geodesy import WorldOnPlanet
+from simkit_water_and_air.message_fields import xyz
 from simkit_water_and_air.plugins.classic.px4_sensors import home_of
 from simkit_water_and_air.plugins.fluids.water_current import absolute_topic
-from simkit_water_and_air.plugins.uuv.uuv_sensor import UuvSensor, UuvSensorOptions, xyz
+from simkit_water_and_air.plugins.uuv.uuv_sensor import UuvSensor, UuvSensorOptions
 
 if TYPE_CHECKING:
     from simkit.msgs import Message
