@@ -1073,6 +1073,60 @@ class ConveyorBeltControl_Response:
 # dave_gazebo_ros_plugins
 
 @dataclass
+class StratifiedCurrentDatabase:
+    """`dave_gazebo_ros_plugins/msg/StratifiedCurrentDatabase`"""
+    depths: NDArray[np.float32]
+    velocities: list[Vector3]
+    time_gmt_year: NDArray[np.int16]
+    time_gmt_month: NDArray[np.int16]
+    time_gmt_day: NDArray[np.int16]
+    time_gmt_hour: NDArray[np.int16]
+    time_gmt_minute: NDArray[np.int16]
+    tide_velocities: NDArray[np.float32]
+    tide_constituents: bool
+    m2_amp: float
+    m2_phase: float
+    m2_speed: float
+    s2_amp: float
+    s2_phase: float
+    s2_speed: float
+    n2_amp: float
+    n2_phase: float
+    n2_speed: float
+    ebb_direction: float
+    flood_direction: float
+    world_start_time_year: int
+    world_start_time_month: int
+    world_start_time_day: int
+    world_start_time_hour: int
+    world_start_time_minute: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class StratifiedCurrentVelocity:
+    """`dave_gazebo_ros_plugins/msg/StratifiedCurrentVelocity`"""
+    header: Header
+    depths: NDArray[np.float32]
+    velocities: list[Vector3]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class dave_gazebo_ros_plugins__srv__GetCurrentModel_Request:
+    """`dave_gazebo_ros_plugins/srv/GetCurrentModel_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class dave_gazebo_ros_plugins__srv__GetCurrentModel_Response:
+    """`dave_gazebo_ros_plugins/srv/GetCurrentModel_Response`"""
+    mean: float
+    min: float
+    max: float
+    noise: float
+    mu: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class dave_gazebo_ros_plugins__srv__GetOriginSphericalCoord_Request:
     """`dave_gazebo_ros_plugins/srv/GetOriginSphericalCoord_Request`"""
     structure_needs_at_least_one_member: int = 0
@@ -1087,6 +1141,48 @@ class dave_gazebo_ros_plugins__srv__GetOriginSphericalCoord_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class dave_gazebo_ros_plugins__srv__SetCurrentDirection_Request:
+    """`dave_gazebo_ros_plugins/srv/SetCurrentDirection_Request`"""
+    angle: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class dave_gazebo_ros_plugins__srv__SetCurrentDirection_Response:
+    """`dave_gazebo_ros_plugins/srv/SetCurrentDirection_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class dave_gazebo_ros_plugins__srv__SetCurrentModel_Request:
+    """`dave_gazebo_ros_plugins/srv/SetCurrentModel_Request`"""
+    mean: float
+    min: float
+    max: float
+    noise: float
+    mu: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class dave_gazebo_ros_plugins__srv__SetCurrentModel_Response:
+    """`dave_gazebo_ros_plugins/srv/SetCurrentModel_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class dave_gazebo_ros_plugins__srv__SetCurrentVelocity_Request:
+    """`dave_gazebo_ros_plugins/srv/SetCurrentVelocity_Request`"""
+    velocity: float
+    horizontal_angle: float
+    vertical_angle: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class dave_gazebo_ros_plugins__srv__SetCurrentVelocity_Response:
+    """`dave_gazebo_ros_plugins/srv/SetCurrentVelocity_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class dave_gazebo_ros_plugins__srv__SetOriginSphericalCoord_Request:
     """`dave_gazebo_ros_plugins/srv/SetOriginSphericalCoord_Request`"""
     latitude_deg: float
@@ -1097,6 +1193,34 @@ class dave_gazebo_ros_plugins__srv__SetOriginSphericalCoord_Request:
 @dataclass
 class dave_gazebo_ros_plugins__srv__SetOriginSphericalCoord_Response:
     """`dave_gazebo_ros_plugins/srv/SetOriginSphericalCoord_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetStratifiedCurrentDirection_Request:
+    """`dave_gazebo_ros_plugins/srv/SetStratifiedCurrentDirection_Request`"""
+    layer: int
+    angle: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetStratifiedCurrentDirection_Response:
+    """`dave_gazebo_ros_plugins/srv/SetStratifiedCurrentDirection_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetStratifiedCurrentVelocity_Request:
+    """`dave_gazebo_ros_plugins/srv/SetStratifiedCurrentVelocity_Request`"""
+    layer: int
+    velocity: float
+    horizontal_angle: float
+    vertical_angle: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetStratifiedCurrentVelocity_Response:
+    """`dave_gazebo_ros_plugins/srv/SetStratifiedCurrentVelocity_Response`"""
     success: bool
     __msgtype__: ClassVar[str]
 
@@ -1212,6 +1336,98 @@ class SelfTest_Response:
     id: str
     passed: int
     status: list[DiagnosticStatus]
+    __msgtype__: ClassVar[str]
+
+# ds_core_msgs
+
+@dataclass
+class DsHeader:
+    """`ds_core_msgs/msg/DsHeader`"""
+    io_time: Time
+    source_uuid: NDArray[np.uint8]
+    __msgtype__: ClassVar[str]
+
+# ds_sensor_msgs
+
+@dataclass
+class Adcp:
+    """`ds_sensor_msgs/msg/Adcp`"""
+    header: Header
+    ds_header: DsHeader
+    coordinate_mode: int
+    adcp_type: int
+    cells: int
+    cell_depth: int
+    bin0_distance: float
+    beam_unit_vec: list[Vector3]
+    vel_bin_beams: list[WaterCurrentProfile]
+    ADCP_COORD_BEAM: ClassVar[int] = 0
+    ADCP_COORD_INSTRUMENT: ClassVar[int] = 1
+    ADCP_COORD_SHIP: ClassVar[int] = 2
+    ADCP_COORD_EARTH: ClassVar[int] = 3
+    ADCP_TYPE_PISTON: ClassVar[int] = 0
+    ADCP_TYPE_PHASED_ARRAY: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Dvl:
+    """`ds_sensor_msgs/msg/Dvl`"""
+    header: Header
+    ds_header: DsHeader
+    dvl_time: float
+    velocity: Vector3
+    velocity_covar: NDArray[np.float64]
+    altitude: float
+    course_gnd: float
+    speed_gnd: float
+    num_good_beams: int
+    speed_sound: float
+    beam_unit_vec: list[Vector3]
+    range: NDArray[np.float64]
+    range_covar: NDArray[np.float32]
+    beam_quality: NDArray[np.float32]
+    raw_velocity: NDArray[np.float32]
+    raw_velocity_covar: NDArray[np.float32]
+    velocity_mode: int
+    coordinate_mode: int
+    dvl_type: int
+    DVL_MODE_BOTTOM: ClassVar[int] = 1
+    DVL_MODE_WATER: ClassVar[int] = 2
+    DVL_COORD_BEAM: ClassVar[int] = 0
+    DVL_COORD_INSTRUMENT: ClassVar[int] = 1
+    DVL_COORD_SHIP: ClassVar[int] = 2
+    DVL_COORD_EARTH: ClassVar[int] = 3
+    DVL_TYPE_PISTON: ClassVar[int] = 0
+    DVL_TYPE_PHASED_ARRAY: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Range3D:
+    """`ds_sensor_msgs/msg/Range3D`"""
+    range: PointStamped
+    range_quality: float
+    range_validity: int
+    RANGE_INDETERMINANT: ClassVar[int] = 0
+    RANGE_LOW: ClassVar[int] = 1
+    RANGE_HIGH: ClassVar[int] = 2
+    RANGE_VALID: ClassVar[int] = 3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Ranges3D:
+    """`ds_sensor_msgs/msg/Ranges3D`"""
+    header: Header
+    ds_header: DsHeader
+    ranges: list[Range3D]
+    soundspeed_correction_type: int
+    SOUNDSPEED_CORRECTION_NORMAL: ClassVar[int] = 0
+    SOUNDSPEED_CORRECTION_PHASEDARRAYDVL: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WaterCurrentProfile:
+    """`ds_sensor_msgs/msg/WaterCurrentProfile`"""
+    velocity_bin_beam: list[Vector3]
     __msgtype__: ClassVar[str]
 
 # example_interfaces
@@ -11013,13 +11229,13 @@ class ChangeSensorState_Response:
 # uuv_world_ros_plugins_msgs
 
 @dataclass
-class GetCurrentModel_Request:
+class uuv_world_ros_plugins_msgs__srv__GetCurrentModel_Request:
     """`uuv_world_ros_plugins_msgs/srv/GetCurrentModel_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetCurrentModel_Response:
+class uuv_world_ros_plugins_msgs__srv__GetCurrentModel_Response:
     """`uuv_world_ros_plugins_msgs/srv/GetCurrentModel_Response`"""
     mean: float
     min: float
@@ -11043,19 +11259,19 @@ class uuv_world_ros_plugins_msgs__srv__GetOriginSphericalCoord_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetCurrentDirection_Request:
+class uuv_world_ros_plugins_msgs__srv__SetCurrentDirection_Request:
     """`uuv_world_ros_plugins_msgs/srv/SetCurrentDirection_Request`"""
     angle: float
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetCurrentDirection_Response:
+class uuv_world_ros_plugins_msgs__srv__SetCurrentDirection_Response:
     """`uuv_world_ros_plugins_msgs/srv/SetCurrentDirection_Response`"""
     success: bool
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetCurrentModel_Request:
+class uuv_world_ros_plugins_msgs__srv__SetCurrentModel_Request:
     """`uuv_world_ros_plugins_msgs/srv/SetCurrentModel_Request`"""
     mean: float
     min: float
@@ -11065,13 +11281,13 @@ class SetCurrentModel_Request:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetCurrentModel_Response:
+class uuv_world_ros_plugins_msgs__srv__SetCurrentModel_Response:
     """`uuv_world_ros_plugins_msgs/srv/SetCurrentModel_Response`"""
     success: bool
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetCurrentVelocity_Request:
+class uuv_world_ros_plugins_msgs__srv__SetCurrentVelocity_Request:
     """`uuv_world_ros_plugins_msgs/srv/SetCurrentVelocity_Request`"""
     velocity: float
     horizontal_angle: float
@@ -11079,7 +11295,7 @@ class SetCurrentVelocity_Request:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetCurrentVelocity_Response:
+class uuv_world_ros_plugins_msgs__srv__SetCurrentVelocity_Response:
     """`uuv_world_ros_plugins_msgs/srv/SetCurrentVelocity_Response`"""
     success: bool
     __msgtype__: ClassVar[str]

@@ -175,7 +175,7 @@ class OceanCurrent(UnderwaterCurrent):
         dates, speeds = table
         if not dates or not seconds_of(dates[0]) <= now <= seconds_of(dates[-1]):
             message = "<world_start_time_GMT> is outside of the table of the tide, whose first or last speed is used"
-            start.params.warning("SK-PARAM-002", message, "choose a date of the table")
+            start.params.warning("SK-PARAM-008", message, "choose a date of the table")
         for index, name in enumerate(("year", "month", "day", "hour", "minute")):
             fields[f"time_gmt_{name}"] = [date[index] for date in dates]
         return {**fields, "tide_velocities": speeds}
