@@ -6,7 +6,7 @@ import difflib
 import functools
 import re
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import replace
 
 from simkit.diagnostic_record import NOWHERE, TEXT_SOURCE, Diagnostic, Severity, Where
@@ -118,7 +118,8 @@ class Diagnostics:
         """Attribute the errors that are reported inside the context to a sensor or plugin; None for no one."""
         outer, self._blamed = self._blamed, part
         try:
-            yield
+            with nullcontext() if self._successor is None else self._successor.blame(part):
+                yield
         finally:
             self._blamed = outer
 

@@ -12,6 +12,9 @@ from simkit.params import Params
 from simkit.trusted_folders import OutsideError, join_below
 
 NEWEST_SDF = (1, 12)
+CLASSIC_SDF = (1, 7)
+"""Newest version of SDF that Gazebo Classic reads."""
+_MANIFESTS = ("model.config", "manifest.xml")
 
 
 def model_file(folder: Path, where: Where, diagnostics: Diagnostics, allows: Callable[[Path], bool]) -> Path | None:
@@ -29,7 +32,7 @@ def model_file(folder: Path, where: Where, diagnostics: Diagnostics, allows: Cal
     def is_readable(file: Path) -> bool:
         return is_file(file) and allows(file)
 
-    for manifest in (folder / "model.config", folder / "manifest.xml"):
+    for manifest in (folder / name for name in _MANIFESTS):
         if not is_readable(manifest):
             continue
         document = parse_file(manifest, diagnostics)
@@ -45,7 +48,7 @@ def model_file(folder: Path, where: Where, diagnostics: Diagnostics, allows: Cal
             return folder / "model.sdf"
         diagnostics.error("SK-URI-005", f"{manifest} lists no SDF file that exists (listed: {names})", where)
         return None
-    for name in ("model.sdf", f"{folder.name}.sdf", "model.urdf", f"{folder.name}.urdf"):
+    for name in _file_names(folder)[len(_MANIFESTS) :]:
         if is_readable(folder / name):
             return folder / name
     models = [file for file in _mjcf_models(folder) if allows(file)]
@@ -54,6 +57,15 @@ def model_file(folder: Path, where: Where, diagnostics: Diagnostics, allows: Cal
     unnamed = f"; none of {', '.join(m.name for m in models[:8])} is named {folder.name}.xml" if models else ""
     diagnostics.error("SK-URI-005", f"the folder {folder} has neither model.config nor model.sdf{unnamed}", where)
     return None
+
+
+def holds_model(folder: Path) -> bool:
+    """Check whether `model_file` would look into a file of this folder."""
+    return any(is_file(folder / name) for name in _file_names(folder)) or bool(_mjcf_models(folder))
+
+
+def _file_names(folder: Path) -> tuple[str, ...]:
+    return (*_MANIFESTS, "model.sdf", f"{folder.name}.sdf", "model.urdf", f"{folder.name}.urdf")
 
 
 def _file_below(folder: Path, name: str) -> Path | None:

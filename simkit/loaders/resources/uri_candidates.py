@@ -18,6 +18,7 @@ from simkit.loaders.resources.fuel_cache import (
     read_lock,
 )
 from simkit.loaders.resources.install_rules import installed_sources
+from simkit.loaders.resources.model_folder import holds_model
 from simkit.loaders.resources.project_folder import readable_folder
 from simkit.loaders.resources.ros_packages import PackageIndex, enclosing_package
 from simkit.loaders.resources.uris import (
@@ -118,11 +119,22 @@ class UriCandidates:
     # ------------------------------------------------------------------ candidates
 
     def all_models(self, name: str, inside: str, relative_to: Path | None) -> Iterator[Path]:
-        """Yield all candidates for `model://name/inside`."""
-        yield from self._model_candidates(name, inside, relative_to)
-        yield from self._package_candidates(name, inside, relative_to)
-        yield from self._models_of_project(name, inside, relative_to)
-        yield from self._models_of_packages(name, inside, relative_to)
+        """Yield all candidates for `model://name/inside`.
+
+        If the URI names the model itself, a folder without a model, such as a package with that name, comes last.
+        """
+        without_model = []
+        for candidate in chain(
+            self._model_candidates(name, inside, relative_to),
+            self._package_candidates(name, inside, relative_to),
+            self._models_of_project(name, inside, relative_to),
+            self._models_of_packages(name, inside, relative_to),
+        ):
+            if not inside and is_folder(candidate) and not holds_model(candidate):
+                without_model.append(candidate)
+            else:
+                yield candidate
+        yield from without_model
 
     def all_packages(self, name: str, inside: str, relative_to: Path | None) -> Iterator[Path]:
         """Yield all candidates for `package://name/inside`."""

@@ -7,7 +7,7 @@ from functools import partial
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.loaders.resources.bundled_models import builtin_model, turtlebot3_uri
-from simkit.loaders.resources.model_folder import model_file
+from simkit.loaders.resources.model_folder import CLASSIC_SDF, model_file
 from simkit.loaders.resources.uri_resolver import NOT_FOUND_CODES, with_known_scheme
 from simkit.loaders.resources.xml_reader import parse_text
 from simkit.loaders.sdf.entity_names import read_name
@@ -16,7 +16,6 @@ from simkit.loaders.sdf.load_context import EntitySource, SdfFile, Workspace, po
 from simkit.params import Params
 
 _ENTITIES = ("model", "light", "actor")
-_CLASSIC = (1, 7)  # newest version of SDF that Gazebo Classic reads
 _MOST_LISTED = 30
 
 
@@ -175,7 +174,7 @@ def _only_entity(file: SdfFile, uri: str, include: Params, workspace: Workspace)
         world = "; it also contains a <world>" if file.root.has("world") else ""
         near = did_you_mean("model", [c.name for c in file.root.children]) if not entities else ""
         message = f"{uri} must contain exactly one model, light or actor; it contains {contained}{world}"
-        if entities and file.version <= _CLASSIC:
+        if entities and file.version <= CLASSIC_SDF:
             entities.sort(key=lambda entity: ("model", "actor", "light").index(entity.name))
             include.warning("SK-SDF-016", f"{message}; the first <{entities[0].name}> is used, as in Gazebo Classic")
             for entity in entities[1:]:

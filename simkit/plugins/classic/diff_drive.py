@@ -149,7 +149,7 @@ class DiffDriveRos1Options(CommonDiffDriveOptions):
 
     left_joint: str = text("left_joint", element="leftJoint")
     right_joint: str = text("right_joint", element="rightJoint")
-    legacy_mode: bool = boolean(element="legacyMode")
+    legacy_mode: bool = boolean(True, element="legacyMode")
     wheel_separation: float = number(0.34, "m", element="wheelSeparation", minimum=1e-6)
     wheel_diameter: float = number(0.15, "m", element="wheelDiameter", minimum=1e-6)
     publish_odom: bool = boolean(True, element="publishTf")
@@ -171,6 +171,10 @@ class DiffDriveRos1Options(CommonDiffDriveOptions):
         if self.legacy_mode:
             # files from before 2016 have swapped names of the wheels
             left, right = right, left
+            if not self.params.has("legacyMode"):
+                text = "no <legacyMode>: the left and the right wheel are exchanged, as in Gazebo Classic with ROS 1"
+                hint = "if the robot turns to the wrong side: <legacyMode>false</legacyMode>"
+                self.params.warning("SK-PARAM-009", text, hint)
         return (Pair(left, right, self.wheel_separation, self.wheel_diameter / 2),)
 
     @property

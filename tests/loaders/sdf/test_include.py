@@ -203,6 +203,16 @@ def test_a_missing_include_of_a_bare_model_is_an_error(load, write):
     assert [d.code for d in found if d.severity == "error"] == ["SK-URI-001"]
 
 
+def test_a_model_is_found_although_a_package_has_its_name(load, write):
+    write("project/robot_lamp/package.xml", "<package><name>robot_lamp</name></package>")
+    write("project/.git/HEAD", "")
+    write("project/robot_lamp/models/lamp/model.sdf", BOX)
+    write("project/world/package.xml", "<package><name>world</name></package>")
+    world = "<sdf version='1.9'><world name='w'><include><uri>model://lamp</uri></include></world></sdf>"
+    scene, found = load(write("project/world/worlds/w.sdf", world))
+    assert [m.name for m in scene.world.models] == ["box"], [str(d) for d in found]
+
+
 def test_a_model_of_missing_includes_is_left_out_with_them(load, write):
     """The missing includes are reported, and not that the model around them has no link."""
     root = write("models/box/model.sdf", BOX).parents[1]

@@ -176,6 +176,7 @@ def test_the_ros_1_spelling_drives_too() -> None:
         "robotNamespace": "one",
         "leftJoint": "left_wheel",
         "rightJoint": "right_wheel",
+        "legacyMode": "false",
         "wheelSeparation": 0.4,
         "wheelDiameter": 0.2,
         "wheelTorque": 20,

@@ -157,3 +157,11 @@ def test_a_stored_golden_run_keeps_what_is_left_out_and_an_older_one_is_compared
     older = replace(run, left_out=None)
     assert not compare(older, run).differences
     assert [d.kind for d in compare(replace(older, diagnostics={}), run).differences] == ["left out"]
+
+
+def test_a_plugin_of_a_model_that_is_spawned_at_the_load_is_left_out(tmp_path: Path) -> None:
+    (tmp_path / "robot.sdf").write_text(model(DRIVE.format("axel")))
+    world = "<sdf version='1.9'><world name='w'/></sdf>"
+    with simkit.load(world, spawn=[f"{tmp_path / 'robot.sdf'}:0,0,0"]) as sim:
+        assert codes(sim.diagnostics) == [("warning", "SK-PLUGIN-003"), ("warning", "SK-LOAD-014")]
+        sim.step(10)

@@ -33,19 +33,22 @@ def test_missing_elements_of_a_ros_2_file_get_gazebos_defaults() -> None:
 
 
 def test_missing_elements_of_a_ros_1_file_get_gazebos_defaults() -> None:
-    found = read_options(Params.from_dict({"leftJoint": "a", "rightJoint": "b"}))
+    params = Params.from_dict({"leftJoint": "a", "rightJoint": "b"})
+    found = read_options(params)
     (pair,) = found.pairs
-    assert (pair.left, pair.right, pair.separation, pair.radius) == ("a", "b", 0.34, 0.075)
+    assert (pair.left, pair.right, pair.separation, pair.radius) == ("b", "a", 0.34, 0.075)
+    assert [d.code for d in params.diagnostics] == ["SK-PARAM-009"]
     assert found.publish_odom and found.publishes_odom_tf and not found.from_encoders
 
 
 def test_ros_1_without_transforms_has_no_odometry_and_older_files_swap_the_wheels() -> None:
     found = read_options(Params.from_dict({"leftJoint": "a", "rightJoint": "b", "publishTf": False}))
     assert not (found.publish_odom or found.publishes_odom_tf)
-    params = Params.from_dict({"leftJoint": "a", "rightJoint": "b", "legacyMode": True, "rosDebugLevel": "na"})
-    (pair,) = read_options(params).pairs
-    assert (pair.left, pair.right) == ("b", "a")
-    assert not list(params.unread())
+    for is_old, joints in ((True, ("b", "a")), (False, ("a", "b"))):
+        params = Params.from_dict({"leftJoint": "a", "rightJoint": "b", "legacyMode": is_old, "rosDebugLevel": "na"})
+        (pair,) = read_options(params).pairs
+        assert (pair.left, pair.right) == joints
+        assert not list(params.unread()) and not params.diagnostics
 
 
 def test_ros_1_names_topics_and_source() -> None:
