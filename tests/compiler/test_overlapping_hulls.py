@@ -37,14 +37,13 @@ def test_overlapping_hulls_of_one_model_do_not_collide_and_the_others_do(make, b
     (warning,) = (d for d in found if d.code == "SK-PHYS-034")
     assert "model m: the links 0 and 1 do not collide with each other" in warning.message
     assert "by up to 20 mm" in warning.message
-    assert "SK-PHYS-024" not in [d.code for d in found]
 
 
 def test_overlapping_boxes_of_one_model_collide(make):
     compiled, found = built(make, Box((0.1, 0.1, 0.1)), (0.0, 0.08))
     mujoco.mj_forward(compiled.model, compiled.data)
     assert compiled.data.ncon
-    assert [d.code for d in found] == ["SK-PHYS-024"]
+    assert "SK-PHYS-034" not in [d.code for d in found]
 
 
 def test_a_model_that_is_added_later_has_the_same_exclusions(make, block):
