@@ -15,9 +15,8 @@ from simkit.msgs.interface_definitions import interface_text
 from simkit.msgs.message_builder import builder_of
 from simkit.msgs.shipped_interfaces import shipped_parts
 
-
 RENAMED = {
-    "dave_gazebo_ros_plugins/msg/StratifiedCurrentDatabase": "M2amp and others are m2_amp, because ROS 2 has small letters",
+    "dave_gazebo_ros_plugins/msg/StratifiedCurrentDatabase": "M2amp is m2_amp",
 }
 """Types of ROS 1 with fields that ROS 2 does not allow, and their names in simkit."""
 
