@@ -45,6 +45,15 @@ all:
 """
 
 
+def load_legged(folder: Path, names: tuple[str, ...] = GAINS, more: str = "") -> simkit.Simulation:
+    """Load a cart with the hardware of legged_control, a controller of the named interfaces and further ones."""
+    parameters = "<robotNamespace>/</robotNamespace><parameters>arm.yaml</parameters>"
+    robot = cart("liblegged_hw_sim.so", TRANSMISSION, parameters)
+    text = f"{more}all:\n  type: forward_command_controller/MultiInterfaceForwardCommandController\n"
+    text += f"  joint: slide\n  interface_names: [{', '.join(names)}]\n"
+    return opened(folder, robot, text)
+
+
 def send(sim: simkit.Simulation, **commands: float) -> None:
     """Send a command to the controllers of several interfaces."""
     for name, value in commands.items():
@@ -106,11 +115,7 @@ def test_a_restored_snapshot_repeats_the_motion_with_its_gains(tmp_path: Path) -
 
 
 def test_legged_hardware_has_gains_at_its_effort_joints_and_forgets_them_on_release(tmp_path: Path) -> None:
-    parameters = "<robotNamespace>/</robotNamespace><parameters>arm.yaml</parameters>"
-    robot = cart("liblegged_hw_sim.so", TRANSMISSION, parameters)
-    text = "all:\n  type: forward_command_controller/MultiInterfaceForwardCommandController\n"
-    text += f"  joint: slide\n  interface_names: [{', '.join(GAINS)}]\n"
-    with opened(tmp_path, robot, text) as sim:
+    with load_legged(tmp_path) as sim:
         sim.publish("/all/command", {"data": [0.4, 0.0, 0.0, 50.0, 20.0]})
         sim.run(4.0)
         assert position(sim, "slide") == pytest.approx([0.4], abs=1e-3)
@@ -119,3 +124,39 @@ def test_legged_hardware_has_gains_at_its_effort_joints_and_forgets_them_on_rele
         sim.link("cart::cart").apply_wrench((2000.0, 0, 0))
         sim.run(0.5)
         assert float(sim.joint("cart::slide").velocity) == pytest.approx(1.0, abs=0.01)
+
+
+@pytest.mark.parametrize("names", [("velocity", "kd"), ("kd", "velocity")])
+def test_a_controller_may_claim_a_gain_without_a_position(tmp_path: Path, names: tuple[str, str]) -> None:
+    with load_legged(tmp_path, names) as sim:
+        commands = {"velocity": 0.3, "kd": 20.0}
+        sim.publish("/all/command", {"data": [commands[name] for name in names]})
+        sim.run(2.0)
+        assert float(sim.joint("cart::slide").velocity) == pytest.approx(0.3, abs=1e-3)
+
+
+def test_a_stiff_pid_of_an_effort_joint_with_gains_acts_and_is_restored(tmp_path: Path) -> None:
+    pid = (
+        "stiff:\n  type: effort_controllers/JointPositionController\n  joint: slide\n  pid: {p: 3000, i: 0, d: 3000}\n"
+    )
+    to_gains = {"activate_controllers": ["all"], "deactivate_controllers": ["stiff"], "strictness": 2}
+    with load_legged(tmp_path, more=pid) as sim:
+        sim.publish("/stiff/command", {"data": 0.4})
+        sim.run(1.0)
+        # the damper of 2000 N s/m, which is the largest stable one, and the spring of 3000 N/m
+        first = position(sim, "slide")
+        assert first == pytest.approx([0.4 * (1 - math.exp(-1.5))], rel=0.03)
+        snapshot = sim.snapshot()
+        sim.run(1.0)
+        later = position(sim, "slide")
+        assert sim.call("/controller_manager/switch_controller", to_gains).ok
+        sim.publish("/all/command", {"data": [0.0, 0.0, 0.0, 50.0, 20.0]})
+        sim.run(4.0)
+        assert position(sim, "slide") == pytest.approx([0.0], abs=1e-3)
+        sim.restore(snapshot)
+        sim.run(1.0)
+        assert position(sim, "slide") == later
+        sim.reset()
+        sim.publish("/stiff/command", {"data": 0.4})
+        sim.run(1.0)
+        assert position(sim, "slide") == first

@@ -44,9 +44,8 @@ base_controller:
 """
 
 
-@pytest.fixture
-def robot(tmp_path: Path) -> simkit.Simulation:
-    """Return a simulation of a small PR2 with a fixed base and its controllers."""
+def load(folder: Path) -> simkit.Simulation:
+    """Load a small PR2 with a fixed base and its controllers."""
     parts = ['<link name="world"/><joint name="fixed" type="fixed"><parent link="world"/><child link="base"/></joint>']
     parts.append(f'<link name="base">{INERTIAL.format(10)}</link>')
     for name, (parent, kind, axis, low, high) in JOINTS.items():
@@ -55,10 +54,15 @@ def robot(tmp_path: Path) -> simkit.Simulation:
           <limit lower="{low}" upper="{high}" effort="1000" velocity="10"/></joint>""")
     plugin = """<gazebo><plugin name="gazebo_ros_controller_manager" filename="libgazebo_ros_controller_manager.so">
       <alwaysOn>true</alwaysOn><updateRate>1000.0</updateRate></plugin></gazebo>"""
-    file, controllers = tmp_path / "pr2.urdf", tmp_path / "controllers.yaml"
+    file, controllers = folder / "pr2.urdf", folder / "controllers.yaml"
     file.write_text(f'<robot name="pr2">{"".join(parts)}{TRANSMISSIONS}{plugin}</robot>')
     controllers.write_text(CONTROLLERS)
     return simkit.load(file, params_files=[controllers])
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> simkit.Simulation:
+    return load(tmp_path)
 
 
 def test_the_joints_hold_without_a_command_and_joint_states_has_all_of_them(robot: simkit.Simulation) -> None:

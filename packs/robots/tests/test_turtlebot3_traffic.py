@@ -13,22 +13,26 @@ import simkit
 COLOURS = {"red": (200, 0, 0), "yellow": (200, 200, 0), "green": (0, 200, 0)}
 
 
-@pytest.fixture
-def light_world(tmp_path: Path) -> Path:
-    """Return a world with a camera in front of a traffic light, whose materials are beside it."""
-    for folder in ("scripts", "textures"):
-        (tmp_path / "materials" / folder).mkdir(parents=True)
+def write_world(folder: Path, top: str = "") -> Path:
+    """Write a world with a camera in front of a traffic light, whose materials are beside it.
+
+    Args:
+        folder: folder of the files.
+        top: further elements of the world.
+    """
+    for name in ("scripts", "textures"):
+        (folder / "materials" / name).mkdir(parents=True)
     script = ""
     for name, colour in COLOURS.items():
-        Image.new("RGB", (4, 4), colour).save(tmp_path / "materials" / "textures" / f"traffic_light_{name}.png")
+        Image.new("RGB", (4, 4), colour).save(folder / "materials" / "textures" / f"traffic_light_{name}.png")
         script += f"material traffic_light_{name} {{ technique {{ pass {{ texture_unit {{\n"
         script += f"texture traffic_light_{name}.png\n}} }} }} }}\n"
     script = script.replace("{ ", "{\n").replace(" }", "\n}")
-    (tmp_path / "materials" / "scripts" / "traffic_light.material").write_text(script)
+    (folder / "materials" / "scripts" / "traffic_light.material").write_text(script)
     material = """<material><script><uri>materials/scripts</uri><uri>materials/textures</uri>
       <name>traffic_light_red</name></script></material>"""
-    world = tmp_path / "w.sdf"
-    world.write_text(f"""<sdf version="1.6"><world name="w"><scene><ambient>1 1 1 1</ambient></scene>
+    world = folder / "w.sdf"
+    world.write_text(f"""<sdf version="1.6"><world name="w">{top}<scene><ambient>1 1 1 1</ambient></scene>
       <model name="light"><pose>1 0 0 0 0 0</pose><static>1</static><link name="l"><visual name="v"><geometry><box>
       <size>0.1 1 1</size></box></geometry>{material}</visual></link>
       <plugin name="p" filename="libtraffic_light_plugin.so"/></model>
@@ -36,6 +40,11 @@ def light_world(tmp_path: Path) -> Path:
       <update_rate>2</update_rate><camera><horizontal_fov>0.6</horizontal_fov><image><width>8</width><height>8</height></image>
       <clip><near>0.05</near><far>10</far></clip></camera></sensor></link></model></world></sdf>""")
     return world
+
+
+@pytest.fixture
+def light_world(tmp_path: Path) -> Path:
+    return write_world(tmp_path)
 
 
 def colour_seen(sim: simkit.Simulation) -> str:

@@ -9,7 +9,10 @@ from pathlib import Path
 import control_robots
 import planar_arm
 import test_fetch as fetch
+import test_gain_commands as gain_commands
+import test_pr2_plugin as pr2
 import test_ros_1_control as ros_1
+import test_turtlebot3_traffic as traffic
 from proof_lab import BOX, HEAVY, LIGHT, gz, lab, plugin, ros, sensed, tags
 from rooms import rooms
 
@@ -113,6 +116,29 @@ NAVIGATION = (
 )
 ODOMETRY = ros("diff_drive", REAR + tags(robot_base_frame="base", publish_odom_tf="true"))
 NAVIGATOR = plugin("libsimkit_bt_navigator.so", tags(robot_base_frame="base"), "bt_navigator")
+# a zoom goes on for the whole part of the run, between the random commands, which end at 1
+ZOOM = plugin(
+    "libPublisherPlugin.so",
+    '<message type="gz.msgs.Double" topic="/zoom" every="0.05">data: 3</message>',
+    "vrx::PublisherPlugin",
+)
+SMOKE = f'<sensor name="s" type="depth_camera"><update_rate>50</update_rate>{EYE}</sensor>' + (
+    '<particle_emitter name="smoke" type="box"><pose>0.5 0 0.3 0 0 0</pose>'
+    + tags(rate=500, lifetime=0.05, min_velocity=1, max_velocity=3, scale_rate=0.5)
+    + "</particle_emitter>"
+)
+PRIUS = (
+    tags(chassis="base", front_left_wheel="fl_joint", front_right_wheel="fr_joint", back_left_wheel="rl_joint")
+    + tags(back_right_wheel="rr_joint", front_left_wheel_steering="fl_steering", steering_wheel="arm", back_torque=5)
+    + tags(front_right_wheel_steering="fr_steering", front_brake_torque=2, back_brake_torque=2)
+    + tags(flwheel_steering_p_gain=20, flwheel_steering_i_gain=5, flwheel_steering_d_gain=1)
+    + tags(frwheel_steering_p_gain=20, frwheel_steering_i_gain=5, frwheel_steering_d_gain=1)
+)
+SLOW = '<physics type="ode"><max_step_size>0.2</max_step_size></physics>'  # traffic changes after some seconds
+CROSSING = (
+    f'<sdf version="1.9"><world name="w">{SLOW}'
+    f'<model name="bar"><link name="l">{LIGHT}</link>{plugin("libtraffic_bar_plugin.so")}</model></world></sdf>'
+)
 COUNTER = """
 class Counter:
     def configure(self, entity, sdf, ecm, event_mgr):
@@ -584,6 +610,22 @@ WORLDS: dict[str, str] = {
     "SensorsSystem": sensed("camera", world=gz("sensors", tags(background_color="0.2 0.5 0.7"), "Sensors")),
     "MagnetometerSystem": sensed("magnetometer", world=gz("magnetometer", "", "Magnetometer")),
     "BuiltInSystem": lab(world=gz("physics", "", "Physics")),
+    # ------------------------------------------------------------------ cameras, cars, feet and obstacles
+    "CameraZoom": sensed("camera", plugin("CameraZoomPlugin", tags(topic="zoom", slew_rate=5)), world=ZOOM),
+    "GstCamera": sensed("camera", plugin("GstCameraPlugin", tags(udp_port=5611))),
+    "Px4GstCamera": sensed("camera", plugin("libgazebo_gst_camera_plugin.so", tags(udpPort=5613))),
+    "ParticleEmitter": lab(sensor=SMOKE),
+    "PriusHybridPlugin": lab(model=plugin("libPriusHybridPlugin.so", PRIUS)),
+    "Teeterbot": lab(model=plugin("libteeterbot_gazebo_plugin.so", tags(speedMode=1)))
+    .replace("rl_joint", "left_wheel_joint")
+    .replace("rr_joint", "right_wheel_joint")
+    .replace('"base"', '"base_link"')
+    .replace(">base<", ">base_link<"),
+    "TrafficBar": CROSSING,
+    "UnitreeFootContact": lab(
+        world=PAD.replace("</contact>", "</contact>" + plugin("libunitreeFootContactPlugin.so")) + "</model>"
+    ),
+    "Turtlebot3Obstacle": lab(model=plugin("libobstacle1.so")),
 }
 WORLDS["Performers"] = WORLDS["PerformerDetector"]
 
@@ -645,12 +687,19 @@ def _baxter(folder: Path) -> simkit.Simulation:
     return simkit.load(text.replace("<initial_positions>", "<enabled>true</enabled><initial_positions>"))
 
 
+def _traffic_light(folder: Path) -> simkit.Simulation:
+    return simkit.load(traffic.write_world(folder, SLOW))
+
+
 OPENED: dict[str, Callable[[Path], simkit.Simulation]] = {
     "GazeboRos2Control": _control(control_robots.CLASSIC),
     "GzRos2Control": _control("libgz_ros2_control-system.so"),
     "GazeboRosControl": _ros_1,
     "FetchGazeboPlugin": _fetch,
     "BaxterControl": _baxter,
+    "LeggedControl": lambda folder: gain_commands.load_legged(folder, ("effort", "kd")),
+    "Pr2ControlPlugin": pr2.load,
+    "TrafficLight": _traffic_light,
     "PlayMotion": _motion,
     "MoveGroup": _motion_planning,
     "PythonSystemLoader": _python_system,
@@ -668,6 +717,8 @@ class Idle:
 
 
 IDLE: dict[str, Idle] = {
+    "GstCamera": Idle("sends a video beside the run"),
+    "Px4GstCamera": Idle("sends a video beside the run"),
     "WavefieldModelPlugin": Idle("sets the waves for the plugins of boats, when the world is loaded"),
     "CreateWheelDrop": Idle("sees no wheel that has dropped here; its test moves a wheel"),
     "MimicJoint": Idle("couples joints, when the world is loaded"),

@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from simkit_control.plugins.ros2_control.hardware_description import ComponentDescription, JointDescription
 
 _MODES = {POSITION: POSITION_MODE, VELOCITY: VELOCITY_MODE, EFFORT: EFFORT_MODE}
+_COMMAND_MODES = {**_MODES, KP: SPRING_MODE, KD: SPRING_MODE}
 
 
 @dataclass(slots=True)
@@ -198,20 +199,28 @@ class Hardware(SharedByCopies):
             if claimed.get(owner) != POSITION:  # a joint with both is driven by position
                 claimed[owner] = interface
         modes = []
-        springy = {name.rpartition("/")[0] for name, owner in self.owners.items() if owner in self.springs}
-        for owner in dict.fromkeys(self.owners.values()):
-            self.actuated.set_springs(self.springs.get(owner, {}))
+        springy = self._set_springs()
         for k, joint in enumerate(self.actuated.joints):
             chosen = claimed.get(joint.name, "")
             self._sources[k] = self.commands.index(f"{joint.name}/{chosen}") if chosen else -1
-            mode = _MODES[chosen] if chosen else self._idle_mode(joint, claimed.get(joint.leader, ""))
+            mode = _COMMAND_MODES[chosen] if chosen else self._idle_mode(joint, claimed.get(joint.leader, ""))
             if joint.has_gain_commands or (mode == EFFORT_MODE and joint.name in springy):
                 mode = SPRING_MODE
             modes.append(self._settle_rivals(joint, mode, is_claimed=bool(chosen)))
         self._unclaimed = np.flatnonzero(self._sources < 0)
-        self._find_sprung_joints(springy)
         self._group_joints()
         self.actuated.switch(np.array(modes, np.intp))
+
+    def _set_springs(self) -> dict[str, tuple[float, float]]:
+        """Set and return the springs of the active controllers by joint; 0 if the controller computes the effort."""
+        springy = {
+            joint: self.springs[owner].get(joint, (0.0, 0.0))
+            for joint, owner in ((name.rpartition("/")[0], owner) for name, owner in self.owners.items())
+            if owner in self.springs
+        }
+        self.actuated.set_springs(springy)
+        self._find_sprung_joints(springy)
+        return springy
 
     def _find_sprung_joints(self, springy: Iterable[str]) -> None:
         """Store the joints whose gains are commands, without those to which a controller has given a spring."""
@@ -250,7 +259,7 @@ class Hardware(SharedByCopies):
     def _idle_mode(self, joint: HardwareJoint, leader_interface: str) -> int:
         """Return the mode of an unclaimed joint; a mimic joint has the mode of its leader's claimed interface."""
         if leader_interface:
-            return _MODES[leader_interface] if leader_interface in joint.command_interfaces else FREE
+            return _COMMAND_MODES[leader_interface] if leader_interface in joint.command_interfaces else FREE
         if self.is_limp:
             return FREE
         return POSITION_MODE if self.holds_position or POSITION in joint.command_interfaces else FREE
@@ -368,6 +377,7 @@ class Hardware(SharedByCopies):
         self.actuated.modes, self.actuated.targets, self.actuated.integrals = (values.copy() for values in drives)
         self.actuated.gravity_shares = None if shares is None else shares.copy()
         self._group_joints()
+        self._set_springs()
         if len(self._sprung):
             self._spring_efforts()
 

@@ -151,9 +151,10 @@ class JointActuators(SharedByCopies):
         Args:
             springs: kp [N·m/rad or N/m] and kd [N·m·s/rad or N·s/m] by joint.
         """
-        for k, joint in enumerate(self.joints):
-            if joint.name in springs:
-                self._loops.gains[k, SPRING_MODE] = np.minimum(springs[joint.name], self._loops.stable_springs[k])
+        indices = [k for k, joint in enumerate(self.joints) if joint.name in springs]
+        if indices:
+            kp, kd = np.array([springs[self.joints[k].name] for k in indices]).T
+            self.set_gains(np.array(indices, np.intp), kp, kd)
 
     def set_gains(self, indices: Indices, kp: Vector, kd: Vector) -> None:
         """Set stiffness and damping of joints in `SPRING_MODE`, while they are driven; stable gains bound them.
