@@ -15,5 +15,6 @@ for folder in (
     "motion/tests/worlds",
     "navigation/tests/worlds",
     "robots/tests",
+    "water_and_air/tests",
 ):
     sys.path.insert(0, str(ROOT / "packs" / folder))

@@ -210,6 +210,11 @@ def _frame(random: np.random.Generator) -> dict[str, Any]:
     }
 
 
+def _packet(random: np.random.Generator) -> dict[str, Any]:
+    sender, receiver = random.permutation(["addr1", "addr2"]).tolist()
+    return {"src_address": sender, "dst_address": receiver, "data": random.integers(0, 256, 8).tolist()}
+
+
 _NOT_SENT = ("/light_config", "/material_color")
 _SENT = {
     "trajectory_msgs/msg/JointTrajectory": _trajectory,
@@ -219,5 +224,6 @@ _SENT = {
         "normalized": random.uniform(0.2, 1, 4).tolist(),
     },
     "ros_gz_interfaces/msg/EntityWrench": _push,
+    "ros_gz_interfaces/msg/Dataframe": _packet,
     "ros_gz_interfaces/msg/Entity": lambda _: {"name": "wall", "type": 2},
 }
