@@ -128,6 +128,22 @@ def test_a_receiver_is_deaf_while_a_message_lasts() -> None:
         assert len(got.messages) == 2
 
 
+def test_a_wrong_number_in_a_block_is_an_error_when_the_world_is_loaded() -> None:
+    wrong = "<range_config><l0>loud</l0></range_config>"
+    ranges = f'<plugin filename="libRFRange.so" name="gz::sim::systems::RFRange">{wrong}</plugin>'
+    model = "<propagation_model><source_power>loud</source_power></propagation_model>"
+    for systems in (ranges, system("rf", "RF", wrong), system("acoustic", "Acoustic", model)):
+        with pytest.raises(simkit.errors.SimkitError, match="found .*loud"):
+            simkit.load(world(systems, 5.0))
+
+
+def test_the_propagation_model_is_read_when_the_world_is_loaded() -> None:
+    model = "<source_power>100</source_power><noise_level>2</noise_level><spectral_efficiency>5</spectral_efficiency>"
+    sound = system("acoustic", "Acoustic", f"<propagation_model>{model}</propagation_model>")
+    with simkit.load(world(sound, 3.0)) as sim:
+        assert not [d for d in sim.diagnostics if d.severity != "note"]
+
+
 def test_radios_measure_their_distance() -> None:
     blocks = RF.format(most=500, sigma=0, capacity=1).replace("</l0>", "</l0><rssi_1>-20</rssi_1>")
     robots = "".join(
@@ -139,6 +155,7 @@ def test_radios_measure_their_distance() -> None:
     text = f"""<sdf version="1.9"><world name="air">{robots}<plugin filename="libRFRange.so"
       name="ignition::gazebo::systems::RFRange"><update_rate>2</update_rate>{blocks}</plugin></world></sdf>"""
     with simkit.load(text) as sim:
+        assert not [d for d in sim.diagnostics if d.severity != "note"]
         got = sim.subscribe("/world/air/model/one/model/rf/rfsensor", keep=10)
         sim.run(1.1)
         assert len(got.messages) == 2

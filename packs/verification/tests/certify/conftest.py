@@ -9,5 +9,11 @@ ROOT = Path(__file__).parents[4]
 sys.path.insert(0, str(Path(__file__).parent))
 for folder in ("plugins/worlds", "sensors"):
     sys.path.insert(0, str(ROOT / "tests" / folder))
-for folder in ("control/tests", "control/tests/worlds", "motion/tests/worlds", "navigation/tests/worlds"):
+for folder in (
+    "control/tests",
+    "control/tests/worlds",
+    "water_and_air/tests",
+    "motion/tests/worlds",
+    "navigation/tests/worlds",
+):
     sys.path.insert(0, str(ROOT / "packs" / folder))

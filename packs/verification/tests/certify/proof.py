@@ -218,6 +218,11 @@ def _frame(random: np.random.Generator) -> dict[str, Any]:
     }
 
 
+def _packet(random: np.random.Generator) -> dict[str, Any]:
+    sender, receiver = random.permutation(["addr1", "addr2"]).tolist()
+    return {"src_address": sender, "dst_address": receiver, "data": random.integers(0, 256, 8).tolist()}
+
+
 _NOT_SENT = ("/light_config", "/material_color", "/land")  # `/land` would end a flight before it begins
 _SENT = {
     "trajectory_msgs/msg/JointTrajectory": _trajectory,
@@ -231,5 +236,6 @@ _SENT = {
     "sensor_msgs/msg/JointState": lambda random: {"name": ["arm"], "effort": [float(random.uniform(-0.5, 0.5))]},
     "ros_gz_interfaces/msg/ParamVec": _waves,
     "ros_gz_interfaces/msg/EntityWrench": _push,
+    "ros_gz_interfaces/msg/Dataframe": _packet,
     "ros_gz_interfaces/msg/Entity": lambda _: {"name": "wall", "type": 2},
 }

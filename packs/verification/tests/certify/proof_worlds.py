@@ -8,8 +8,10 @@ from pathlib import Path
 
 import control_robots
 import planar_arm
+import test_comms as comms
 import test_fetch as fetch
 import test_ros_1_control as ros_1
+import test_uuv as uuv
 from proof_lab import BOX, HEAVY, LIGHT, gz, lab, plugin, ros, sensed, tags
 from rooms import rooms
 
@@ -149,6 +151,27 @@ class Counter:
 def get_system():
     return Counter()
 """
+
+DRIFT = uuv.CURRENT.format(mean=1, mu=0.1, noise=0.2, angle=0.5)
+BEAMS = "".join(
+    f"<beam_link_name_{i}>screw</beam_link_name_{i}><beam_topic_{i}>beam{i}</beam_topic_{i}>" for i in range(4)
+)
+RADIO = comms.RF.format(most=-1, sigma=6, capacity=8000)
+
+
+def _swimming(plugins: str, *, depth: float = 10.0) -> str:
+    """Return a world with a vehicle in a current."""
+    return uuv.world(DRIFT + uuv.vehicle(plugins, buoyancy="", depth=depth))
+
+
+def _underwater_sensor(kind: str, more: str = "") -> str:
+    noise = tags(noise_sigma=0.1, noise_amplitude=1)
+    return _swimming(uuv.sensor(kind, more + noise, rate=25))
+
+
+def _talking(kind: str, name: str, more: str, distance: float) -> str:
+    return comms.world(comms.system(kind, name, more), distance)
+
 
 WORLDS: dict[str, str] = {
     # ------------------------------------------------------------------ drives
@@ -583,6 +606,42 @@ WORLDS: dict[str, str] = {
         model=gz("linearbatteryplugin", BATTERY, "LinearBatteryPlugin")
         + plugin("libLinearBatteryConsumerPlugin.so", tags(link_name="base", battery_name="b", power_load=50))
     ),
+    # ------------------------------------------------------------------ underwater vehicles
+    "UnderwaterCurrent": uuv.world(DRIFT),
+    "UnderwaterObject": _swimming("", depth=0.3).replace("<fluid_density>", "<debug>1</debug><fluid_density>"),
+    "UuvThruster": _swimming(uuv.THRUSTER.format(dynamics=uuv.FIRST, conversion=uuv.BASIC, more=tags(gain=100))),
+    "UuvFin": _swimming(uuv.FIN.format(dynamics=uuv.FIRST)),
+    "UuvJointStates": _swimming(
+        plugin("libuuv_joint_state_publisher.so")
+        + uuv.THRUSTER.format(dynamics=uuv.FIRST, conversion=uuv.BASIC, more="")
+    ),
+    "UuvImu": _underwater_sensor("imu"),
+    "UuvPose": _underwater_sensor("pose_gt", "<publish_ned_odom>1</publish_ned_odom>"),
+    "UuvMagnetometer": _underwater_sensor("magnetometer"),
+    "UuvDvl": _underwater_sensor("dvl", BEAMS),
+    "SubseaPressure": _underwater_sensor("subsea_pressure"),
+    "AcousticPosition": _underwater_sensor("rpt"),
+    "SphericalCoordinatesServices": lab(world=plugin("libuuv_sc_ros_interface_plugin.so")),
+    "DaveSphericalCoordinatesServices": lab(world=plugin("libdave_sc_coordinates_interface.so")),
+    "DvlBridge": lab(model=plugin("DVLBridge", tags(topic="dvl"), "dave_ros_gz_plugins::DVLBridge")),
+    # ------------------------------------------------------------------ messages by radio and sound
+    **dict.fromkeys(("CommsEndpoint", "PerfectComms"), _talking("perfect", "Perfect", "", 5)),
+    "RfComms": _talking("rf", "RF", RADIO, 300),
+    "AcousticComms": _talking(
+        "acoustic",
+        "Acoustic",
+        tags(speed_of_sound=100, collision_time_per_byte=0.01, collision_time_packet_drop=0.01)
+        + tags(propagation_model=tags(seed=4)),
+        40,
+    ),
+    **dict.fromkeys(
+        ("RfRange", "RfRangeSensor"),
+        lab(
+            world=plugin("libRFRange.so", tags(update_rate=50) + RADIO, "gz::sim::systems::RFRange")
+            + BALL.replace("</model>", plugin("libRFRange.so", "", "gz::sim::systems::RFRangeSensor") + "</model>"),
+            model=plugin("libRFRange.so", "", "gz::sim::systems::RFRangeSensor"),
+        ),
+    ),
     # ------------------------------------------------------------------ publishers and monitors
     "OdometryPublisher": lab(model=gz("odometry-publisher", tags(gaussian_noise=0.1), "OdometryPublisher")),
     "PosePublisher": lab(
@@ -799,6 +858,10 @@ IDLE: dict[str, Idle] = {
     "ArduPilotPlugin": Idle("waits for an autopilot here; its test plays one"),
     "GazeboMavlinkInterface": Idle("waits for an autopilot here; its test plays one"),
     "Px4Wind": Idle("moves the air, which only other plugins and sensors feel"),
+    "SphericalCoordinatesServices": Idle("answers services"),
+    "DaveSphericalCoordinatesServices": Idle("answers services"),
+    "PerfectComms": Idle("passes messages on at once; the endpoints publish them"),
+    "DvlBridge": Idle("stands for a bridge, whose message the sensor publishes itself"),
     "MultirotorBase": Idle("stands for a plugin of PX4 that only publishes"),
     "Px4GroundTruth": Idle("stands for a plugin of PX4 that only publishes"),
     "BuiltInSystem": Idle("stands for what simkit does anyway"),

@@ -199,7 +199,7 @@ class RfComms(CommsModel):
     def load(self, parent: Simulation, params: Params) -> None:
         super().load(parent, params)
         options = self.options
-        _ = options.radio.params.text("modulation", "QPSK"), options.reach.rssi_1
+        _ = options.radio.modulation, options.reach.rssi_1
         self._channel, self._capacity = read_channel(options.reach, options.radio), options.radio.capacity
         self._radios: dict[str, Radio] = {}
         self._fading, self._loss, self._index = self.random("fading"), self.random("loss"), 0
@@ -268,7 +268,7 @@ class AcousticComms(CommsModel):
     def load(self, parent: Simulation, params: Params) -> None:
         super().load(parent, params)
         self._deaf: dict[str, tuple[float, float]] = {}  # by address: time of the last message and its duration [s]
-        propagation = self.options.propagation
+        propagation = self.options.propagation.read_all()
         self._loss, self._index = self.random(f"loss {propagation.seed}"), 0
 
     def send(self, packet: Packet, source: CommsEndpoint, target: CommsEndpoint) -> Message | None:

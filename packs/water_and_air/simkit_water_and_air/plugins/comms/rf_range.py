@@ -5,7 +5,7 @@ Parameters, defaults and formulas follow `RFRange.cc` of osrf/mbzirc.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Self
 
 from simkit import ModelPlugin, Params, WorldPlugin, msgs
 from simkit.extend import Options, OptionsOf, block, number, publishes
@@ -27,6 +27,13 @@ class RfRangeSensorOptions(Options):
 
     reach: RangeOptions = block(RangeOptions, element="range_config")
     radio: RadioOptions = block(RadioOptions, element="radio_config")
+
+    def read_all(self) -> Self:
+        """Read all options, also those of the blocks, which the plugin uses later."""
+        super().read_all()
+        self.reach.read_all()
+        self.radio.read_all()
+        return self
 
 
 class RfRangeSensor(ModelPlugin):

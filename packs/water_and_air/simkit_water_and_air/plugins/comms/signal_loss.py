@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from simkit.extend import Options, number
+from simkit.extend import Options, number, text
 
 _CLOSEST = 1e-9  # distance below which the loss no longer decreases [m]
 _SOURCE_LEVEL = 170.8  # of 1 W, at 1 m from the source [dB]
@@ -30,6 +30,7 @@ class RadioOptions(Options):
     capacity: float = number(54e6, "bit/s", minimum=0.0, maximum=1e15)
     tx_power: float = number(27.0, "dBm", minimum=-1e3, maximum=1e3)
     noise_floor: float = number(-90.0, "dBm", minimum=-1e3, maximum=1e3)
+    modulation: str = text("QPSK")
 
 
 @dataclass(frozen=True)
