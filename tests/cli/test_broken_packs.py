@@ -160,7 +160,8 @@ def test_a_fault_in_a_file_of_codes_has_its_place(packs: Packs, area: str, warni
 
 def test_a_code_without_an_example_has_no_line_for_it(packs: Packs) -> None:
     packs.add("garden", {"cli/diagnostic_codes/garden.toml": AREA})
-    assert packs.simkit("explain", "SK-GARDEN-001") == (0, "SK-GARDEN-001 (warning)\n  dry\n")
+    text = "SK-GARDEN-001 (warning)\n  dry\n  score: approximated\n"
+    assert packs.simkit("explain", "SK-GARDEN-001") == (0, text)
 
 
 @pytest.mark.parametrize(

@@ -202,6 +202,14 @@ def _push(random: np.random.Generator) -> dict[str, Any]:
     return {"entity": {"name": "crate", "type": 2}, "wrench": {"force": _some(random), "torque": _some(random)}}
 
 
+def _waves(random: np.random.Generator) -> dict[str, Any]:
+    """Return parameters of a wave field."""
+    values = {"amplitude": random.uniform(0.1, 0.5), "period": random.uniform(1, 3)}
+    numbers = [{"name": name, "value": {"type": 3, "double_value": value}} for name, value in values.items()]
+    direction = {"type": 8, "double_array_value": random.uniform(0.2, 1, 2).tolist()}
+    return {"params": [*numbers, {"name": "direction", "value": direction}]}
+
+
 def _frame(random: np.random.Generator) -> dict[str, Any]:
     """Return a transform for the topic /tf."""
     transform = {"translation": _some(random), "rotation": {"w": 1.0}}
@@ -215,7 +223,7 @@ def _packet(random: np.random.Generator) -> dict[str, Any]:
     return {"src_address": sender, "dst_address": receiver, "data": random.integers(0, 256, 8).tolist()}
 
 
-_NOT_SENT = ("/light_config", "/material_color")
+_NOT_SENT = ("/light_config", "/material_color", "/land")  # `/land` would end a flight before it begins
 _SENT = {
     "trajectory_msgs/msg/JointTrajectory": _trajectory,
     "std_msgs/msg/Float64MultiArray": lambda random: {"data": random.uniform(-0.5, 0.5, 2).tolist()},
@@ -223,6 +231,10 @@ _SENT = {
         "velocity": random.uniform(0, 40, 4).tolist(),
         "normalized": random.uniform(0.2, 1, 4).tolist(),
     },
+    "mav_msgs/msg/Actuators": lambda random: {"angular_velocities": random.uniform(0, 40, 4).tolist()},
+    "std_msgs/msg/Int32": lambda random: {"data": int(random.integers(1, 4))},
+    "sensor_msgs/msg/JointState": lambda random: {"name": ["arm"], "effort": [float(random.uniform(-0.5, 0.5))]},
+    "ros_gz_interfaces/msg/ParamVec": _waves,
     "ros_gz_interfaces/msg/EntityWrench": _push,
     "ros_gz_interfaces/msg/Dataframe": _packet,
     "ros_gz_interfaces/msg/Entity": lambda _: {"name": "wall", "type": 2},

@@ -77,7 +77,12 @@ CREATE = plugin("libgazebo_ros_create_{}.so")
 CREATE_DOCK = tags(receiver_link_name="base", dock_model_name="crate", emitter_link_name="l")
 RMF_LIFT = tags(cabin_joint_name="lift") + '<floor name="L1" elevation="1"/><floor name="L2" elevation="2"/>'
 MIMIC = tags(joint="door", mimicJoint="door_0", multiplier=0.5)
-ROTORS = {"r0": ("0.3 0.3 0.3", 1), "r1": ("-0.3 0.3 0.3", -1), "r2": ("-0.3 -0.3 0.3", 1), "r3": ("0.3 -0.3 0.3", -1)}
+ROTORS = {
+    "rotor_0": ("0.3 0.3 0.3", 1),
+    "rotor_1": ("-0.3 0.3 0.3", -1),
+    "rotor_2": ("-0.3 -0.3 0.3", 1),
+    "rotor_3": ("0.3 -0.3 0.3", -1),
+}
 MOTORS = "".join(
     f'<link name="{name}"><pose>{place} 0 0 0</pose>{LIGHT}</link><joint name="{name}_joint" type="continuous">'
     f"<parent>base</parent><child>{name}</child><axis><xyz>0 0 1</xyz></axis></joint>"
@@ -116,6 +121,24 @@ NAVIGATION = (
         for name in ("planner_server", "controller_server", "behavior_server")
     )
 )
+AIR = gz("wind-effects", tags(force_approximation_scaling_factor=0.5), "WindEffects")
+SAILING = plugin("asv_sim2-wind-system", tags(topic="/wind"), "gz::sim::systems::Wind")
+ANEMOMETER = (
+    '<sensor name="a" type="custom" gz:type="anemometer" xmlns:gz="http://gazebosim.org/schema"><update_rate>50'
+    '</update_rate><gz:anemometer><noise type="gaussian"><stddev>0.5</stddev></noise></gz:anemometer></sensor>'
+)
+DUTY = tags(motorType="force_polynomial", controlMethod="duty_cycle", maxDutyCycle=40, bidirectionalMotor=1) + tags(
+    positiveThrustPolynomial="[0, 2, 5]", negativeThrustPolynomial="[0, 1, 3]"
+)
+WATER = tags(baseLinkName="base", addedMassLinear="1 2 3", dampingLinear="5 5 20", dampingAngular="1 1 1") + tags(
+    buoyancy=tags(link_name="base", origin="0 0 0.1", compensation=1.2, height_scale_limit=0.3)
+)
+AT = "<pose>0 0 {} 0 0 0</pose>"
+GZ_MOTOR = "gz-sim-multicopter-motor-model-system"
+CLASSIC_MOTORS = MOTORS.replace("gz::sim::systems::MulticopterMotorModel", "motor")
+ROTORS_MOTORS = CLASSIC_MOTORS.replace(GZ_MOTOR, "librotors_gazebo_motor_model.so")
+DRIFT = tags(motionSmallNoise=0.2, motionDriftNoise=0.1, motionDriftNoiseTime=0.01, pub_odom="true", odom_hz=50)
+PANELS = tags(color_1="red", color_2="green", color_3="yellow", visuals=tags(visual="v"))
 ODOMETRY = ros("diff_drive", REAR + tags(robot_base_frame="base", publish_odom_tf="true"))
 NAVIGATOR = plugin("libsimkit_bt_navigator.so", tags(robot_base_frame="base"), "bt_navigator")
 # a zoom goes on for the whole part of the run, between the random commands, which end at 1
@@ -524,6 +547,76 @@ WORLDS: dict[str, str] = {
             "vrx::PublisherPlugin",
         )
     ),
+    # ------------------------------------------------------------------ boats and drones
+    "AsvWind": lab(world=SAILING + AIR, sensor=ANEMOMETER),
+    "AsvAnemometerSystem": lab(
+        world=SAILING + plugin("asv_sim2-anemometer-system", name="gz::sim::systems::Anemometer"), sensor=ANEMOMETER
+    ),
+    "SailPositionController": lab(
+        model=plugin(
+            "asv_sim2-sail-position-controller-system",
+            tags(joint_name="arm", p_gain=20, i_gain=5, d_gain=0.1),
+            "gz::sim::systems::SailPositionController",
+        )
+    ),
+    "FoilDynamics": lab(
+        model=plugin("libfoil_dynamics_plugin.so", tags(link_type="rudder", link_name="base", area=0.1, mult_lift=1.2))
+        + plugin("libfoil_dynamics_plugin.so", tags(link_type="sail", link_name="leaf", fluidVelocity="global"), "sail")
+    ),
+    "GenericMotorModel": lab(
+        model=MOTORS.replace(GZ_MOTOR, "libGenericMotorModelPlugin.so")
+        .replace("MulticopterMotorModel", "GenericMotorModel")
+        .replace("<motorConstant>", DUTY + "<motorConstant>")
+    ),
+    "MotorFailure": lab(model=MOTORS + plugin("MotorFailurePlugin", name="gz::sim::systems::MotorFailureSystem")),
+    "ClassicMotorFailure": lab(
+        model=CLASSIC_MOTORS.replace(GZ_MOTOR, "libgazebo_motor_model.so") + plugin("libgazebo_motor_failure_plugin.so")
+    ),
+    "RotorsMotorModel": lab(model=ROTORS_MOTORS),
+    "RotorsInterface": lab(
+        world=plugin("librotors_gazebo_ros_interface_plugin.so"),
+        model=ROTORS_MOTORS,
+    ),
+    "RotorsBase": lab(
+        model=ROTORS_MOTORS + plugin("librotors_gazebo_multirotor_base_plugin.so", tags(linkName="base"))
+    ),
+    "RotorsImu": lab(model=plugin("librotors_gazebo_imu_plugin.so", tags(linkName="base"))),
+    "RotorsOdometry": lab(
+        model=plugin(
+            "librotors_gazebo_odometry_plugin.so",
+            tags(linkName="rod", parentFrameId="base", measurementDivisor=3, measurementDelay=5)
+            + tags(noiseNormalPosition="0.1 0.1 0.1", noiseUniformQuaternion="0.02 0.02 0.02"),
+        )
+    ),
+    "RotorsPressure": lab(
+        model=plugin("librotors_gazebo_pressure_plugin.so", tags(linkName="base", pressureVariance=4))
+    ),
+    "RotorsMagnetometer": lab(
+        model=plugin(
+            "librotors_gazebo_magnetometer_plugin.so",
+            tags(linkName="base", noiseNormal="1e-7 1e-7 1e-7", noiseUniformInitialBias="1e-7 1e-7 1e-7"),
+        )
+    ),
+    "RotorsGps": sensed(
+        "gps", plugin("librotors_gazebo_gps_plugin.so", tags(robotNamespace="car", linkName="base", gpsTopic="fix"))
+    ),
+    "SjtuDrone": lab(
+        model=plugin("libplugin_drone.so", tags(bodyName="base", rollpitchIntegralGain=1, yawTimeConstant=0.1) + DRIFT)
+    ).replace("<max_step_size>0.002", "<max_step_size>0.01"),
+    "Px4Underwater": lab(model=plugin("libgazebo_uuv_plugin.so", WATER)),
+    "WaveHydrodynamics": lab(
+        model=plugin(
+            "gz-waves1-hydrodynamics-system",
+            tags(enable="car::base", hydrodynamics=tags(cDampL1=10, cDampR1=1)),
+            "gz::sim::systems::Hydrodynamics",
+        )
+    )
+    .replace('<model name="ground"><static>true</static>', '<model name="ground"><static>true</static>' + AT.format(-1))
+    .replace('<model name="car">' + AT.format(0.1), '<model name="car">' + AT.format(-0.12)),
+    "WaveVisual": lab(visual=plugin("libWaveVisual.so", tags(wavefield=SWELL), "vrx::WaveVisual")),
+    "LightBuoy": sensed("camera", visual=plugin("libLightBuoyPlugin.so", PANELS, "vrx::LightBuoyPlugin")).replace(
+        "<max_step_size>0.002", "<max_step_size>0.02"
+    ),
     "Buoyancy": lab(world=gz("buoyancy", DENSITY, "Buoyancy")),
     "BuoyancyPlugin": lab(model=plugin("libBuoyancyPlugin.so", tags(fluid_density=40))),
     "WindEffects": lab(world=gz("wind-effects", WIND + tags(force_approximation_scaling_factor=0.5), "WindEffects")),
@@ -750,6 +843,27 @@ def _traffic_light(folder: Path) -> simkit.Simulation:
     return simkit.load(traffic.write_world(folder, SLOW))
 
 
+AUV = f"""<robot name="auv"><link name="base_link"><inertial><mass value="20"/>
+    <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial><fluid><density>1</density>
+    <origin xyz="0 0 0.1"/><buoyancy><compensation>1.1</compensation><limit radius="0.2"/></buoyancy><hydrodynamics>
+    <damping xyz="40 40 40" rpy="20 20 20"/><added_mass>{"9 0 0 0 0 0 0 " * 5} 9</added_mass></hydrodynamics></fluid>
+  </link><link name="rod"><inertial><mass value="0.1"/>
+    <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="arm" type="continuous"><parent link="base_link"/><child link="rod"/><axis xyz="0 0 1"/></joint>
+  <gazebo><plugin name="c" filename="libfreefloating_gazebo_control.so"><updateRate>50</updateRate>
+    <link>base_link</link><thruster><map>1 0 0 0 0 -0.5</map><effort>0.2</effort></thruster>
+    <thruster><map>1 0 0 0 0 0.5</map><name>arm</name></thruster></plugin></gazebo></robot>"""
+
+
+def _diving(folder: Path) -> simkit.Simulation:
+    (folder / "auv.urdf").write_text(AUV)
+    water = plugin("libfreefloating_gazebo_fluid.so", tags(surface="0 0 0"))
+    diver = "<include><uri>auv.urdf</uri><pose>0 -3 -0.2 0.1 0.2 0</pose></include>"
+    return simkit.load(
+        f'<sdf version="1.9"><world name="w">{water}{diver}</world></sdf>', seed=3, resource_paths=[folder]
+    )
+
+
 OPENED: dict[str, Callable[[Path], simkit.Simulation]] = {
     "GazeboRos2Control": _control(control_robots.CLASSIC),
     "GzRos2Control": _control("libgz_ros2_control-system.so"),
@@ -762,6 +876,8 @@ OPENED: dict[str, Callable[[Path], simkit.Simulation]] = {
     "PlayMotion": _motion,
     "MoveGroup": _motion_planning,
     "PythonSystemLoader": _python_system,
+    "FreefloatingControl": _diving,
+    "FreefloatingFluid": _diving,
     "LogRecord": _log("LogRecord"),
     "LogPlayback": _log("LogPlayback"),
 }
@@ -779,6 +895,9 @@ IDLE: dict[str, Idle] = {
     "GstCamera": Idle("sends a video beside the run"),
     "Px4GstCamera": Idle("sends a video beside the run"),
     "WavefieldModelPlugin": Idle("sets the waves for the plugins of boats, when the world is loaded"),
+    "AsvAnemometerSystem": Idle("stands for what the sensor does anyway"),
+    "RotorsInterface": Idle("stands for what the rotors do anyway"),
+    "LightBuoy": Idle("changes colours, which the camera of its world sees"),
     "CreateWheelDrop": Idle("sees no wheel that has dropped here; its test moves a wheel"),
     "MimicJoint": Idle("couples joints, when the world is loaded"),
     "GazeboLinkAttacher": Idle("attaches nothing here; its test calls its services"),
