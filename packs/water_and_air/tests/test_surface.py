@@ -99,6 +99,35 @@ def test_published_parameters_of_the_waves_move_the_boat() -> None:
         assert np.ptp(pitches) / 2 == pytest.approx(0.2 * wavenumber, rel=0.25)
 
 
+def test_a_direction_may_be_an_angle_in_messages_and_files() -> None:
+    vector = "type: VECTOR3D vector3d_value { x: 1.0 y: 0.0 }"
+    angles, turned = [], WAVES.replace(vector, "type: VECTOR3D vector3d_value { x: 0.6 y: 0.8 }")
+    angle = WAVES.replace(vector, "type: DOUBLE double_value: 0.9272952180016122")  # atan2(0.8, 0.6)
+    block = "<model>CWR</model><number>1</number><amplitude>0.2</amplitude><period>6</period><tau>0.5</tau>"
+    in_file = [
+        world().replace("<gain>0</gain>", f"{block}<direction>{way}</direction>")
+        for way in ("3 4", "0.9272952180016122")
+    ]
+    for text in (world(top=turned), world(top=angle), *in_file):
+        with simkit.load(text) as sim:
+            sim.run(7.5)  # a quarter of a period after a crest
+            angles.append(sim.link("wamv::hull").pose.rpy.tolist())
+            assert "SK-PLUGIN-041" not in {found.code for found in sim.diagnostics}
+    assert abs(angles[0][0]) > 0.01  # the waves come from the side, too
+    for other in angles[1:]:
+        assert other == pytest.approx(angles[0], abs=1e-6)
+
+
+def test_a_direction_that_is_not_finite_is_ignored_and_one_of_words_is_an_error() -> None:
+    with simkit.load(world()) as sim:
+        value = {"type": 3, "double_value": math.nan}
+        sim.publish(PARAMETERS, {"params": [{"name": "direction", "value": value}]})
+        sim.run(0.1)
+        assert "SK-PLUGIN-041" in {found.code for found in sim.diagnostics}
+    with pytest.raises(simkit.LoadError, match="SK-PARAM-002"):
+        simkit.load(world().replace("<gain>0</gain>", "<direction>north</direction>"))
+
+
 def test_it_drives_at_the_speed_of_its_drag_and_turns_by_different_thrusts() -> None:
     with simkit.load(world()) as sim:
         for name in ("left", "right"):

@@ -19,7 +19,6 @@ from simkit import ModelPlugin
 from simkit.extend import Options, block, choice, number, text, without_effect
 from simkit.float_sum import float_sum
 from simkit.msgs import valid_topic
-from simkit.plugins.options import vector
 
 if TYPE_CHECKING:
     from simkit.msgs import ParameterValue, ParamVec
@@ -159,7 +158,7 @@ class WaveOptions(Options):
     angle: float = number(0.4, "rad", minimum=-_MOST, maximum=_MOST)
     amplitude: float = number(0.0, "m", minimum=-_MOST, maximum=_MOST)
     period: float = number(5.0, "s", minimum=1e-3, maximum=1e6)
-    direction: tuple[float, ...] = vector((1.0, 0.0))
+    direction: str = text("1 0")  # a vector or, as in VRX, an angle [rad]
     tau: float = number(2.0, "s", minimum=0)
     gain: float = number(1.0, minimum=-_MOST, maximum=_MOST)
     # in VRX, the phase has no effect, and the steepness changes only pictures
@@ -169,7 +168,6 @@ class WaveOptions(Options):
     def read(self) -> WaveParameters:
         """Return the parameters; a fault is reported as an error."""
         self.read_all()
-        x, y = self.direction
         parameters = WaveParameters(
             model=self.model,
             number=int(self.count),
@@ -177,7 +175,7 @@ class WaveOptions(Options):
             angle=self.angle,
             amplitude=self.amplitude,
             period=self.period,
-            direction=(x, y),
+            direction=self._read_direction(),
             tau=self.tau,
             gain=self.gain,
         )
@@ -185,6 +183,12 @@ class WaveOptions(Options):
             self.params.error("SK-PARAM-002", f"<wave>: {fault}")
             return WaveParameters()
         return parameters
+
+    def _read_direction(self) -> tuple[float, float]:
+        if len(self.direction.split()) == 1:
+            return _direction_of(self.params.number("direction"))
+        x, y = self.params.vector("direction", 2, (1.0, 0.0))
+        return x, y
 
 
 class WavefieldOptions(Options):
@@ -224,6 +228,8 @@ class WavesBase(ModelPlugin):
             value = _value_of(parameter.value)
             if parameter.name == "direction" and isinstance(value, tuple) and len(value) >= 2:
                 changes["direction"] = value[:2]
+            elif parameter.name == "direction" and isinstance(value, float):
+                changes["direction"] = _direction_of(value)
             elif parameter.name == "model" and isinstance(value, str):
                 changes["model"] = value
             elif parameter.name == "number" and isinstance(value, float):
@@ -243,6 +249,11 @@ class WavesBase(ModelPlugin):
 
 _NUMBERS: Final = frozenset(("scale", "angle", "amplitude", "period", "tau", "gain"))
 _WITHOUT_EFFECT: Final = frozenset(("size", "cell_count", "phase", "steepness"))
+
+
+def _direction_of(angle: float) -> tuple[float, float]:
+    """Return the direction at an angle from the x axis [rad]; NaN for an angle that is NaN or infinite."""
+    return (math.cos(angle), math.sin(angle)) if math.isfinite(angle) else (math.nan, math.nan)
 
 
 def _value_of(value: ParameterValue) -> float | str | tuple[float, ...] | None:
