@@ -9,6 +9,7 @@ import pytest
 import simkit
 from simkit.cli.run_options import NONE_GIVEN, GivenOptions, scenario_spec
 from simkit.run_spec import Check, Recording, RunSpec
+from simkit.runtime.communication.topic_bus import TopicBus
 from simkit.testing.scenarios.scenario_file import read_scenario
 from simkit.testing.scenarios.scenario_run import open_scenario, resolve_commands, run_scenario
 from simkit_verification.testing.bundles import keep, open_bundle, write_bundle
@@ -61,9 +62,11 @@ def test_a_script_is_among_the_commands_once_topics_are_known(tmp_path: Path) ->
     script = tmp_path / "go.yaml"
     script.write_text("- {at: 0.1, topic: /cmd_vel, message: {linear: {x: 0.1}}}\n")
     spec = RunSpec("turtlebot3_world", velocity="0.2,0", script=script)
-    found = resolve_commands(spec, {"/cmd_vel": "geometry_msgs/msg/Twist"})
+    bus = TopicBus()
+    bus.listen("/cmd_vel", ["geometry_msgs/msg/Twist"], print)
+    found = resolve_commands(spec, bus)
     assert len(found.commands) == 2 and found.velocity is None and found.script is None
-    assert resolve_commands(found, {}) is found
+    assert resolve_commands(found, bus) is found
 
 
 def test_a_bundle_has_seed_overrides_and_options(world: Path) -> None:

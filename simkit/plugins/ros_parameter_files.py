@@ -74,13 +74,16 @@ class Entry:
         return "value" if self.text or self.is_text else "nothing"
 
     def merged(self, over: Entry) -> Entry:
-        """Return this entry merged with `over`; where both have a value, the value and the place of `over` are used."""
+        """Return this entry merged with `over`; where both have a value, the value and the place of `over` are used.
+
+        A mapping that two files have is that of `over`; within a file, it keeps the line at which it begins.
+        """
         if self.below is None or over.below is None:
             return over
         below = dict(self.below)
         for key, entry in over.below.items():
             below[key] = below[key].merged(entry) if key in below else entry
-        return Entry(over.where, below=below)
+        return Entry(self.where if self.where.file == over.where.file else over.where, below=below)
 
     def leaves(self) -> int:
         """Count the values in the entry."""

@@ -278,7 +278,7 @@ def test_an_unknown_type_is_not_loaded_and_the_closest_is_suggested(tmp_path: Pa
         found = next(d for d in sim.diagnostics if d.code == "SK-CONTROL-013")
         assert found.severity == "warning"
         assert (found.file or "").endswith("arm.yaml")
-        assert found.line == 8
+        assert found.line == 7
         assert "did you mean 'position_controllers/JointGroupPositionController'?" in found.message
 
 

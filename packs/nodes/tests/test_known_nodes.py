@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -78,9 +79,13 @@ def install_pack(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[In
         monkeypatch.syspath_prepend(str(site))
         return site / "simkit_fleet"
 
+    forget_pack()  # other tests have a pack of this name too
     yield install
-    import sys
+    forget_pack()
 
+
+def forget_pack() -> None:
+    """Have the modules of the pack `fleet` imported again."""
     for name in [name for name in sys.modules if name.partition(".")[0] == "simkit_fleet"]:
         del sys.modules[name]
 
