@@ -95,7 +95,9 @@ def test_an_expression_of_an_xml_file_computes_with_numbers_and_texts(read: Read
     assert read("a.launch.xml", text).log == ["[INFO] [launch.user]: 5"]
 
 
-@pytest.mark.parametrize(("ending", "node"), [(".launch", '<node pkg="a" type="b" name="$(anon c)"/>'), (".launch.xml", "")])
+@pytest.mark.parametrize(
+    ("ending", "node"), [(".launch", '<node pkg="a" type="b" name="$(anon c)"/>'), (".launch.xml", "")]
+)
 def test_includes_that_multiply_are_an_error(tmp_path: Path, read: Read, ending: str, node: str) -> None:
     for level in range(8):
         include = f'<include file="$(dirname)/level_{level + 1}{ending}"/>'

@@ -135,7 +135,7 @@ class LaserRotateOptions(Options):
 
 
 class LaserRotate(JointCommander):
-    """Turns a lidar to and fro within ± `<rotation_angular_limit>`, at the speed of `cmd_vel` [rad/s].
+    """Turns a lidar back and forth within ± `<rotation_angular_limit>`, at the speed of `cmd_vel` [rad/s].
 
     The topic is `/model/<model>/joint/<joint_name>/cmd_vel` or `<topic>`; a negative speed stops the lidar.
     """
