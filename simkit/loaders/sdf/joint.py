@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterable
 
 from simkit.diagnostics import did_you_mean
-from simkit.loaders.resources.model_folder import CLASSIC_SDF
 from simkit.loaders.sdf.entity_names import scoped
 from simkit.loaders.sdf.frames import MODEL, WORLD, Frame, world_pose
 from simkit.loaders.sdf.load_context import NamedElement
@@ -160,12 +159,8 @@ def _direction(part: NamedElement, element: Params) -> Vec3:
     xyz = element.child_or_self("xyz")
     length = math.hypot(x, y, z)
     if length < 1e-12:
-        message = f"joint {part.name!r} has an axis of length zero"
-        if part.file.version > CLASSIC_SDF:
-            xyz.error("SK-SDF-017", message)
-        else:  # ODE gives a vector of length zero this direction
-            xyz.warning("SK-SDF-017", f"{message}; the x axis is used, as in Gazebo Classic")
-        x, y, z, length = 1.0, 0.0, 0.0, 1.0
+        xyz.error("SK-SDF-017", f"joint {part.name!r} has an axis of length zero")
+        return (0.0, 0.0, 1.0)
     frame = xyz.attribute("expressed_in") if xyz is not element else ""
     version = part.file.version
     in_model = version < (1, 7) and element.boolean("use_parent_model_frame", version < (1, 5))

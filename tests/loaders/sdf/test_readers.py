@@ -142,13 +142,6 @@ def test_all_problems_are_reported_in_one_pass(load):
     assert codes(found) == {"SK-SDF-002", "SK-SDF-011", "SK-SDF-017"}
 
 
-def test_an_axis_of_length_zero_is_the_x_axis_in_files_of_gazebo_classic(load):
-    text = joint("<axis><xyz>0 0 0</xyz></axis>", version="1.6")
-    scene, found = load(text)
-    assert [(d.code, d.severity) for d in found if d.severity != "note"] == [("SK-SDF-017", "warning")]
-    assert scene.model.joints[0].axes[0].xyz_joint == (1.0, 0.0, 0.0)
-
-
 def test_a_sensor_keeps_its_parameters_and_lists_its_plugins(load):
     scene, found = load(
         body("""<pose>0 0 1 0 0 0</pose><sensor name="s" type="imu"><pose>0 0 1 0 0 0</pose>
