@@ -13,7 +13,7 @@ import weakref
 from collections import deque
 from collections.abc import Iterator
 from operator import attrgetter
-from types import FunctionType, MappingProxyType
+from types import FunctionType, MappingProxyType, ModuleType
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
 import mujoco
@@ -174,11 +174,13 @@ def _shared_objects(state: object, place: Place) -> Iterator[tuple[Place, object
         seen.add(id(value))
         if at != place and _is_shared(value):
             yield at, value
-        if isinstance(value, (InProcess, Diagnostics, FunctionType, mujoco.MjModel, mujoco.MjData, np.ndarray)):
+        if isinstance(value, _CLOSED):
             continue
         waiting.extend(((*at, step), child) for step, child in _children(value) if type(child) not in _LEAVES)
 
 
+_CLOSED: Final = (InProcess, Diagnostics, FunctionType, ModuleType, mujoco.MjModel, mujoco.MjData, np.ndarray)
+"""Classes whose objects are not searched."""
 _LEAVES: Final = frozenset((int, float, str, bytes, bool, type(None), np.ndarray, type))
 
 

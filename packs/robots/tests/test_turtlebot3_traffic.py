@@ -21,7 +21,7 @@ def write_world(folder: Path, top: str = "") -> Path:
         top: further elements of the world.
     """
     for name in ("scripts", "textures"):
-        (folder / "materials" / name).mkdir(parents=True)
+        (folder / "materials" / name).mkdir(parents=True, exist_ok=True)
     script = ""
     for name, colour in COLOURS.items():
         Image.new("RGB", (4, 4), colour).save(folder / "materials" / "textures" / f"traffic_light_{name}.png")
