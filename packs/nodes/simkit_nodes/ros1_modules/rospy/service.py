@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import traceback
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from simkit.errors import ServiceError
 from simkit_nodes.interfaces import ROS1, type_name_of
@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from simkit_nodes.graph_services import GraphClient, GraphRequest, GraphService
 
 __all__ = ["Service", "ServiceException", "ServiceProxy", "wait_for_service"]
+
+_LATE_NS: Final = 5_000_000_000
+"""Time for which a process of its own waits for the discovery of a service that exists: its thread may be late [ns]."""
 
 
 class ServiceException(Exception):
@@ -180,7 +183,10 @@ class ServiceProxy:
         if self._client is None:
             self._client = node.graph_node.client(self.resolved_name, kind)
             # a new client knows the services only after the discovery; rospy asks the master at once
-            node.wait(node.host.now_ns() + node.host.graph.discovery_ns(node.graph_node) + 1, self._is_ready)
+            found_ns = node.host.now_ns() + node.host.graph.discovery_ns(node.graph_node) + 1
+            node.wait(found_ns, self._is_ready)
+            if node.host.simulation is None and node.host.graph.has_service(self.resolved_name):
+                node.wait(found_ns + _LATE_NS, self._is_ready)
         if not self._is_ready():
             raise ServiceException(f"service [{self.resolved_name}] unavailable")
         answers: list[Any] = []
