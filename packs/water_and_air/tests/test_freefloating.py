@@ -47,6 +47,7 @@ def push(sim: simkit.Simulation, **thrusts: float) -> None:
     sim.publish("/auv/thruster_command", {"name": list(thrusts), "effort": list(thrusts.values())})
 
 
+@pytest.mark.slow
 def test_a_light_robot_rises_to_the_height_where_its_lift_carries_it() -> None:
     with dive(robot()) as sim:
         base = sim.link("auv::base_link")
@@ -90,6 +91,7 @@ def test_a_wrench_is_shared_among_thrusters_with_maps() -> None:
         assert list(use.messages[-1].position) == pytest.approx([10.0, 30.0])  # 3 N and 9 N of 30 N
 
 
+@pytest.mark.slow
 def test_the_current_carries_the_robot_and_the_state_shows_it() -> None:
     with dive(robot(BUOYANCY.replace(str(LIFT), "1.005"))) as sim:
         state = sim.subscribe("/auv/state", keep=1)
@@ -124,6 +126,7 @@ def test_added_mass_slows_the_acceleration() -> None:
         assert sim.link("auv::base_link").linear_velocity[0] == pytest.approx(expected, rel=0.03)
 
 
+@pytest.mark.slow
 def test_a_boat_of_usv_sim_lsa_is_pushed_by_the_wind_and_floats_on_a_moved_surface() -> None:
     boat = BUOYANCY.replace("</buoyancy>", "<windVelocity>global</windVelocity><waterVelocity>none</waterVelocity>")
     limits = "<effortUnderWater>11</effortUnderWater><effortOverWater>2</effortOverWater>"

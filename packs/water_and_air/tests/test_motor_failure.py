@@ -69,6 +69,7 @@ def test_a_motor_without_a_polynomial_is_reported() -> None:
     assert any("positiveThrustPolynomial" in d.message for d in simkit.check(text))
 
 
+@pytest.mark.slow
 def test_the_water_of_px4_lifts_below_the_surface_and_brakes() -> None:
     plugin = """<plugin name="water" filename="libgazebo_uuv_plugin.so"><robotNamespace/>
       <baseLinkName>hull</baseLinkName><dampingLinear>5 5 20</dampingLinear><dampingAngular>1 1 1</dampingAngular>
