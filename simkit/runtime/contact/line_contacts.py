@@ -1,9 +1,8 @@
-"""Exact contacts of cylinders and capsules along lines, in place of the engine's contacts of these pairs.
+"""Exact contacts of lines and of corners on height fields, in place of the engine's contacts of these pairs.
 
 `simkit.runtime.contact.line_geometry` computes the contacts, and `height_field_corners` those of corners on a height
-field. They are a function of the poses alone. This module writes
-them over the engine's contacts of a pair, appends missing ones, excludes surplus ones, and lets the engine build the
-constraints again.
+field. They are a function of the poses alone. This module writes them over the engine's contacts of a pair, appends
+missing ones, excludes surplus ones, and lets the engine build the constraints again.
 """
 
 from __future__ import annotations
