@@ -39,9 +39,9 @@ def blocks(text: str) -> list[Block]:
     return [Block(match[2], match[3], match[4], match[1].replace("\n", " ").strip()) for match in found]
 
 
-def pattern_of(expected: str) -> str:
-    """The regular expression of an output on the page."""
-    found = r"\A"
+def pattern_of(expected: str, *, after_more: bool = False) -> str:
+    """The regular expression of an output on the page; with `after_more`, omitted lines may come before it."""
+    found = rf"\A{MORE}" if after_more else r"\A"
     for line in expected.splitlines():
         if line == "…":
             found += MORE
@@ -73,8 +73,8 @@ class Shell:
                 self._terminal.press(command + "\n")
                 self._terminal.wait_for(rf"\A{re.escape(command)}\n")
                 self._is_busy, self._is_interrupted, self._may_show_more = True, False, False
-            if part:
-                self._terminal.wait_for(pattern_of(part))
+            if part:  # lines omitted at the end of a block may be written after the block was read
+                self._terminal.wait_for(pattern_of(part, after_more=self._may_show_more))
                 self._may_show_more = part.endswith("…\n")
 
     def finish(self, *, is_code_shown: bool = False) -> None:
