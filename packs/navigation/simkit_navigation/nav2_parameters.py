@@ -218,43 +218,6 @@ def _planner(values: Values, costmap: Values) -> list[PluginOfNode]:
     return [_costmap("global_costmap", costmap), plugin]
 
 
-def _controller(values: Values, costmap: Values) -> list[PluginOfNode]:
-    outline = _outline_of(costmap)
-    plugin = PluginOfNode(ControllerServer, "controller_server", {**_frame_of(costmap), **outline, **values})
-    for name in _names(values.get("controller_plugins")):
-        plugin.blocks.append(name)
-        settings = _block(plugin.values, name)
-        kind = str(settings.get("plugin", "")).replace("/", "::")
-        if kind == _SHIM:
-            kind = str(settings.get("primary_controller", "")).replace("/", "::")
-            settings["plugin"] = kind
-        if not kind or kind == _PURSUIT or ".py:" in kind:
-            continue
-        plugin.told.append(f"{name}: the controller {_PURSUIT} replaces {kind}")
-        plugin.values[name] = _pursuit_settings(settings)
-    for wanted, element in (("goal_checker", "general_goal_checker"), ("progress_checker", "progress_checker")):
-        checkers = _names(values.get(f"{wanted}_plugins")) or _names(values.get(f"{wanted}_plugin")) or [wanted]
-        settings = _block(plugin.values, checkers[0])
-        plugin.values.pop(checkers[0], None)
-        if settings:
-            plugin.values[element] = {key: value for key, value in settings.items() if key != "plugin"}
-        for name in (f"{wanted}_plugins", f"{wanted}_plugin"):
-            plugin.values.pop(name, None)
-    return [_costmap("local_costmap", costmap), plugin]
-
-
-def _pursuit_settings(settings: Values) -> Values:
-    """Return the settings of pure pursuit with the speeds of another controller."""
-    speed = next((settings[name] for name in _SPEEDS if name in settings), None)
-    rate = next((settings[name] for name in _TURNING_RATES if name in settings), None)
-    found: Values = {"plugin": _PURSUIT}
-    if isinstance(speed, (int, float)) and speed > 0:
-        found["desired_linear_vel"] = speed
-    if isinstance(rate, (int, float)) and rate > 0:
-        found["rotate_to_heading_angular_vel"] = rate
-    return found
-
-
 def _behaviors(values: Values, costmap: Values) -> list[PluginOfNode]:
     renamed = {"global_frame": "local_frame", "local_costmap_topic": "costmap_topic"}
     own = {new: values[old] for old, new in renamed.items() if old in values and new not in values}
@@ -303,7 +266,7 @@ def _ukf(values: Values, _: Values) -> list[PluginOfNode]:
 SERVER_NODES: Final[Mapping[str, ServerNode]] = {
     "amcl": ServerNode(_amcl, "amcl", has_live_parameters=True),
     "planner_server": ServerNode(_planner, "planner_server", "global_costmap"),
-    "controller_server": ServerNode(_controller, "controller_server", "local_costmap"),
+    "controller_server": ServerNode(controller_plugins, "controller_server", "local_costmap"),
     "behavior_server": ServerNode(_behaviors, "behavior_server", "local_costmap"),
     "recoveries_server": ServerNode(_behaviors, "recoveries_server", "local_costmap"),
     "bt_navigator": ServerNode(_navigator, "bt_navigator"),
