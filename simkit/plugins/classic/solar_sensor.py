@@ -113,7 +113,9 @@ class SolarSensor(ModelPlugin):
         for name in ("rpy_offset", "rpy_offsets"):
             if (child := params.child(name)) is not None:
                 message = f"<{name}> has no effect: the plugin of the course does not use it for the message"
-                params.diagnostics.note("SK-PLUGIN-095", message, child.where, "<simkit:rotation> turns the orientation")
+                params.diagnostics.note(
+                    "SK-PLUGIN-095", message, child.where, "<simkit:rotation> turns the orientation"
+                )
         self._light = self._find_light(params)
         self._link = self.sim.link(self._link_name)
         self._turn = quat_from_rpy(*self._rpy)
@@ -132,7 +134,7 @@ class SolarSensor(ModelPlugin):
         if name in lights:
             return lights[name]
         if name and not lights and sim.world.where == NOWHERE:
-            message = f"a model without a world has no light {name!r}; nothing is published until a world has this light"
+            message = f"a model without a world has no light {name!r}; nothing is published until a world has it"
             params.diagnostics.note("SK-PLUGIN-009", message, params.where)
             return None
         listed = ", ".join(repr(n) for n in sorted(lights)) or "none"
