@@ -21,6 +21,7 @@ from simkit_navigation.plugins.localisation.amcl import Amcl
 from simkit_navigation.plugins.localisation.robot_localization import EkfNode
 from simkit_navigation.plugins.navigation.behavior_server import BehaviorServer
 from simkit_navigation.plugins.navigation.bt_navigator import BtNavigator
+from simkit_navigation.plugins.navigation.controller_parameters import controller_parameters
 from simkit_navigation.plugins.navigation.controller_server import ControllerServer
 from simkit_navigation.plugins.navigation.costmap_2d import Costmap2D
 from simkit_navigation.plugins.navigation.planner_server import PlannerServer
@@ -35,15 +36,11 @@ _EKF_INPUT: Final = re.compile(
     r"(odom|pose|twist|imu)\d+(_config|_differential|_relative|_queue_size|_nodelay|_remove_gravitational_acceleration"
     r"|(_pose|_twist|_linear_acceleration)?_rejection_threshold)?"
 )
-_PURSUIT: Final = "nav2_regulated_pure_pursuit_controller::RegulatedPurePursuitController"
-_SHIM: Final = "nav2_rotation_shim_controller::RotationShimController"
 _NAVFN: Final = "nav2_navfn_planner::NavfnPlanner"
 _MOTION_MODELS: Final = {
     "differential": "nav2_amcl::DifferentialMotionModel",
     "omnidirectional": "nav2_amcl::OmniMotionModel",
 }
-_SPEEDS: Final = ("desired_linear_vel", "max_vel_x", "vx_max", "max_linear_vel")
-_TURNING_RATES: Final = ("rotate_to_heading_angular_vel", "max_vel_theta", "wz_max", "max_angular_vel")
 _OF_ALL_NODES: Final = frozenset(("use_sim_time", "qos_overrides", "bond_heartbeat_period"))
 """Parameters of nodes that change nothing here and need no warning."""
 
@@ -284,6 +281,12 @@ def _planner(values: Values, costmap: Values) -> list[PluginOfNode]:
     return [_costmap("global_costmap", costmap), plugin]
 
 
+def _controller(values: Values, costmap: Values) -> list[PluginOfNode]:
+    found = controller_parameters(values, costmap)
+    plugin = PluginOfNode(ControllerServer, "controller_server", found.values, found.blocks, found.told)
+    return [_costmap("local_costmap", costmap), plugin]
+
+
 def _behaviors(values: Values, costmap: Values) -> list[PluginOfNode]:
     renamed = {"global_frame": "local_frame", "local_costmap_topic": "costmap_topic"}
     own = {new: values[old] for old, new in renamed.items() if old in values and new not in values}
@@ -332,7 +335,7 @@ def _ukf(values: Values, _: Values) -> list[PluginOfNode]:
 SERVER_NODES: Final[Mapping[str, ServerNode]] = {
     "amcl": ServerNode(_amcl, "amcl", has_live_parameters=True),
     "planner_server": ServerNode(_planner, "planner_server", "global_costmap"),
-    "controller_server": ServerNode(controller_plugins, "controller_server", "local_costmap"),
+    "controller_server": ServerNode(_controller, "controller_server", "local_costmap"),
     "behavior_server": ServerNode(_behaviors, "behavior_server", "local_costmap"),
     "recoveries_server": ServerNode(_behaviors, "recoveries_server", "local_costmap"),
     "bt_navigator": ServerNode(_navigator, "bt_navigator"),

@@ -99,7 +99,7 @@ class Controller(Protocol):
     ) -> tuple[float, ...] | None:
         """Return forward speed [m/s] and turning rate [rad/s]; None if there is no safe command.
 
-        A controller of a robot that moves sideways returns three numbers: the speed to the left [m/s] is the second one.
+        A controller of a robot that moves sideways returns three numbers; the second is the speed to the left [m/s].
 
         Args:
             pose: pose of the robot in the frame of the path.

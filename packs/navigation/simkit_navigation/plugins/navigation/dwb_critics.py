@@ -6,8 +6,8 @@ The formulas are those of `nav2_dwb_controller/dwb_critics/src` (Jazzy), whose n
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Final
+from dataclasses import dataclass, field
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -21,11 +21,14 @@ from simkit_navigation.plugins.navigation.sample_arithmetic import cosine, sine,
 from simkit_navigation.plugins.navigation.velocity_samples import Speeds3, Trajectories
 
 Mask = npt.NDArray[np.bool_]
+Indices = npt.NDArray[np.int64]
+
+_SLACK: Final = 1e-6  # cells by which the distance of two poses may exceed one
 
 
 @dataclass
 class Situation:
-    """Where the robot is, in the frame of the cells of the costmap.
+    """Robot, path and costs of a cycle, in the frame of the cells of the costmap.
 
     Attributes:
         pose: pose of the robot.
@@ -44,8 +47,24 @@ class Situation:
     grid: CostGrid
     footprint: Footprint
     time_ns: int
+    _path_cells: Indices | None = field(default=None, repr=False)
+    _path_distances: Indices | None = field(default=None, repr=False)
 
-    def cells(self, x: Floats, y: Floats) -> tuple[npt.NDArray[np.int64], Mask]:
+    @property
+    def path_cells(self) -> Indices:
+        """Cells of the path up to where it leaves the costmap."""
+        if self._path_cells is None:
+            self._path_cells = _known_cells(self, self.path)
+        return self._path_cells
+
+    @property
+    def path_distances(self) -> Indices | None:
+        """Distance of each cell from the path; None without a pose in the costmap."""
+        if self._path_distances is None:
+            self._path_distances = _distances(self.grid.cells.shape, self.path_cells)
+        return self._path_distances
+
+    def cells(self, x: Floats, y: Floats) -> tuple[Indices, Mask]:
         """Return the indices of the cells at points, and which of the points are in the costmap."""
         height, width = self.grid.cells.shape
         columns, rows = np.floor(x / self.grid.resolution), np.floor(y / self.grid.resolution)
@@ -85,14 +104,14 @@ def _all(samples: Trajectories) -> Mask:
     return np.ones(len(samples.counts), np.bool_)
 
 
-def _last_or_sum(costs: Floats, samples: Trajectories, adds: bool) -> Floats:
+def _last_or_sum(costs: npt.NDArray[Any], samples: Trajectories, adds: bool) -> Floats:
     """Return the last row, or the sum of the rows of each trajectory.
 
     Nav2 rates the pose at the begin, that after each step, and the last one again.
     """
+    total: Floats = costs[-1].astype(np.float64)
     if not adds:
-        return costs[-1]
-    total = costs[-1].copy()
+        return total
     for step, row in enumerate(costs):
         total += np.where(step <= samples.counts, row, 0.0)
     return total
@@ -103,8 +122,8 @@ class BaseObstacleCritic(DwbCritic):
 
     def score(self, situation: Situation, samples: Trajectories) -> tuple[Floats, Mask]:
         costs = costs_of_cells(situation.grid.cells, situation.grid.resolution, samples.x, samples.y)
-        found = _last_or_sum(costs.astype(np.float64), samples, self.options.sum_scores)
-        return found, ~(costs >= INSCRIBED).any(axis=0)
+        is_blocked: Mask = np.logical_or.reduce(costs >= INSCRIBED, axis=0)
+        return _last_or_sum(costs, samples, self.options.sum_scores), ~is_blocked
 
 
 class ObstacleFootprintCritic(BaseObstacleCritic):
@@ -121,8 +140,8 @@ class ObstacleFootprintCritic(BaseObstacleCritic):
             cosine(yaw),
             sine(yaw),
         ).reshape(shape)
-        found = _last_or_sum(costs.astype(np.float64), samples, self.options.sum_scores)
-        return found, ~(costs >= LETHAL).any(axis=0)
+        is_blocked: Mask = np.logical_or.reduce(costs >= LETHAL, axis=0)
+        return _last_or_sum(costs, samples, self.options.sum_scores), ~is_blocked
 
 
 class _MapGridCritic(DwbCritic):
@@ -134,12 +153,12 @@ class _MapGridCritic(DwbCritic):
     stops_outside = True
     distance = 0.0  # [m] between the robot's origin and the point that is rated, ahead of it
 
-    def sources(self, situation: Situation) -> npt.NDArray[np.int64]:
-        """Return the indices of the cells with the distance 0."""
+    def distances(self, situation: Situation) -> Indices | None:
+        """Return the distance of each cell; None if no pose of the path is in the costmap."""
         raise NotImplementedError
 
     def prepare(self, situation: Situation) -> None:
-        self._distances = _distances(situation.grid.cells.shape, self.sources(situation))
+        self._distances = self.distances(situation)
 
     def factor(self, situation: Situation) -> float:
         return situation.grid.resolution * 0.5 * self.options.scale
@@ -153,31 +172,35 @@ class _MapGridCritic(DwbCritic):
         index, inside = situation.cells(x, y)
         if self._distances is None:  # no pose of the path is in the costmap
             cells = situation.grid.cells.size + 1.0
-            return np.full(len(samples.counts), cells), _all(samples) & (not self.stops_outside)
-        found = self._distances[index].astype(np.float64)
+            return np.full(len(samples.counts), cells), np.full(len(samples.counts), not self.stops_outside)
+        found = self._distances[index]
+        is_inside: Mask = np.logical_and.reduce(inside, axis=0)
         if how == "product":
             scores = np.ones(len(samples.counts))
             for step, row in enumerate(found):
                 scores *= np.where((step <= samples.counts) & (scores > 0), row, 1.0)
-            return scores, inside.all(axis=0)
-        return _last_or_sum(found, samples, how == "sum"), inside.all(axis=0)
+            return scores, is_inside
+        return _last_or_sum(found, samples, how == "sum"), is_inside
 
 
-def _distances(shape: tuple[int, ...], sources: npt.NDArray[np.int64]) -> npt.NDArray[np.int64] | None:
+def _distances(shape: tuple[int, ...], sources: Indices) -> Indices | None:
     """Return for each cell the distance from the nearest source along rows and columns; None without a source."""
     if not len(sources):
         return None
-    from scipy.ndimage import distance_transform_edt  # 40 ms
-
+    row, column = np.indices(shape)
+    if len(sources) == 1:
+        found: Indices = np.abs(row - sources[0] // shape[1]) + np.abs(column - sources[0] % shape[1])
+        return found.reshape(-1)
     is_far = np.ones(shape, np.bool_)
     is_far.reshape(-1)[sources] = False
+    from scipy.ndimage import distance_transform_edt  # 40 ms
+
     rows, columns = distance_transform_edt(is_far, return_distances=False, return_indices=True)
-    row, column = np.indices(shape)
-    found: npt.NDArray[np.int64] = (np.abs(rows - row) + np.abs(columns - column)).reshape(-1)
-    return found
+    found = np.abs(rows - row) + np.abs(columns - column)
+    return found.reshape(-1)
 
 
-def _known_cells(situation: Situation, path: Floats) -> npt.NDArray[np.int64]:
+def _known_cells(situation: Situation, path: Floats) -> Indices:
     """Return the cells of a path up to where it leaves the costmap, with poses at most one cell apart."""
     dense = _dense(path[:, :2], situation.grid.resolution)
     index, inside = situation.cells(dense[:, 0], dense[:, 1])
@@ -191,26 +214,28 @@ def _known_cells(situation: Situation, path: Floats) -> npt.NDArray[np.int64]:
 
 def _dense(points: Floats, resolution: float) -> Floats:
     """Return points of a path and points between them, so that neighbours are at most a distance apart."""
+    steps = np.diff(points, axis=0)
+    counts = np.ceil(np.sqrt(steps[:, 0] ** 2 + steps[:, 1] ** 2) / resolution - _SLACK).astype(np.int64)
+    if (counts <= 1).all():
+        return points
     found = [points[:1]]
-    for begin, end in zip(points[:-1], points[1:], strict=True):
-        x, y = (end - begin).tolist()
-        count = max(1, math.ceil(math.hypot(x, y) / resolution))
-        found.append(begin + (np.arange(1, count + 1) / count)[:, None] * (end - begin))
+    for begin, step, count in zip(points[:-1], steps, np.maximum(counts, 1).tolist(), strict=True):
+        found.append(begin + (np.arange(1, count + 1) / count)[:, None] * step)
     return np.concatenate(found)
 
 
 class PathDistCritic(_MapGridCritic):
     """Distance of the robot from the path."""
 
-    def sources(self, situation: Situation) -> npt.NDArray[np.int64]:
-        return _known_cells(situation, situation.path)
+    def distances(self, situation: Situation) -> Indices | None:
+        return situation.path_distances
 
 
 class GoalDistCritic(_MapGridCritic):
     """Distance of the robot from the last path pose in the costmap."""
 
-    def sources(self, situation: Situation) -> npt.NDArray[np.int64]:
-        return _known_cells(situation, situation.path)[-1:]
+    def distances(self, situation: Situation) -> Indices | None:
+        return _distances(situation.grid.cells.shape, situation.path_cells[-1:])
 
 
 class PathAlignCritic(PathDistCritic):
@@ -234,13 +259,13 @@ class GoalAlignCritic(GoalDistCritic):
 
     stops_outside = False
 
-    def sources(self, situation: Situation) -> npt.NDArray[np.int64]:
+    def distances(self, situation: Situation) -> Indices | None:
         self.distance = self.options.forward_point_distance
         path, goal, pose = situation.path.copy(), situation.goal, situation.pose
         angle = math.atan2(goal.y - pose.y, goal.x - pose.x)
         path[-1, 0] += self.distance * math.cos(angle)
         path[-1, 1] += self.distance * math.sin(angle)
-        return _known_cells(situation, path)[-1:]
+        return _distances(situation.grid.cells.shape, _known_cells(situation, path)[-1:])
 
 
 class PreferForwardCritic(DwbCritic):
@@ -341,7 +366,11 @@ class OscillationCritic(DwbCritic):
 
     def _has_moved(self, pose: PlanarPose, time_ns: int) -> bool:
         given, (before, begin) = self.options, self._begin
-        distance, angle, time = given.oscillation_reset_dist, given.oscillation_reset_angle, given.oscillation_reset_time
+        distance, angle, time = (
+            given.oscillation_reset_dist,
+            given.oscillation_reset_angle,
+            given.oscillation_reset_time,
+        )
         return (
             (distance >= 0.0 and math.hypot(pose.x - before.x, pose.y - before.y) > distance)
             or (angle >= 0.0 and abs(pose.yaw - before.yaw) > angle)

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit_navigation.plugins.navigation.cost_grid import UNKNOWN, Cells, CostGrid
 from simkit_navigation.plugins.navigation.footprint import Footprint
 from simkit_navigation.plugins.navigation.planar_pose import Floats
 
+Numbers = npt.NDArray[np.floating[Any]]
+
 _AT_ONCE: Final = 200_000  # points of an outline that are looked up together
 
 
-def costs_of_cells(cells: Cells, resolution: float, x: Floats, y: Floats) -> Cells:
+def costs_of_cells(cells: Cells, resolution: float, x: Numbers, y: Numbers) -> Cells:
     """Return the costs at points in the frame of the cells [m]; a point outside has the cost UNKNOWN."""
     columns, rows = np.floor(x * (1.0 / resolution)), np.floor(y * (1.0 / resolution))
     inside = (columns >= 0) & (columns < cells.shape[1]) & (rows >= 0) & (rows < cells.shape[0])
@@ -34,14 +37,16 @@ def edge_points(footprint: Footprint, resolution: float) -> Floats:
     return np.concatenate(points)
 
 
-def footprint_costs(grid: CostGrid, points: Floats, x: Floats, y: Floats, cos: Floats, sin: Floats) -> Cells:
+def footprint_costs(grid: CostGrid, points: Floats, x: Numbers, y: Numbers, cos: Numbers, sin: Numbers) -> Cells:
     """Return the largest cost on the outline at each pose.
 
     Args:
         grid: costs; the poses are given in the frame of its cells.
         points: points of the outline, from `edge_points`.
-        x, y: places [m], shape (n,).
-        cos, sin: of the headings, shape (n,).
+        x: places of the robot [m], shape (n,).
+        y: places of the robot [m], shape (n,).
+        cos: cosines of its headings, shape (n,).
+        sin: sines of its headings, shape (n,).
     """
     found = np.empty(len(x), np.uint8)
     share = max(1, _AT_ONCE // len(points))

@@ -49,8 +49,8 @@ class GracefulOptions(Options):
 class GracefulController:
     """Drives to the furthest pose of the path to which its control law leads without a collision.
 
-    The curvature is −(k_δ·(δ − atan(−k_φ·φ)) + (1 + k_φ/(1 + (k_φ·φ)²))·sin δ) / r, where r is the distance of the pose,
-    and φ and δ are the angles of the pose and of the robot to the line of sight. The formulas are those of
+    The curvature is −(k_δ·(δ − atan(−k_φ·φ)) + (1 + k_φ/(1 + (k_φ·φ)²))·sin δ) / r. The distance of the pose is r, and
+    φ and δ are the angles of the pose and of the robot to the line of sight. The formulas are those of
     `nav2_graceful_controller/src` (Jazzy).
     """
 
@@ -148,7 +148,8 @@ class GracefulController:
             turns = self._turns_first = False
         period = grid.resolution / self._most[0] if self._most[0] > 0.0 else 0.0
         most = int(3 * math.hypot(target.x, target.y) / grid.resolution)
-        now, command, poses = _AT_ROBOT, (0.0, 0.0), []
+        now, command = _AT_ROBOT, (0.0, 0.0)
+        poses: list[PlanarPose] = []
         while True:
             if turns:
                 rate = self._turning(towards - now.yaw)

@@ -24,7 +24,7 @@ Mask = npt.NDArray[np.bool_]
 
 
 class InflatedCostmap(Protocol):
-    """What the critics need of the costmap's inflation layer.
+    """Parameters of the costmap's inflation layer that the critics need.
 
     Attributes:
         cost_scaling_factor: decay of the costs [1/m].
@@ -50,7 +50,7 @@ class Critic:
         self.options: Any = self.kind(params).read_all()
         self.controller, self.costmap = controller, costmap
 
-    def add(self, samples: Samples, values: Floats32, weight: float | None = None) -> None:
+    def add(self, samples: Samples, values: npt.NDArray[Any], weight: float | None = None) -> None:
         """Add values, multiplied by the weight and raised to the power of the critic."""
         weighted = values * np.float32(self.options.cost_weight if weight is None else weight)
         power = weighted
@@ -227,13 +227,14 @@ class PathAlignCritic(Critic):
             return
         path = samples.path[:count]
         along = np.zeros(count, np.float32)
-        for index in range(1, count):
-            x, y = (path[index, :2] - path[index - 1, :2]).tolist()
-            along[index] = along[index - 1] + np.float32(math.sqrt(x * x + y * y))
+        for place in range(1, count):
+            right, up = (path[place, :2] - path[place - 1, :2]).tolist()
+            along[place] = along[place - 1] + np.float32(math.sqrt(right * right + up * up))
         stride = given.trajectory_point_step
         x, y, yaw = samples.x[::stride], samples.y[::stride], samples.yaw[::stride]
         driven = np.zeros(samples.costs.shape, np.float32)
-        total, counted = np.zeros_like(driven), np.zeros_like(driven)
+        total: Floats32 = np.zeros_like(driven)
+        counted: Floats32 = np.zeros_like(driven)
         for step in range(1, len(x)):
             across, ahead = x[step] - x[step - 1], y[step] - y[step - 1]
             driven += np.sqrt(across * across + ahead * ahead)

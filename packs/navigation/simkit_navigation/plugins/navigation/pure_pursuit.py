@@ -116,9 +116,7 @@ class PurePursuit:
                 return None
         return speeds
 
-    def _speeds(
-        self, near: Floats, pose: PlanarPose, velocity: Speeds, grid: CostGrid | None
-    ) -> tuple[Speeds, float]:
+    def _speeds(self, near: Floats, pose: PlanarPose, velocity: Speeds, grid: CostGrid | None) -> tuple[Speeds, float]:
         """Return the command, and the distance of the point that the robot drives to [m]."""
         options = self._options
         places = pose.inverse().transform(near[:, :2])

@@ -47,6 +47,12 @@ class Axis:
             return min(target, begin + self.accel * time)
         return max(target, begin + self.decel * time)
 
+    def projected(self, begin: float, targets: Floats, times: Floats) -> Floats:
+        """Return the velocities after times [s] on the way to each of the targets, as `project`."""
+        slower = np.maximum(targets, begin + self.decel * times)
+        found: Floats = np.where(begin < targets, np.minimum(targets, begin + self.accel * times), slower)
+        return found
+
     def velocities(self, present: float, time: float) -> list[float]:
         """Return evenly spaced velocities that are reached within a time [s], and 0 if they change their sign."""
         begin = max(self.low, min(present, self.high))
@@ -131,43 +137,47 @@ class VelocitySampler:
         if options.min_speed_xy >= 0.0 and options.min_speed_theta >= 0.0:
             is_slow = squares + _SLACK < options.min_speed_xy**2
             is_valid &= ~(is_slow & (np.abs(found[:, 2]) + _SLACK < options.min_speed_theta))
-        return found[is_valid]
+        tried: Floats = found[is_valid]
+        return tried
 
     def trajectories(self, pose: PlanarPose, present: Speeds3) -> Trajectories:
         """Return the trajectories of all velocities that are tried."""
         options, velocities = self._options, self.velocities(present)
         counts = self._step_counts(velocities)
         most, periods = int(counts.max(initial=1)), options.sim_time / counts
-        x, y, yaw = (np.empty((most + 1, len(counts))) for _ in range(3))
-        x[0], y[0], yaw[0] = pose
-        now = [np.full(len(counts), speed) for speed in present]
-        commands = velocities.copy()
-        for step in range(most):
-            runs = step < counts
-            for index, axis in enumerate(self._axes):
-                now[index] = velocities[:, index] if self._is_limited else _projected(
-                    now[index], velocities[:, index], axis.accel * periods, axis.decel * periods
-                )
-            if step == 0 and options.limit_vel_cmd_in_traj:
-                commands = np.column_stack(now)
-            cos, sin = cosine(yaw[step]), sine(yaw[step])
-            times = np.where(runs, periods, 0.0)
-            x[step + 1] = x[step] + (now[0] * cos - now[1] * sin) * times
-            y[step + 1] = y[step] + (now[0] * sin + now[1] * cos) * times
-            yaw[step + 1] = yaw[step] + now[2] * times
-        return Trajectories(commands, x, y, yaw, counts, options.sim_time)
+        steps = np.arange(1, most + 1)[:, None]
+        elapsed = np.minimum(steps, counts) * periods
+        times = np.where(steps <= counts, periods, 0.0)
+        speeds = [
+            velocities[:, index] if self._is_limited else axis.projected(present[index], velocities[:, index], elapsed)
+            for index, axis in enumerate(self._axes)
+        ]
+        yaw = _accumulated(pose.yaw, speeds[2] * times)
+        cos, sin = cosine(yaw[:-1]), sine(yaw[:-1])
+        x, y = speeds[0] * cos, speeds[0] * sin
+        if velocities[:, 1].any() or present[1]:
+            x, y = x - speeds[1] * sin, y + speeds[1] * cos
+        commands = velocities
+        if options.limit_vel_cmd_in_traj and not self._is_limited:
+            commands = np.column_stack([speed[0] for speed in speeds])
+        return Trajectories(
+            commands, _accumulated(pose.x, x * times), _accumulated(pose.y, y * times), yaw, counts, options.sim_time
+        )
 
     def _step_counts(self, velocities: Floats) -> npt.NDArray[np.int64]:
         options = self._options
         if options.discretize_by_time:
-            return np.full(len(velocities), max(1, math.ceil(options.sim_time / options.time_granularity)))
+            return np.full(len(velocities), max(1, math.ceil(options.sim_time / options.time_granularity)), np.int64)
         way = np.sqrt(velocities[:, 0] ** 2 + velocities[:, 1] ** 2) * options.sim_time
         angle = np.abs(velocities[:, 2]) * options.sim_time
         counts = np.ceil(np.maximum(way / options.linear_granularity, angle / options.angular_granularity))
         return np.clip(counts, 1, _MOST_STEPS).astype(np.int64)
 
 
-def _projected(now: Floats, target: Floats, speed_up: Floats, brake: Floats) -> Floats:
-    """Return velocities one step nearer to their targets."""
-    found: Floats = np.where(now < target, np.minimum(target, now + speed_up), np.maximum(target, now + brake))
-    return found
+def _accumulated(first: float, changes: Floats) -> Floats:
+    """Return the values after each change, and the first one before them."""
+    values = np.empty((len(changes) + 1, changes.shape[1]))
+    values[0] = first
+    for step, change in enumerate(changes):
+        np.add(values[step], change, out=values[step + 1])
+    return values
