@@ -54,11 +54,14 @@ class ObstacleLayer:
         self._buffers: dict[str, ObservationBuffer] = {}
         for name in names:
             options = SourceOptions(params.block(name)).read_all()
-            buffer = self._buffers[name] = ObservationBuffer(node, options)
+            self._buffers[name] = ObservationBuffer(node, options)
             kind = SCAN if options.data_type == "LaserScan" else CLOUD
             node.receive(options.topic, kind, f"{name}.topic", buffer_callback(self, name))
-            if buffer.options.inf_is_valid and kind == CLOUD:
+            if options.inf_is_valid and kind == CLOUD:
                 node.log.warning("inf_is_valid of %s has no effect on point clouds", name)
+            if options.marking and options.max_obstacle_height <= 0:
+                text = "nothing above the ground becomes an obstacle: max_obstacle_height of the source is"
+                node.report_once(f"height {name}", f"{name}: {text} {options.max_obstacle_height:g}")
         self._seen: Cells = np.zeros((0, 0), np.uint8)
         self._origin = PlanarPose(0.0, 0.0, 0.0)
 
