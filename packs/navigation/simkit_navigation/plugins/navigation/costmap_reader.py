@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from typing import Final
 
-from simkit import Plugin, msgs
+from simkit import msgs
 from simkit_navigation.plugins.navigation.cost_grid import CostGrid, grid_of_message, updated_grid
+from simkit_navigation.plugins.navigation.node_parameters import NodeParameters
 
 COSTMAP: Final = "nav2_msgs/msg/Costmap"
 _UPDATE: Final = "nav2_msgs/msg/CostmapUpdate"
 
 
-class CostmapReader(Plugin):
+class CostmapReader(NodeParameters):
     """Plugin that receives a costmap.
 
     Attributes:
