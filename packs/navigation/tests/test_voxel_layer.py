@@ -13,7 +13,7 @@ import simkit
 from simkit import msgs
 from simkit.sensors.point_cloud_messages import point_cloud
 from simkit_navigation.plugins.navigation.cost_grid import FREE, LETHAL, CostGrid, grid_of_message
-from simkit_navigation.plugins.navigation.ray_cells import traced_cells
+from simkit_navigation.plugins.navigation.ray_cells import RayTracer
 
 WORLD = """<sdf version="1.9"><world name="w"><plugin filename="libsimkit_costmap_2d.so" name="local_costmap">
 <resolution>0.05</resolution><origin_x>-1</origin_x><origin_y>-1</origin_y><width>3</width><height>2</height>
@@ -84,7 +84,10 @@ def test_rays_cross_the_cells_that_a_loop_over_each_ray_finds(most: int, least: 
     ends = [random.uniform(0, size, 200) for size in (30, 20, 8)]
     ends = [np.concatenate((end, end[:60])) for end in ends]  # some rays are there twice
     start = (11.3, 9.8, 4.4)
-    touched = traced_cells(start, ends, shape, most, least)
+    tracer = RayTracer(start, shape, most, least)
+    tracer.add([end[:100] for end in ends])
+    tracer.add([end[100:] for end in ends])
+    touched = tracer.cells()
     expected: set[tuple[int, int, int]] = set()
     for end in zip(*ends, strict=True):
         expected |= bresenham(start, tuple(map(float, end)), shape, most, least)
