@@ -74,7 +74,7 @@ def bresenham(
                 cell[number] += 1 if steps[number] > 0 else -1
                 errors[number] -= sizes[axis]
         found.add(tuple(cell))
-    return {(row, column, level) for column, row, level in found}  # type: ignore[misc]
+    return {(row, column, level) for column, row, level in found}
 
 
 @pytest.mark.parametrize(("most", "least"), [(100, 0), (7, 0), (100, 3), (12, 2)])
@@ -200,4 +200,4 @@ def test_a_restored_costmap_continues_with_the_same_cells() -> None:
             sim.run(0.25)
             runs.append(costs(sim).cells)
             sim.restore(state)
-        assert np.array_equal(*runs) and (runs[0] == LETHAL).sum() == 2
+        assert np.array_equal(runs[0], runs[1]) and (runs[0] == LETHAL).sum() == 2

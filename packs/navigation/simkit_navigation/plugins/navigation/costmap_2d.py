@@ -83,11 +83,12 @@ class CostmapOptions(Options):
 
 
 class Costmap2D(ServerPlugin):
-    """Combines the costs of layers in a grid: the static map, obstacles that sensors see, and the inflation around both.
+    """Combines the costs of layers in a grid: the static map, obstacles that sensors see, and inflation around both.
 
     Each name in `<plugins>` is a layer, with a block of parameters of the same name. Its `<plugin>` is a class of Nav2,
-    or `file.py:Class`. The names in `<filters>` are layers that come after all others. Without `<rolling_window>`, the costmap has the size of the map as soon as there is one. The
-    costs are published on `~/costmap` (`nav_msgs/msg/OccupancyGrid`) and `~/costmap_raw` (`nav2_msgs/msg/Costmap`).
+    or `file.py:Class`. The names in `<filters>` are layers that come after all others. Without `<rolling_window>`, the
+    costmap has the size of the map as soon as there is one. The costs are published on `~/costmap`
+    (`nav_msgs/msg/OccupancyGrid`) and `~/costmap_raw` (`nav2_msgs/msg/Costmap`).
     """
 
     filenames = ("libsimkit_costmap_2d.so",)
@@ -251,7 +252,9 @@ class Costmap2D(ServerPlugin):
         pose = pose_of_message(request.pose.pose)
         placed = look_up(self.sim, self.grid.frame, request.pose.header.frame_id)
         if pose is None or placed is None:
-            text = "a request to clear around a pose is ignored: its frame %r has no transform, or a number is not finite"
+            text = (
+                "a request to clear around a pose is ignored: its frame %r has no transform, or a number is not finite"
+            )
             self.log.error(text, request.pose.header.frame_id)
             return {}
         pose = placed.compose(pose)

@@ -1,4 +1,4 @@
-"""Parameters of Nav2's costmap nodes as parameters of `Costmap2D`: where their defaults differ, those of Nav2 are set."""
+"""Parameters of Nav2's costmap nodes as parameters of `Costmap2D`, with Nav2's defaults where they differ."""
 
 from __future__ import annotations
 

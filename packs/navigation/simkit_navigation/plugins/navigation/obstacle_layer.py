@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit import Params, msgs
 from simkit.extend import Options, boolean, integer, number, text
@@ -25,6 +26,8 @@ from simkit_navigation.plugins.navigation.ray_cells import AT_ONCE, RayTracer
 
 if TYPE_CHECKING:
     from simkit_navigation.plugins.navigation.nodes import CostmapNode
+
+Number = TypeVar("Number", bound=np.generic)
 
 _HALF_CELL: Final = 0.5
 _BORDER: Final = 1e-3  # [m] inside of the upper border of the map, where Nav2 ends rays that leave the map
@@ -181,7 +184,9 @@ class ObstacleLayer:
         squares = (x - start[0]) ** 2 + (y - start[1]) ** 2
         keep = (squares <= options.obstacle_max_range**2) & (squares >= options.obstacle_min_range**2)
         z = seen.points[2]
-        keep &= (z >= np.float32(self._options.min_obstacle_height)) & (z <= np.float32(self._options.max_obstacle_height))
+        keep &= (z >= np.float32(self._options.min_obstacle_height)) & (
+            z <= np.float32(self._options.max_obstacle_height)
+        )
         columns, rows = (np.floor(axis[keep] / grid.resolution).astype(np.int64) for axis in (x, y))
         inside = (rows >= 0) & (rows < grid.cells.shape[0]) & (columns >= 0) & (columns < grid.cells.shape[1])
         grid.cells[rows[inside], columns[inside]] = LETHAL
@@ -292,7 +297,7 @@ def shifted(cells: Cells, up: int, right: int) -> Cells:
     return moved
 
 
-def move_window(cells: Cells, moved: Cells, up: int, right: int) -> None:
+def move_window(cells: npt.NDArray[Number], moved: npt.NDArray[Number], up: int, right: int) -> None:
     """Copy the cells of a window to the array of the same window after it has moved by some cells."""
     (rows, columns), (y, x) = cells.shape, (up, right)
     if abs(y) < rows and abs(x) < columns:

@@ -79,7 +79,7 @@ class VoxelLayer(ObstacleLayer):
 
     def _shift(self, up: int, right: int) -> None:
         super()._shift(up, right)
-        moved = np.full(self._columns.shape, _LOW, np.uint32)
+        moved: Columns = np.full(self._columns.shape, _LOW, np.uint32)
         move_window(self._columns, moved, up, right)
         self._columns = moved
 
@@ -212,5 +212,3 @@ def _words(voxels: npt.NDArray[np.bool_]) -> Columns:
     for level in range(voxels.shape[2]):
         words |= voxels[:, :, level].astype(np.uint32) << np.uint32(level)
     return words
-
-
