@@ -20,7 +20,14 @@ from simkit_navigation.plugins.navigation.costmap_layers import (
     StaticLayerOptions,
 )
 from simkit_navigation.plugins.navigation.footprint import Footprint, read_footprint
+from simkit_navigation.plugins.navigation.gradient_layer import GradientLayer, GradientLayerOptions
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose, look_up
+from simkit_navigation.plugins.navigation.update_window import (
+    apply_layer,
+    enabled_layers,
+    keep_outside,
+    window_of_layers,
+)
 from simkit_navigation.plugins.navigation.user_classes import ServerPlugin
 
 if TYPE_CHECKING:
@@ -65,7 +72,13 @@ class Costmap2D(ServerPlugin):
     filenames = ("libsimkit_costmap_2d.so",)
     names = ("simkit::Costmap2D", "nav2_costmap_2d::Costmap2DROS")
     options = OptionsOf(CostmapOptions)
-    option_types = (StaticLayerOptions, ObstacleLayerOptions, SourceOptions, InflationLayerOptions)
+    option_types = (
+        StaticLayerOptions,
+        ObstacleLayerOptions,
+        SourceOptions,
+        InflationLayerOptions,
+        GradientLayerOptions,
+    )
     endpoints = (
         publishes("~/costmap", "nav_msgs/msg/OccupancyGrid"),
         publishes("~/costmap_raw", "nav2_msgs/msg/Costmap"),
@@ -84,7 +97,9 @@ class Costmap2D(ServerPlugin):
         self.lethal_cost_threshold = options.lethal_cost_threshold
         self.footprint: Footprint = read_footprint(self, options.footprint, options.robot_radius)
         self.inscribed_radius = self.footprint.inscribed_radius
-        self.make_parts(options.plugins, DEFAULT_LAYERS, LAYERS, ("update_costs",), "on_initialize")
+        known = {**LAYERS, "nav2_gradient_costmap_plugin::GradientLayer": GradientLayer}
+        self.make_parts(options.plugins, DEFAULT_LAYERS, known, ("update_costs",), "on_initialize")
+        self._disabled = [name for name in self.parts if not params.block(name).boolean("enabled", True)]
         size = options.width * options.height / options.resolution**2
         if size > _MOST_CELLS:
             params.error("SK-PARAM-002", f"the costmap has {size:.3g} cells; at most {_MOST_CELLS:.0e} are possible")
@@ -136,12 +151,11 @@ class Costmap2D(ServerPlugin):
             x = (math.floor(robot.x / side) - columns // 2) * side
             y = (math.floor(robot.y / side) - rows // 2) * side
             grid.origin = PlanarPose(x, y, 0.0)
-        shape = grid.cells.shape
-        for name, layer in self.parts.items():
-            layer.update_costs(grid, robot)
-            cells = grid.cells
-            if not isinstance(cells, np.ndarray) or cells.dtype != np.uint8 or cells.shape != shape:
-                raise ValueError(f"{name}: grid.cells must remain an array of uint8 with {shape[0]} × {shape[1]} cells")
+        layers = enabled_layers(self.parts, self._disabled)
+        window = window_of_layers(layers.values(), grid, robot)
+        keep_outside(grid, self.grid, window)
+        for name, layer in layers.items():
+            apply_layer(name, layer, grid, robot, window)
         self.grid, self._robot = grid, robot
 
     def _publish(self) -> None:

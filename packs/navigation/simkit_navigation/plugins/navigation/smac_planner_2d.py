@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit import Params
 from simkit.extend import Options, block, boolean, integer, number
@@ -112,7 +113,7 @@ class SmacPlanner2D:
         most = options.max_iterations if options.max_iterations > 0 else _NO_LIMIT
         most_near = options.max_on_approach_iterations if options.max_on_approach_iterations > 0 else _NO_LIMIT
         rows, columns = np.indices(costs.shape)
-        squares = (rows - end[0]) ** 2 + (columns - end[1]) ** 2
+        squares: npt.NDArray[np.int64] = np.asarray((rows - end[0]) ** 2 + (columns - end[1]) ** 2)
         is_near = (squares < tolerance**2) & found.reached
         limit = most
         if is_near.any():

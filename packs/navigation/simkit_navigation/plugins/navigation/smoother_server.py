@@ -89,6 +89,7 @@ class SmootherServer(CostmapReader, ServerPlugin):
 
     filenames = ("libsimkit_smoother_server.so",)
     names = ("simkit::SmootherServer", "nav2_smoother::SmootherServer")
+    executable = "smoother_server"
     options = OptionsOf(SmootherServerOptions)
     option_types = (SimpleSmootherOptions, SavitzkyGolaySmootherOptions)
     endpoints = (
@@ -167,5 +168,7 @@ class SmootherServer(CostmapReader, ServerPlugin):
         outside = (corners + np.linspace(0.0, 1.0, count)[:, None, None] * edges).reshape(-1, 2)
         for x, y, yaw in poses.tolist():
             if (grid.costs(PlanarPose(x, y, yaw).transform(outside)) >= LETHAL).any():
-                text = f"the robot touches an obstacle on the smoothed path at x = {x:.4g}, y = {y:.4g}, yaw = {yaw:.4g}"
+                text = (
+                    f"the robot touches an obstacle on the smoothed path at x = {x:.4g}, y = {y:.4g}, yaw = {yaw:.4g}"
+                )
                 raise _SmoothingError(_SMOOTHED_PATH_IN_COLLISION, text)

@@ -72,9 +72,7 @@ class SimpleSmoother:
         options = SimpleSmootherOptions(params).read_all()
         refinements = options.refinement_num if options.do_refinement else 0
         self._keeps_inversions = options.enforce_path_inversion
-        self._settings = Relaxation(
-            options.w_data, options.w_smooth, options.tolerance, options.max_its, refinements
-        )
+        self._settings = Relaxation(options.w_data, options.w_smooth, options.tolerance, options.max_its, refinements)
 
     def smooth(self, path: Floats, grid: CostGrid) -> Floats:
         """Return the poses of the smoothed path, shape (n, 3) [m, rad]."""

@@ -84,7 +84,7 @@ def window_of(grid: CostGrid, bounds: Bounds) -> Window:
     x, y, side = grid.origin.x, grid.origin.y, grid.resolution
     ends = ((bounds.min_x - x) / side, (bounds.min_y - y) / side, (bounds.max_x - x) / side, (bounds.max_y - y) / side)
     low_i, low_j, high_i, high_j = (min(max(end, -1.0), float(max(rows, columns))) for end in ends)
-    first_i, first_j = max(math.floor(low_i), 0), max(math.floor(low_j), 0)
+    first_i, first_j = min(max(math.floor(low_i), 0), columns), min(max(math.floor(low_j), 0), rows)
     last_i, last_j = min(math.floor(high_i) + 1, columns), min(math.floor(high_j) + 1, rows)
     return Window(first_i, first_j, max(last_i, first_i), max(last_j, first_j))
 
