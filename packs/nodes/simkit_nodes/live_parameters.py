@@ -64,6 +64,6 @@ class SharedParameterServer(ParameterServer):
 
     def _ask(self, action: str, name: str, **args: object) -> Any:
         try:
-            return self._ask_simulation("ros1_parameter", action=action, name=name, **args)
+            return self._ask_simulation("parameter_server", action=action, name=name, **args)
         except LiveError as error:
             raise TypeError(str(error)) from None

@@ -340,7 +340,7 @@ def set_parameter(request: SimulationRequest) -> object:
     return None
 
 
-def ros1_parameter(request: SimulationRequest) -> object:
+def use_parameter_server(request: SimulationRequest) -> object:
     """Use the parameter server of ROS 1: get, set, add, delete or search a name, or list all names.
 
     Returns:
@@ -393,7 +393,7 @@ REQUESTS: Final[Mapping[str, RequestHandler]] = MappingProxyType(
         "cancel": cancel,
         "parameters": lambda request: parameter_list(request.sim),
         "set_parameter": set_parameter,
-        "ros1_parameter": ros1_parameter,
+        "parameter_server": use_parameter_server,
         "nodes": lambda request: node_list(request.sim, request.server.peers.values()),
         "models": lambda request: list(request.sim.models),
         "view": view,

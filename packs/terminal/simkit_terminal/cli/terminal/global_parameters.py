@@ -66,7 +66,7 @@ class GlobalParameters:
         if place is not None:
             values = self._client.call(f"{place[0]}/get_parameters", {"names": [place[1]]}).values
             return plain_value(values[0])
-        found = self._client.ask("ros1_parameter", action="get", name=name)
+        found = self._client.ask("parameter_server", action="get", name=name)
         tree = self._tree_of_nodes(name)
         if not tree:
             if not found:
@@ -77,14 +77,14 @@ class GlobalParameters:
     def names(self) -> list[str]:
         """Return all names, sorted."""
         of_nodes = [f"{node}/{name.replace('.', '/')}" for node, names in self.nodes.items() for name in names]
-        of_server: list[str] = self._client.ask("ros1_parameter", action="names", name="/")
+        of_server: list[str] = self._client.ask("parameter_server", action="names", name="/")
         return sorted({*of_nodes, *of_server})
 
     def set(self, name: str, value: JsonValue) -> str:
         """Set a value; return the reason why the node rejected it, or an empty text."""
         place = self.place_of(name)
         if place is None:
-            self._client.ask("ros1_parameter", action="set", name=name, value=value)
+            self._client.ask("parameter_server", action="set", name=name, value=value)
             return ""
         converted = parameter_value(value)
         if converted is None:
@@ -95,7 +95,7 @@ class GlobalParameters:
 
     def delete(self, name: str) -> bool:
         """Delete a value of the parameter server with all values below it; return False if there is none."""
-        return bool(self._client.ask("ros1_parameter", action="delete", name=name))
+        return bool(self._client.ask("parameter_server", action="delete", name=name))
 
     def _tree_of_nodes(self, namespace: str) -> JsonObject:
         """Return the parameters of the nodes below a namespace, as nested dictionaries."""
