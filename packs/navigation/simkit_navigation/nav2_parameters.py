@@ -23,6 +23,7 @@ from simkit_navigation.plugins.navigation.behavior_server import BehaviorServer
 from simkit_navigation.plugins.navigation.bt_navigator import BtNavigator
 from simkit_navigation.plugins.navigation.controller_server import ControllerServer
 from simkit_navigation.plugins.navigation.costmap_2d import Costmap2D
+from simkit_navigation.plugins.navigation.costmap_parameters import costmap_parameters
 from simkit_navigation.plugins.navigation.planner_server import PlannerServer
 from simkit_navigation.plugins.navigation.smoother_server import SmootherServer
 
@@ -238,61 +239,12 @@ def _amcl(values: Values, _: Values) -> list[PluginOfNode]:
 
 
 def _costmap(name: str, values: Values) -> PluginOfNode:
-    plugin = PluginOfNode(Costmap2D, name, {"robot_base_frame": "base_link", **values})
-    layers = _names(values.get("plugins"))
-    kept = []
-    for layer in layers:
-        block = values.get(layer)
-        settings = dict(block) if isinstance(block, dict) else {}
-        kind = str(settings.get("plugin", "")).replace("/", "::")
-        if kind == "nav2_costmap_2d::VoxelLayer" or kind.endswith("VoxelLayer"):
-            settings["plugin"] = "nav2_costmap_2d::ObstacleLayer"
-            plugin.told.append(f"{layer}: an ObstacleLayer replaces the VoxelLayer")
-        elif (
-            kind and kind.startswith("nav2_") and kind.rpartition("::")[2] not in _LAYERS and not is_class_of_user(kind)
-        ):
-            plugin.told.append(f"{layer}: the layer {kind} is left out")
-            continue
-        plugin.values[layer] = _without_clouds(layer, settings, plugin)
-        kept.append(layer)
-    if layers:
-        plugin.values["plugins"] = kept
-    plugin.blocks += kept
-    filters = _names(plugin.values.pop("filters", None))
-    if filters:
-        plugin.told.append(f"the filters {', '.join(filters)} are left out")
-    for block_name, block in values.items():  # a block of a layer that is not in the list has no effect in Nav2, either
-        if isinstance(block, dict) and "plugin" in block and layers and block_name not in kept:
-            plugin.values.pop(block_name, None)
-    return plugin
+    return PluginOfNode(Costmap2D, name, *costmap_parameters(values))
 
 
 def costmap_plugin(name: str, values: Values) -> PluginOfNode:
     """Return the plugin of a costmap with the parameters of its node."""
     return _costmap(name, values)
-
-
-_LAYERS: Final = frozenset(("StaticLayer", "ObstacleLayer", "InflationLayer"))
-
-
-def _without_clouds(layer: str, settings: Values, plugin: PluginOfNode) -> Values:
-    """Return the settings of a layer without its sources that are no laser scans."""
-    sources = _names(settings.get("observation_sources"))
-    scans = []
-    for source in sources:
-        block = settings.get(source)
-        kind = block.pop("data_type", "LaserScan") if isinstance(block, dict) else "LaserScan"
-        if kind == "LaserScan":
-            scans.append(source)
-        else:
-            settings.pop(source, None)
-            plugin.told.append(f"{layer}: the source {source} ({kind}) is left out; only laser scans are used")
-    if sources:
-        settings["observation_sources"] = " ".join(scans)
-        plugin.blocks += scans
-        if not scans:
-            settings["enabled"] = False
-    return settings
 
 
 def _planner(values: Values, costmap: Values) -> list[PluginOfNode]:

@@ -160,7 +160,7 @@ def test_requests_without_a_meaning_are_refused_in_the_log(
     assert set(sim.models) == {"square", "turtle1"}
 
 
-def test_pens_draw_in_their_colour_and_clear_wipes_with_the_background(sim: simkit.Simulation) -> None:
+def test_the_background_changes_at_once_below_the_trails_of_pens_which_clear_wipes(sim: simkit.Simulation) -> None:
     assert colours(sim) - {BACKGROUND} and PEN not in colours(sim)  # the turtle is drawn, too
     drive(sim, x=2.0)
     assert PEN in colours(sim)
@@ -168,6 +168,8 @@ def test_pens_draw_in_their_colour_and_clear_wipes_with_the_background(sim: simk
     drive(sim, x=2.0)
     assert (255, 10, 0) in colours(sim)
     sim.set_parameter("/turtlesim", "background_r", 200)
+    found = colours(sim)
+    assert {(200, *BACKGROUND[1:]), PEN, (255, 10, 0)} <= found and BACKGROUND not in found  # trails stay
     sim.call("/clear")
     found = colours(sim)
     assert (200, *BACKGROUND[1:]) in found and not found & {PEN, (255, 10, 0), BACKGROUND}

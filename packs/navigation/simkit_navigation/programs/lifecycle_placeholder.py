@@ -13,7 +13,6 @@ MISSING = {
     "opennav_following": "robots do not follow objects: there is no action follow_object",
     "following_server": "robots do not follow objects: there is no action follow_object",
     "route_server": "there are no routes on a graph: there is no action compute_route",
-    "costmap_filter_info_server": "costmaps have no filters, such as zones to keep out of",
 }
 """Sentences about the missing work, by the name of the executable."""
 

@@ -31,7 +31,7 @@ _PIXELS: Final = 500  # side of the window
 _SCALE: Final = 45.0  # [px/m]
 _SIZE: Final = (_PIXELS - 1) / _SCALE  # [m]
 _MIDDLE: Final = 5.544445  # [m], x and y of the first turtle
-_BACKGROUND: Final = {"r": 69, "g": 86, "b": 255}
+_BACKGROUND: Final = {"r": ("red", 69), "g": ("green", 86), "b": ("blue", 255)}
 _PEN: Final = (0xB3, 0xB8, 0xFF)
 _TURTLE_COLOUR: Final = (90, 160, 60)
 _SHAPE: Final = np.array([(18.0, 0.0), (-14.0, 12.0), (-8.0, 0.0), (-14.0, -12.0)])  # [px] of a turtle in the image
@@ -131,8 +131,15 @@ class TurtleSim(Plugin):
             self._origin = self.sim.model(self.scoped).pose
             self._prefix = "" if self.scoped == _TYPES else f"{self.scoped}_"
         self._background = [
-            self.declare(f"background_{channel}", value, minimum=0, maximum=255, description="background after /clear")
-            for channel, value in _BACKGROUND.items()
+            self.declare(
+                f"background_{channel}",
+                value,
+                minimum=0,
+                maximum=255,
+                description=f"{name} channel of the background color",
+                on_change=lambda _: self._repaint(),
+            )
+            for channel, (name, value) in _BACKGROUND.items()
         ]
         self._holonomic = self.declare("holonomic", False, description="turtles follow linear.y, too")
         self._endpoints = _Endpoints()
@@ -153,7 +160,13 @@ class TurtleSim(Plugin):
     # ------------------------------------------------------------------ services
 
     def _clear(self) -> None:
-        self._canvas: Image = np.full((_PIXELS, _PIXELS, 3), [c.value for c in self._background], np.uint8)
+        self._canvas: Image = np.zeros((_PIXELS, _PIXELS, 3), np.uint8)
+        self._trails: Image = np.zeros((_PIXELS, _PIXELS), np.uint8)  # 1 where a pen has drawn
+        self._repaint()
+
+    def _repaint(self) -> None:
+        """Fill all pixels without a trail with the background, as `paintEvent` of turtlesim's window does."""
+        self._canvas[self._trails == 0] = [channel.value for channel in self._background]
 
     def _start_again(self) -> None:
         self.log.info("Resetting turtlesim.")
@@ -343,7 +356,9 @@ class TurtleSim(Plugin):
         if turtle.is_pen_down and before != (turtle.x, turtle.y) and turtle.width:
             import cv2
 
-            cv2.line(self._canvas, _pixel(*before), _pixel(turtle.x, turtle.y), turtle.pen, turtle.width)
+            ends = _pixel(*before), _pixel(turtle.x, turtle.y)
+            cv2.line(self._canvas, *ends, turtle.pen, turtle.width)
+            cv2.line(self._trails, *ends, 1, turtle.width)
 
     def _place_model(self, name: str, turtle: Turtle) -> None:
         """Move the model of a turtle, which is spawned first if it does not exist."""
