@@ -25,7 +25,7 @@ def current_simulation() -> Simulation:
     return simulation
 
 
-def use_parameter_server(node: str, name: str) -> Any:
+def ros1_parameter(node: str, name: str) -> Any:
     """Return the value of a parameter of ROS 1 for a node; None without one.
 
     Args:

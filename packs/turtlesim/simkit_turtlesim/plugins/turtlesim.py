@@ -32,6 +32,13 @@ _SCALE: Final = 45.0  # [px/m]
 _SIZE: Final = (_PIXELS - 1) / _SCALE  # [m]
 _MIDDLE: Final = 5.544445  # [m], x and y of the first turtle
 _BACKGROUND: Final = {"r": ("red", 69), "g": ("green", 86), "b": ("blue", 255)}
+_ARROWS: Final = {
+    "up": ("velocity", 2.0, 0.0),
+    "down": ("velocity", -2.0, 0.0),
+    "left": ("velocity", 0.0, 2.0),
+    "right": ("velocity", 0.0, -2.0),
+}
+"""Commands of the arrow keys [m/s, rad/s], each for 1 s."""
 _PEN: Final = (0xB3, 0xB8, 0xFF)
 _TURTLE_COLOUR: Final = (90, 160, 60)
 _SHAPE: Final = np.array([(18.0, 0.0), (-14.0, 12.0), (-8.0, 0.0), (-14.0, -12.0)])  # [px] of a turtle in the image
@@ -156,6 +163,20 @@ class TurtleSim(Plugin):
         self._add("turtle1", float(begin.position[0]), float(begin.position[1]), float(begin.rpy[2]))
         self._image = self.advertise("~/image", "sensor_msgs/msg/Image")
         publish_while_subscribed(self, self._image, _IMAGE_RATE, "publish_image")
+
+    # ------------------------------------------------------------------ keys of --teleop
+
+    key_help = "arrows: 2 m/s or 2 rad/s for 1 s   g b v c d e r t: turn to a heading   f cancel   q quit"
+
+    def key_commands(self, topic: str) -> Mapping[str, tuple[object, ...]]:
+        """Return the effects of the keys of `turtle_teleop_key` for the turtle with a command topic.
+
+        The keys around `f` have the headings in which they lie from it, in steps of 45 degrees.
+        """
+        action = topic.removesuffix("cmd_vel") + "rotate_absolute"
+        headings = {key: math.remainder(number * math.pi / 4, math.tau) for number, key in enumerate("gtredcvb")}
+        goals = {key: ("goal", action, {"theta": heading}) for key, heading in headings.items()}
+        return {**_ARROWS, **goals, "f": ("cancel",), "q": ("end",)}
 
     # ------------------------------------------------------------------ services
 
