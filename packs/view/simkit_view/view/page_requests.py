@@ -13,6 +13,7 @@ from simkit.bridges.live.request_fields import RequestRefused, checked_value, fi
 from simkit.bridges.live.requests import make_steps, set_pace, set_parameter
 from simkit.compiler.standing_models import TOLERANCE, standing_lift
 from simkit.msgs import absolute_name
+from simkit_view.view.camera_pointing import point_camera
 from simkit_view.view.message_form import describe_form
 from simkit_view.view.page_calls import shown_message
 from simkit_view.view.topic_streams import LogEntries
@@ -263,6 +264,13 @@ def _goal(call: Call) -> object:
     return {"id": call.view.calls.add(call.sim.send_goal(action.name, goal))}
 
 
+def _look(call: Call) -> object:
+    """Turn the head with a camera to a place in its picture: `camera`, `x` from the left and `y` from the top, 0 to 1."""
+    _check_room(call)
+    goal = point_camera(call.sim, call.text("camera"), call.number("x"), call.number("y"))
+    return {"id": call.view.calls.add(goal), "action": goal.action.name}
+
+
 def _check_room(call: Call) -> None:
     if call.view.calls.is_full:
         raise RequestRefused("too many goals and calls wait; cancel some of them")
@@ -308,6 +316,7 @@ REQUESTS: Final[Mapping[str, Callable[[Call], object]]] = MappingProxyType(
         "describe": _describe,
         "call": _call,
         "goal": _goal,
+        "look": _look,
         "cancel": _cancel,
         "set_parameter": set_parameter,
         "log": _log,
