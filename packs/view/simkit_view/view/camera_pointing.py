@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -10,7 +10,6 @@ from simkit import Pose
 from simkit.bridges.live.request_fields import RequestRefused
 from simkit.linear_algebra import norm
 from simkit.run_spec import JsonObject
-from simkit.sensors.cameras.rendered_camera import RenderedCamera
 
 if TYPE_CHECKING:
     from simkit import Simulation
@@ -28,13 +27,14 @@ def point_camera(sim: Simulation, name: str, across: float, down: float) -> Goal
     Args:
         sim: simulation.
         name: scoped name of the camera.
-        across, down: place in the picture, from 0 to 1, from the left and from the top.
+        across: place in the picture from the left, 0 to 1.
+        down: place in the picture from the top, 0 to 1.
 
     Raises:
         RequestRefused: there is no such camera, no head that moves, or the place is outside the picture.
     """
     sensor = sim.contents.sensors.get(name)
-    if not isinstance(sensor, RenderedCamera):
+    if sensor is None or not hasattr(sensor.options, "model"):
         raise RequestRefused(f"there is no camera {name!r:.80}")
     if not (0 <= across <= 1 and 0 <= down <= 1):
         raise RequestRefused(f"the place ({across:g}, {down:g}) is outside the picture, which reaches from 0 to 1")
@@ -50,9 +50,9 @@ def _action(sim: Simulation, sensor: Sensor) -> str:
     return next((name for name in names if robot in name.split("/")), names[0])
 
 
-def _goal(sim: Simulation, sensor: RenderedCamera, across: float, down: float) -> JsonObject:
+def _goal(sim: Simulation, sensor: Sensor, across: float, down: float) -> JsonObject:
     """Return the goal: the point 1 m away on the ray of a pixel, and the camera's axis, both in a frame of the head."""
-    camera = sensor.options.model
+    camera: Any = getattr(sensor.options, "model")  # noqa: B009 - the options of all cameras with one picture have it
     y = (down * camera.height - camera.cy) / camera.fy
     x = (across * camera.width - camera.cx - camera.skew * y) / camera.fx
     ray = np.array((1.0, -x, -y))  # the picture's right and bottom are the sensor's -y and -z
@@ -70,11 +70,11 @@ def _goal(sim: Simulation, sensor: RenderedCamera, across: float, down: float) -
     }
 
 
-def _head_frame(sim: Simulation, sensor: RenderedCamera) -> tuple[str, Pose]:
+def _head_frame(sim: Simulation, sensor: Sensor) -> tuple[str, Pose]:
     """Return the frame of the camera's messages if it is a link of the robot, or else the camera's own link."""
     robot = sensor.scoped.split("::", 1)[0]
     links = sim.model(robot).links
-    wanted = sensor.optical_frame_id or sensor.frame_id
+    wanted = getattr(sensor, "optical_frame_id", "") or sensor.frame_id
     own = sensor.scoped.split("::")[-2]
     name = wanted if wanted in links else own
     return name, links[name].pose

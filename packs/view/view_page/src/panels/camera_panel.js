@@ -83,9 +83,10 @@ export function makeCameraPanel(app) {
     own.hidden = !!scene.recording; // a recording has no sensor that could be asked
     choice.replaceChildren(...cameras.map(found => element('option', {}, found.name)));
     choice.selectedIndex = Math.max(0, cameras.findIndex(found => found.name === before));
-    if (!scene.recording && cameras.length) findHead();
+    if (!scene.recording) findHead();
     change();
   });
+  app.on('link', isUp => { if (isUp && !app.player) findHead(); });
   box.addEventListener('toggle', change);
   app.stage.after.push(draw);
   box.hidden = true;

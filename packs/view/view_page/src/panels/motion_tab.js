@@ -46,7 +46,7 @@ export function makeMotionTab(app) {
       app.send('goal', { name: action, values: { trajectory: { joint_names: names, points: [point] } } });
       for (const row of rows) row.isMoved = false;
     } }, 'Move');
-    const box = element('details', { open: isFirst }, element('summary', { title: action }, action.split('/').slice(1, -1).join('/')), element('div', { class: 'joints' }, ...rows.map(row => row.element)), element('label', { title: 'Speed scaling: the motion takes its duration, divided by this' }, element('span', {}, 'speed'), percent, scale), element('div', { class: 'row-left' }, seconds, 's', move));
+    const box = element('details', { open: isFirst }, element('summary', { title: action }, action.split('/').slice(1, -1).join('/')), element('div', { class: 'joints' }, ...rows.map(row => row.element), element('label', { title: 'Speed scaling: the motion takes its duration, divided by this' }, element('span', {}, 'speed'), percent, scale)), element('div', { class: 'row-left' }, seconds, 's', move));
     box.rows = rows;
     return box;
   };
