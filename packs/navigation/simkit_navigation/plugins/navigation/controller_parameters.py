@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -19,6 +19,10 @@ _PURSUIT: Final = "nav2_regulated_pure_pursuit_controller::RegulatedPurePursuitC
 _SHIM: Final = "nav2_rotation_shim_controller::RotationShimController"
 _MPPI: Final = "nav2_mppi_controller::MPPIController"
 _DWB: Final = "dwb_core::DWBLocalPlanner"
+_OTHERS: Final = frozenset(
+    ("teb_local_planner::TebLocalPlannerROS", "vector_pursuit_controller::VectorPursuitController")
+)
+"""Controllers of other packages that pure pursuit replaces."""
 _SPEEDS: Final = ("desired_linear_vel", "max_vel_x", "vx_max", "max_linear_vel", "v_linear_max")
 _TURNING_RATES: Final = (
     "rotate_to_heading_angular_vel", "max_vel_theta", "wz_max", "max_angular_vel", "v_angular_max"
@@ -46,20 +50,27 @@ class ControllerParameters:
     told: list[str] = field(default_factory=list)
 
 
-def controller_parameters(values: Values, costmap: Values) -> ControllerParameters:
+def controller_parameters(
+    values: Values, costmap: Values, is_class_of_user: Callable[[object], bool]
+) -> ControllerParameters:
     """Return the parameters of the plugin.
 
     Args:
         values: parameters of the node `controller_server`.
         costmap: parameters of its costmap.
+        is_class_of_user: function that checks whether the name of a class may be one of a user.
     """
+
+    def is_known(kind: str) -> bool:
+        return kind in CONTROLLERS or (is_class_of_user(kind) and kind not in _OTHERS)
+
     own: Values = {"robot_base_frame": costmap.get("robot_base_frame", "base_link")}
     own.update({name: costmap[name] for name in _OF_THE_COSTMAP if name in costmap})
     own["inflation_layer"] = _inflation(costmap)
     found = ControllerParameters({**own, **values})
     for name in _names(values.get("controller_plugins")):
         found.blocks.append(name)
-        found.values[name] = _controller(name, _block(values, name), found)
+        found.values[name] = _controller(name, _block(values, name), found, is_known)
     for what, known, default in _CHECKERS:
         _add_checkers(what, known, default, found)
     return found
@@ -74,17 +85,17 @@ def _inflation(costmap: Values) -> Values:
     return {}
 
 
-def _controller(name: str, settings: Values, found: ControllerParameters) -> Values:
+def _controller(name: str, settings: Values, found: ControllerParameters, is_known: Callable[[str], bool]) -> Values:
     """Return the block of a controller; the nearest class replaces one that simkit does not have."""
     kind = str(settings.get("plugin", "")).replace("/", "::")
     if kind == _SHIM:
         primary = str(settings.get("primary_controller", "")).replace("/", "::")
-        if primary not in CONTROLLERS:
+        if not is_known(primary):
             found.told.append(f"{name}: the primary controller {_PURSUIT} replaces {primary}")
             own = {key: value for key, value in settings.items() if key in _OF_THE_SHIM}
             return {**own, **_pursuit_settings(settings), "plugin": _SHIM, "primary_controller": _PURSUIT}
         kind = primary
-    elif kind and kind not in CONTROLLERS and ".py:" not in kind:
+    elif kind and not is_known(kind):
         found.told.append(f"{name}: the controller {_PURSUIT} replaces {kind}")
         return _pursuit_settings(settings)
     if kind in (_MPPI, _DWB):

@@ -44,6 +44,7 @@ from simkit_navigation.plugins.navigation.progress_checkers import (
 )
 from simkit_navigation.plugins.navigation.pure_pursuit import PurePursuitOptions, Speeds
 from simkit_navigation.plugins.navigation.rotation_shim import RotationShim, RotationShimOptions
+from simkit_navigation.plugins.navigation.tutorial_pure_pursuit import PurePursuitControllerOptions
 from simkit_navigation.plugins.navigation.user_classes import ServerPlugin
 from simkit_navigation.plugins.navigation.velocity_command import VelocityCommand
 
@@ -161,6 +162,7 @@ class ControllerServer(ControllerTopics, CostmapReader, ServerPlugin):
         PurePursuitOptions,
         RotationShimOptions,
         GracefulOptions,
+        PurePursuitControllerOptions,
         MppiOptions,
         *dict.fromkeys(critic.kind for critic in MPPI_CRITICS.values()),
         DwbOptions,

@@ -63,8 +63,10 @@ class MppiController:
                 "set model_dt to 1 / controller_frequency",
             )
         self._axes = AXES if options.motion_model == "Omni" else ("vx", "wz")
-        self._stream = node.random(f"mppi {params.name}")
-        self._noise: Noise | None = None
+        deviations = {"vx": options.vx_std, "vy": options.vy_std, "wz": options.wz_std}
+        self._deviations = {axis: deviations[axis] for axis in self._axes}
+        shape = options.time_steps, options.batch_size
+        self._noise = Noise(node.random(f"mppi {params.name}"), shape, self._deviations)
         self._draw = -1
         self._share = 1.0  # part of the largest speeds that the speed limit allows
         self._called_ns = 0
@@ -215,25 +217,14 @@ class MppiController:
 
     def _next_noise(self) -> dict[str, Floats32]:
         """Return the noise of this iteration; the same as in the last one unless `regenerate_noises` is set."""
-        options, seed = self._options, self._node.sim.seed
         draw = self._draw
-        if options.regenerate_noises:
+        if self._options.regenerate_noises:
             self._draw += 1
-        if self._noise is None or (self._noise.seed, self._noise.draw) != (seed, draw):
-            generator = self._stream.generator(draw)
-            shape = options.time_steps, options.batch_size
-            deviations = {"vx": options.vx_std, "vy": options.vy_std, "wz": options.wz_std}
-            values = {}
-            for axis in self._axes:
-                values[axis] = generator.standard_normal(shape, np.float32)
-                values[axis] *= np.float32(deviations[axis])
-            self._noise = Noise(seed, draw, values)
-        return self._noise.values
+        return self._noise.values(self._node.sim.seed, draw)
 
     def _update(self, samples: Samples, limits: dict[str, AxisLimits]) -> None:
         """Replace the control sequence by the weighted mean of the controls."""
         options, costs = self._options, samples.costs
-        deviations = {"vx": options.vx_std, "vy": options.vy_std, "wz": options.wz_std}
         for axis, controls in samples.controls.items():
             sequence = self._sequence[axis]
             product, total = np.empty_like(costs), np.zeros_like(costs)
@@ -241,7 +232,7 @@ class MppiController:
                 np.subtract(row, present, out=product)
                 product *= present
                 total += product
-            costs += np.float32(options.gamma / deviations[axis] ** 2) * total
+            costs += np.float32(options.gamma / self._deviations[axis] ** 2) * total
         weights = exp((costs - costs.min()).astype(np.float64) * (-1.0 / options.temperature)).astype(np.float32)
         weights /= sum_over_samples(weights)
         for axis, controls in samples.controls.items():

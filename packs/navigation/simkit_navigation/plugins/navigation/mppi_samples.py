@@ -8,12 +8,12 @@ formulas are those of `nav2_mppi_controller` (Jazzy): `src/optimizer.cpp`, `src/
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
-from simkit.plugins.not_deep_copied import ImmutableValue
+from simkit.extend import SharedByCopies
 from simkit_navigation.plugins.navigation.cost_grid import CostGrid
 from simkit_navigation.plugins.navigation.footprint import Footprint
 from simkit_navigation.plugins.navigation.footprint_costs import costs_of_cells
@@ -78,17 +78,36 @@ class AxisLimits:
         controls[:] = values
 
 
-class Noise(ImmutableValue):
+class Noise(SharedByCopies):
     """Random changes of the controls, which depend only on the seed and on the number of the draw.
 
+    A snapshot shares the object, because the same numbers can be drawn again.
+
     Args:
-        seed: seed of the simulation when they were drawn.
-        draw: number of the draw.
-        values: changes by axis, shape (steps, samples).
+        stream: random stream.
+        shape: number of steps and of samples.
+        deviations: standard deviation of each axis.
     """
 
-    def __init__(self, seed: int, draw: int, values: dict[str, Floats32]) -> None:
-        self.seed, self.draw, self.values = seed, draw, values
+    def __init__(self, stream: Any, shape: tuple[int, int], deviations: dict[str, float]) -> None:
+        self._stream, self._shape, self._deviations = stream, shape, deviations
+        self._drawn: tuple[int, int] | None = None
+        self._values: dict[str, Floats32] = {}
+
+    def values(self, seed: int, draw: int) -> dict[str, Floats32]:
+        """Return the changes of a draw by axis, shape (steps, samples).
+
+        Args:
+            seed: seed of the simulation.
+            draw: number of the draw.
+        """
+        if self._drawn != (seed, draw):
+            generator = self._stream.generator(draw)
+            for axis, deviation in self._deviations.items():
+                self._values[axis] = generator.standard_normal(self._shape, np.float32)
+                self._values[axis] *= np.float32(deviation)
+            self._drawn = seed, draw
+        return self._values
 
 
 @dataclass

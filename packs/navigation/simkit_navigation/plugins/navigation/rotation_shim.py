@@ -50,14 +50,12 @@ class RotationShim:
         self._path: Floats = np.zeros((0, 3))
         self._is_new = self._is_turning = False
         self._last_rate = 0.0
-        wanted = self._options.primary_controller
-        kind = PRIMARY_CONTROLLERS.get(wanted.replace("/", "::"))
+        kind = node.find_class(params.name, self._options.primary_controller, params, PRIMARY_CONTROLLERS)
         if kind is None:
-            allowed = ", ".join(PRIMARY_CONTROLLERS)
-            params.error("SK-PARAM-002", f"primary_controller: found {wanted!r}", f"the controllers are {allowed}")
             kind = PurePursuit  # the error ends the load after all parameters are read
         self._primary: Any = kind()
-        self._primary.configure(node, params)
+        if callable(getattr(self._primary, "configure", None)):
+            self._primary.configure(node, params)
 
     @property
     def topics(self) -> tuple[str, ...]:
