@@ -1,7 +1,8 @@
-"""Mapping: scans are matched, loops are closed, and the map has the walls where they are, although the odometry drifts."""
+"""Mapping with an odometry that drifts: scans are matched, loops are closed, and the walls are where they are."""
 
 from __future__ import annotations
 
+import itertools
 import math
 from functools import cache
 from pathlib import Path
@@ -179,7 +180,7 @@ def test_a_loop_spreads_the_error_over_all_edges_of_a_square() -> None:
     strong = information_of((1e-6, 0.0, 1e-6, 1e-6), 0.0)
     found = optimised(poses, [*edges, Edge(4, 0, PlanarPose(0.0, 0.0, 0.0), strong, True)])
     assert found[0] == poses[0] and distance(found[4], found[0]) < 1e-3
-    for first, second in zip(found, found[1:], strict=False):
+    for first, second in itertools.pairwise(found):
         step = first.inverse().compose(second)
         assert math.isclose(step.yaw, math.pi / 2, abs_tol=1e-3)  # 0.04 rad too much at each corner was wrong
         assert math.isclose(step.x, corner.x + 0.1, abs_tol=0.02)

@@ -42,8 +42,8 @@ class Slam(LifecycleNode):
         name = executable if is_other else "slam_toolbox"
         super().__init__(name, automatically_declare_parameters_from_overrides=True)
         self._values = values = values_of(self, sys.argv[0])
-        self._can_switch = "map_and_localization" in executable
-        is_localization = executable.startswith(LOCALIZATION) or executable.endswith("LocalizationSlamToolbox")
+        self._can_switch = "map_and_localization" in executable or "MapAndLocalization" in executable
+        is_localization = executable.startswith(LOCALIZATION) or executable.endswith("::LocalizationSlamToolbox")
         self._mode = LOCALIZATION if is_localization else MAPPING
         if self._can_switch:
             self._mode = LOCALIZATION if values["localization_on_configure"] else MAPPING
@@ -60,7 +60,9 @@ class Slam(LifecycleNode):
         self._broadcaster = TransformBroadcaster(self)
         self._open_topics()
         self._open_services(is_other)
-        self._markers = GraphMarkers(self, values["map_frame"], values["enable_interactive_mode"] and not is_localization)
+        self._markers = GraphMarkers(
+            self, values["map_frame"], values["enable_interactive_mode"] and not is_localization
+        )
         if values["map_file_name"]:
             self._load_at_start()
 
@@ -103,7 +105,7 @@ class Slam(LifecycleNode):
         self.create_service(Pause, "slam_toolbox/pause_new_measurements", self._on_pause)
         self.create_service(Reset, "slam_toolbox/reset", self._on_reset)
         if self._mode == LOCALIZATION or self._can_switch:
-            self.create_service(Empty, "slam_toolbox/clear_localization_buffer", lambda request, response: response)
+            self.create_service(Empty, "slam_toolbox/clear_localization_buffer", self._on_clear_buffer)
         if self._can_switch:
             self.create_service(SetBool, "slam_toolbox/set_localization_mode", self._on_set_mode)
 
@@ -200,7 +202,10 @@ class Slam(LifecycleNode):
         message, values = PoseWithCovarianceStamped(), self._values
         message.header.frame_id, message.header.stamp = values["map_frame"], stamp
         message.pose.pose.position.x, message.pose.pose.position.y = pose.x, pose.y
-        message.pose.pose.orientation.z, message.pose.pose.orientation.w = math.sin(pose.yaw / 2), math.cos(pose.yaw / 2)
+        message.pose.pose.orientation.z, message.pose.pose.orientation.w = (
+            math.sin(pose.yaw / 2),
+            math.cos(pose.yaw / 2),
+        )
         xx, xy, yy, yaw = self._mapper.covariance
         covariance, scale = [0.0] * 36, values["position_covariance_scale"]
         covariance[0], covariance[1], covariance[6], covariance[7] = xx * scale, xy * scale, xy * scale, yy * scale
@@ -321,6 +326,10 @@ class Slam(LifecycleNode):
         self._set_paused(bool(request.pause_new_measurements))
         self._markers.clear()
         response.result = Reset.Response.RESULT_SUCCESS
+        return response
+
+    def _on_clear_buffer(self, request, response):
+        self.get_logger().info("the localization adds no scans to the map: there is no buffer to clear")
         return response
 
     def _on_set_mode(self, request, response):

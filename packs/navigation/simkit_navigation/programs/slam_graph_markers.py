@@ -2,10 +2,12 @@
 
 import math
 
-from geometry_msgs.msg import Point
+import numpy as np
+from geometry_msgs.msg import Point, TransformStamped
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import LaserScan
 from slam_toolbox.srv import Clear, LoopClosure, ToggleInteractive
+from tf2_ros import TransformBroadcaster
 from visualization_msgs.msg import (
     InteractiveMarker,
     InteractiveMarkerControl,
@@ -41,6 +43,7 @@ class GraphMarkers:
         node.create_service(LoopClosure, "slam_toolbox/manual_loop_closure", self._on_close)
         node.create_service(ToggleInteractive, "slam_toolbox/toggle_interactive_mode", self._on_toggle)
         if self._can_move:
+            self._broadcaster = TransformBroadcaster(node)
             latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
             self._initial = node.create_publisher(InteractiveMarkerInit, "slam_toolbox/update_full", latched)
             self._updates = node.create_publisher(InteractiveMarkerUpdate, "slam_toolbox/update", 100)
@@ -135,8 +138,25 @@ class GraphMarkers:
         x, y = message.pose.position.x, message.pose.position.y
         if not all(map(math.isfinite, (x, y, turn))):
             return
+        pose = PlanarPose(x, y, math.remainder(scan.pose.yaw + turn, math.tau))
         if message.event_type == InteractiveMarkerFeedback.MOUSE_UP:
-            self._moved[index] = PlanarPose(x, y, math.remainder(scan.pose.yaw + turn, math.tau))
+            self._moved[index] = pose
+        elif message.event_type == InteractiveMarkerFeedback.POSE_UPDATE:
+            self._show_scan(scan, pose.compose(scan.sensor))
+
+    def _show_scan(self, scan, pose):
+        """Publish a scan at a pose of its sensor while a user moves it."""
+        place, stamp = TransformStamped(), self._node.get_clock().now().to_msg()
+        place.header.frame_id, place.header.stamp, place.child_frame_id = self._frame, stamp, "scan_visualization"
+        place.transform.translation.x, place.transform.translation.y = pose.x, pose.y
+        place.transform.rotation.z, place.transform.rotation.w = math.sin(pose.yaw / 2), math.cos(pose.yaw / 2)
+        self._broadcaster.sendTransform(place)
+        message = LaserScan(range_max=scan.limit, ranges=np.where(scan.is_hit, scan.ranges, np.inf).tolist())
+        message.header.frame_id, message.header.stamp = "scan_visualization", stamp
+        if len(scan.angles):
+            message.angle_min, message.angle_max = float(scan.angles[0]), float(scan.angles[-1])
+            message.angle_increment = (message.angle_max - message.angle_min) / max(len(scan.angles) - 1, 1)
+        self._scans.publish(message)
 
     def _on_clear(self, request, response):
         self._node.get_logger().info("LoopClosureAssistant: Clearing manual loop closure nodes.")

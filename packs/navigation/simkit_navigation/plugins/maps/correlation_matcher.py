@@ -1,8 +1,9 @@
 """Correlative scan matching: the pose of a scan whose points agree best with the points of other scans.
 
-The points of the other scans are drawn into a grid and smeared. All poses of a lattice are tried, first with double steps,
-then with single ones (Olson: *Real-time correlative scan matching*, 2009). Parameters, penalties and the estimate of the
-covariance are those of Karto, the mapper of slam_toolbox. The responses are sums of integers, with the same bits everywhere.
+The points of the other scans are drawn into a grid and smeared. All poses of a lattice are tried, first with double
+steps, then with single ones (Olson: *Real-time correlative scan matching*, 2009). Parameters, penalties and the
+covariance are those of Karto, the mapper of slam_toolbox. The responses are sums of integers, with the same bits on
+every processor.
 """
 
 from __future__ import annotations
@@ -97,13 +98,13 @@ class CorrelationMatcher:
             if scores.flat[index] > 0.0:
                 break
             offset += _EXPANSION
-        best = np.unravel_index(index, scores.shape)
+        best = _place(index, scores)
         covariance = self._covariance(coarse, best)
         turns = turns[best[0]] + _lattice(rules.fine_search_angle_offset, 0.5 * rules.coarse_angle_resolution)
         fine = _Lattice(field, half, points / step, guess.yaw, coarse.shift(best), turns, 1, 3)
         scores = fine.responses * self._penalties(fine, is_penalised)
         scores = scores[:, 1:-1, 1:-1]
-        turn, row, column = (int(k) for k in np.unravel_index(int(scores.argmax()), scores.shape))
+        turn, row, column = _place(int(scores.argmax()), scores)
         best = (turn, row + 1, column + 1)
         x, y, yaw = fine.peak(best)
         pose = PlanarPose(guess.x + x * step, guess.y + y * step, wrap_angle(guess.yaw + yaw))
@@ -118,7 +119,9 @@ class CorrelationMatcher:
         side = 2 * half + 1
         field: Field = np.zeros((side + 2 * border, side + 2 * border), np.uint16)
         kernel, width = self._kernel, len(self._kernel)
-        for row, column in zip(*(k.tolist() for k in np.divmod(np.unique(cells[:, 1] * side + cells[:, 0]), side)), strict=True):
+        for row, column in zip(
+            *(k.tolist() for k in np.divmod(np.unique(cells[:, 1] * side + cells[:, 0]), side)), strict=True
+        ):
             view = field[row : row + width, column : column + width]
             np.maximum(view, kernel, out=view)
         return field[border : side + border, border : side + border]
@@ -136,7 +139,7 @@ class CorrelationMatcher:
         factors: Floats = np.maximum(distance, near) * np.maximum(angle, straight)[:, None, None]
         return factors
 
-    def _covariance(self, lattice: _Lattice, best: tuple[int, ...]) -> Covariance:
+    def _covariance(self, lattice: _Lattice, best: tuple[int, int, int]) -> Covariance:
         """Return the covariance of the peak of the responses, from exact sums of integers."""
         turn, row, column = best
         step, sums = self._resolution, lattice.sums.astype(np.int64)
@@ -168,7 +171,15 @@ class _Lattice:
     """
 
     def __init__(
-        self, field: Field, half: int, points: Floats, yaw: float, centre: tuple[int, int], turns: Floats, step: int, reach: int
+        self,
+        field: Field,
+        half: int,
+        points: Floats,
+        yaw: float,
+        centre: tuple[int, int],
+        turns: Floats,
+        step: int,
+        reach: int,
     ) -> None:
         shifts = step * np.arange(-reach, reach + 1)
         self.turns, self.columns, self.rows = turns, shifts + centre[0], shifts + centre[1]
@@ -185,7 +196,7 @@ class _Lattice:
                 layer += field[row : row + width : step, column : column + width : step]
         self.responses: Floats = self.sums / (_FULL * self.count)
 
-    def shift(self, index: tuple[int, ...]) -> tuple[int, int]:
+    def shift(self, index: tuple[int, int, int]) -> tuple[int, int]:
         """Return the shift in x and y of an index, in cells."""
         return int(self.columns[index[2]]), int(self.rows[index[1]])
 
@@ -202,6 +213,12 @@ class _Lattice:
         return float(x), float(y), angle
 
 
+def _place(index: int, scores: Floats) -> tuple[int, int, int]:
+    """Return turn, row and column of an index of the flat scores."""
+    turn, row, column = (int(k) for k in np.unravel_index(index, scores.shape))
+    return turn, row, column
+
+
 def _vertex(values: list[int]) -> float:
     """Return the place of the vertex of a parabola through three values at -1, 0 and 1; at most 0.5 away from 0."""
     left, middle, right = values
@@ -212,7 +229,8 @@ def _vertex(values: list[int]) -> float:
 def _lattice(step: float, reach: float) -> Floats:
     """Return the multiples of a step from `-reach` to `reach`."""
     count = max(round(reach / step), 1)
-    return step * np.arange(-count, count + 1)
+    values: Floats = step * np.arange(-count, count + 1).astype(np.float64)
+    return values
 
 
 @cache

@@ -1,7 +1,7 @@
 """Graph of poses in the plane, and the poses that fit its measurements best.
 
-The sparse normal equations of each Gauss-Newton step are solved by a Cholesky factorisation in plain Python, whose order of
-operations is fixed. SciPy's sparse solvers call BLAS, whose last bits depend on the processor.
+The sparse normal equations of each Gauss-Newton step are solved by a Cholesky factorisation in plain Python, whose
+order of operations is fixed. SciPy's sparse solvers call BLAS, whose last bits depend on the processor.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class Edge:
 
 
 def information_of(covariance: tuple[float, float, float, float], yaw: float) -> Information:
-    """Return the information of a covariance (xx, xy, yy, yaw) that is given in the map, in a frame with a yaw in it."""
+    """Return the information of a covariance (xx, xy, yy, yaw) of the map, in a frame that has a yaw in the map."""
     xx, xy, yy, turn = covariance
     cos, sin = math.cos(yaw), math.sin(yaw)
     a = cos * cos * xx + 2 * cos * sin * xy + sin * sin * yy

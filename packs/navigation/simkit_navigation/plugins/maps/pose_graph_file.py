@@ -1,6 +1,7 @@
 """Files of a pose graph: `NAME.posegraph` has poses and edges as JSON, `NAME.data` has the ranges of the scans.
 
-slam_toolbox has two files with the same names, in a binary format of Boost that depends on its version and its processor.
+slam_toolbox has two files with the same names, in a binary format of Boost that depends on its version and the
+processor.
 """
 
 from __future__ import annotations
@@ -50,9 +51,7 @@ def write_pose_graph(name: str, scans: list[MapScan], edges: list[Edge]) -> Path
             }
             for scan in scans
         ],
-        "edges": [
-            [edge.first, edge.second, list(edge.pose), list(edge.information), edge.is_loop] for edge in edges
-        ],
+        "edges": [[edge.first, edge.second, list(edge.pose), list(edge.information), edge.is_loop] for edge in edges],
     }
     rays = [np.column_stack((scan.ranges, scan.angles)) for scan in scans]
     content = io.BytesIO()
@@ -88,7 +87,9 @@ def read_pose_graph(name: str) -> tuple[list[MapScan], list[Edge]]:
         rays = np.load(io.BytesIO(data), allow_pickle=False)
         return _scans(graph, rays), _edges(graph)
     except (ValueError, KeyError, TypeError, AttributeError, IndexError, EOFError) as error:
-        raise PoseGraphFault(f"{graph_file} or {data_file.name} is damaged, or is not a pose graph of simkit") from error
+        raise PoseGraphFault(
+            f"{graph_file} or {data_file.name} is damaged, or is not a pose graph of simkit"
+        ) from error
 
 
 def _paths(name: str) -> tuple[Path, Path]:

@@ -1,8 +1,8 @@
 """Simultaneous localisation and mapping in the plane: scan matching, loop closure and a graph of poses.
 
-The steps are those of Karto, the mapper of slam_toolbox. Each scan is matched with the last scans and with those that are
-linked to them nearby. Chains of scans that are near, but not linked, are candidates for a loop: the newest scans are searched
-in a large space around their pose, and a match adds an edge to the graph. All poses are then optimised.
+The steps are those of Karto, the mapper of slam_toolbox. Each scan is matched with the last scans and with those that
+are linked to them nearby. Chains of scans that are near, but not linked, are candidates for a loop: the newest scans
+are searched in a large space around their pose, and a match adds an edge to the graph. All poses are then optimised.
 """
 
 from __future__ import annotations
@@ -253,7 +253,7 @@ class ScanMapper:
         return math.hypot(x - u, y - v)
 
     def _linked(self, start: int, scan: MapScan, most: float) -> list[int]:
-        """Return scans within a distance of a scan that edges connect to the scan `start` without leaving this distance."""
+        """Return scans within a distance of a scan that edges within this distance connect to the scan `start`."""
         seen, waiting = {start}, [start]
         while waiting:
             for index in self._links[waiting.pop()]:
@@ -328,7 +328,9 @@ class ScanMapper:
                 continue
             covariance = coarse.covariance if max(xx, yy) > _CLEAR**2 else fine.covariance
             pose = fine.pose.compose(scan.sensor.inverse())
-            nearest = min(chain, key=lambda k: (math.hypot(self.scans[k].pose.x - pose.x, self.scans[k].pose.y - pose.y), k))
+            nearest = min(
+                chain, key=lambda k: (math.hypot(self.scans[k].pose.x - pose.x, self.scans[k].pose.y - pose.y), k)
+            )
             self._close_loop(nearest, index, covariance, pose)
 
     def _candidates(self, index: int) -> list[list[int]]:
@@ -349,7 +351,7 @@ class ScanMapper:
     def _query(self, index: int) -> Floats:
         """Return the points of the newest scans near the last one, in the frame of its sensor, one in each small cell.
 
-        One scan of a corridor is like every other one; several have its corners and doors.
+        One scan of a corridor is like every other one; several show its corners and niches.
         """
         scan = self.scans[index]
         first = max(self._first_running, index + 1 - self.settings.scan_buffer_size)
