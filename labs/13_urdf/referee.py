@@ -110,7 +110,9 @@ class Referee(WorldPlugin):
             return
         links = [name for name in (*self.bodies, "tool") if name not in robot.links]
         joints = [name for name in self.joints if name not in robot.joints]
-        self.publish("names", [f"there is no link {name}" for name in links] + [f"there is no joint {n}" for n in joints])
+        self.publish(
+            "names", [f"there is no link {name}" for name in links] + [f"there is no joint {n}" for n in joints]
+        )
         masses, inertias = [], []
         for name, (mass, moments) in self.bodies.items():
             if name not in robot.links:
@@ -123,7 +125,9 @@ class Referee(WorldPlugin):
             inertias += self.compare_inertia(name, link, moments)
         self.publish("masses", masses)
         self.publish("inertias", inertias)
-        self.publish("joints", [text for name, wanted in self.joints.items() for text in self.compare_joint(name, *wanted)])
+        self.publish(
+            "joints", [text for name, wanted in self.joints.items() for text in self.compare_joint(name, *wanted)]
+        )
         self.publish("limits", [text for name, wanted in LIMITS.items() for text in self.compare_limits(name, wanted)])
 
     def compare_inertia(self, name, link, moments):
@@ -189,7 +193,8 @@ class Referee(WorldPlugin):
             return
         height, pitch = pose.position[2], math.degrees(pose.rpy[1])
         wrong = abs(height - self.radius) > 0.003 or abs(pitch) > 1.0
-        text = f"yours {number(height)} m high and pitched by {number(pitch, 1)} degrees, true {self.radius:.3f} m and 0 degrees"
+        found = f"{number(height)} m high and pitched by {number(pitch, 1)} degrees"
+        text = f"yours {found}, true {self.radius:.3f} m and 0 degrees"
         self.publish("stands", [text] if wrong else [])
 
     def moved(self):

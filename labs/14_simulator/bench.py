@@ -31,13 +31,11 @@ class Bench(WorldPlugin):
         self.start = speed, height, angle
         self.pendulum = simulator.Pendulum(angle, mass=1.0, length=0.5, inertia=0.004)
         self.ball = simulator.Ball((0.0, height), (speed, 0.0), mass=0.5, radius=0.1, restitution=0.6)
-        self.problems = {name: "" for name in TOLERANCES}
+        self.problems = dict.fromkeys(TOLERANCES, "")
         self.touches = {"yours": None, "true": None}  # times of the first touch [s]
         self.scans = 0
         self.is_started = self.is_done = False
-        self.topics = {
-            name: self.advertise(f"/bench/{name}", "std_msgs/msg/String") for name in (*TOLERANCES, "touch")
-        }
+        self.topics = {name: self.advertise(f"/bench/{name}", "std_msgs/msg/String") for name in (*TOLERANCES, "touch")}
         self.states = self.advertise("/bench/ball", "geometry_msgs/msg/PointStamped")
         self.subscribe("/scan", self.take_scan)
 

@@ -72,9 +72,22 @@ def test_the_picture_shows_the_solution_beside_simkit(lab: Path, tmp_path: Path)
     for k, distance in enumerate(ranges):
         direction = first + k * step
         end = min(float(distance), 6.0)
-        right.plot([-0.5, -0.5 + end * math.cos(direction)], [0.4, 0.4 + end * math.sin(direction)], "-", color="#0072b2", lw=0.7)
+        right.plot(
+            [-0.5, -0.5 + end * math.cos(direction)],
+            [0.4, 0.4 + end * math.sin(direction)],
+            "-",
+            color="#0072b2",
+            lw=0.7,
+        )
     right.add_patch(pyplot.Circle(seen, 0.1, color="#d55e00"))
-    right.set(title="one scan of the lidar", xlabel="x [m]", ylabel="z [m]", xlim=(-0.6, 2.1), ylim=(-0.05, 2.0), aspect="equal")
+    right.set(
+        title="one scan of the lidar",
+        xlabel="x [m]",
+        ylabel="z [m]",
+        xlim=(-0.6, 2.1),
+        ylim=(-0.05, 2.0),
+        aspect="equal",
+    )
     left.legend(fontsize=8)
     middle.legend(fontsize=8, loc="upper right")
     picture = tmp_path / "simulator.png"

@@ -4,8 +4,12 @@ MISTAKES = {
     "moves with the velocity of before": (
         "the pendulum swings as simkit's, to 0.01 rad",
         "simulator.py",
-        "    pendulum.angle += pendulum.rate * dt\n",
-        "    pendulum.angle += (pendulum.rate - torque / (pendulum.inertia + pendulum.mass * pendulum.length**2) * dt) * dt\n",
+        """    pendulum.rate += torque / (pendulum.inertia + pendulum.mass * pendulum.length**2) * dt
+    pendulum.angle += pendulum.rate * dt
+""",
+        """    pendulum.angle += pendulum.rate * dt
+    pendulum.rate += torque / (pendulum.inertia + pendulum.mass * pendulum.length**2) * dt
+""",
     ),
     "forgets the limit of the friction": (
         "the ball is as far as simkit's, to 2.5 cm",
