@@ -1,8 +1,8 @@
 """Referee of part 5: it compares each command with the law of the course, and measures where the robot stops.
 
-The topics below `/referee` are of the type `std_msgs/msg/String`: `right`, or the value of the student and the true one.
-`dead_zone`, `minimum`, `proportional` and `saturation` are the four ranges of the law; `first_stop` and `second_stop` say
-where the ball is in the image 5.9 s after the start, and at 11.5 s. At 6 s, the referee moves the ball and doubles `kp`.
+The topics below `/referee` are of the type `std_msgs/msg/String`: `right`, or the student's value and the true one.
+`dead_zone`, `minimum`, `proportional` and `saturation` are the four ranges of the law; `first_stop` and `second_stop`
+say where the ball is in the image 5.9 s and 11.5 s after the start. At 6 s, the referee moves the ball and doubles `kp`.
 """
 
 from __future__ import annotations
@@ -81,5 +81,6 @@ class CourseReferee(ModelPlugin):
         turning = self.sim.link("turtlebot3::base_footprint").angular_velocity[2]
         error = float(right / ahead * (self.focal or 0.0))
         is_right = abs(error) <= DEAD_ZONE + 2.0 and abs(turning) < 0.01
-        text = f"yours {error:.1f} pixels from the middle, turning at {turning:.3f} rad/s, true at most 5 pixels and 0 rad/s"
+        found = f"{error:.1f} pixels from the middle, turning at {turning:.3f} rad/s"
+        text = f"yours {found}, true at most 5 pixels and 0 rad/s"
         self.topics[name].publish({"data": "right" if is_right else text})
