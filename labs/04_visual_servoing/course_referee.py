@@ -2,7 +2,7 @@
 
 The topics below `/referee` are of the type `std_msgs/msg/String`: `right`, or the student's value and the true one.
 `dead_zone`, `minimum`, `proportional` and `saturation` are the four ranges of the law; `first_stop` and `second_stop`
-say where the ball is in the image 5.9 s and 11.5 s after the start. At 6 s, the referee moves the ball and doubles `kp`.
+say where the ball is in the image 5.9 s and 11.5 s after the start. At 6 s, the referee moves the ball and doubles kp.
 """
 
 from __future__ import annotations
