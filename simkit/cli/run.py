@@ -112,6 +112,8 @@ def execute(spec: RunSpec, parts: Sequence[RunPart], *, verbose: bool, quiet: bo
         from simkit.cli.run_verdict import RunVerdict
         from simkit.testing.scenarios.scenario_run import add_nodes
 
+    for part in parts:
+        spec = part.extended(spec)
     if spec.recording is not None:
         from simkit.recording.bags import writer  # 3 ms: the formats of bags
 
@@ -122,10 +124,12 @@ def execute(spec: RunSpec, parts: Sequence[RunPart], *, verbose: bool, quiet: bo
         blocked = stack.enter_context(BlockedPlugins(print_status))
         with load(spec.world, **spec.load_arguments()) as sim:
             try:
-                print_diagnostics([*spec.diagnostics, *sim.diagnostics], verbose=verbose)
-                if not verbose:
-                    _print_model_world(sim.diagnostics)
-                add_nodes(spec, sim)
+                try:
+                    add_nodes(spec, sim)
+                finally:
+                    print_diagnostics([*spec.diagnostics, *sim.diagnostics], verbose=verbose)
+                    if not verbose:
+                        _print_model_world(sim.diagnostics)
                 verdict.code = Session(spec, parts, sim, blocked, verdict, quiet=quiet).execute()
             finally:
                 add_diagnostics([*spec.diagnostics, *sim.diagnostics])

@@ -8,39 +8,65 @@ from __future__ import annotations
 
 import html
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Final
 
-from simkit import Plugin
+from simkit import Params, Plugin
+from simkit.diagnostic_record import TEXT_SOURCE
+from simkit.diagnostics import NOWHERE, Diagnostic, Diagnostics, Where
+from simkit.plugins.ros_names import WITHOUT_RUN_FILES
 from simkit.plugins.unread_parameters import names_read
 from simkit_navigation.plugins.localisation.amcl import Amcl
 from simkit_navigation.plugins.localisation.robot_localization import EkfNode
 from simkit_navigation.plugins.navigation.behavior_server import BehaviorServer
 from simkit_navigation.plugins.navigation.bt_navigator import BtNavigator
+from simkit_navigation.plugins.navigation.controller_parameters import controller_parameters
 from simkit_navigation.plugins.navigation.controller_server import ControllerServer
 from simkit_navigation.plugins.navigation.costmap_2d import Costmap2D
+from simkit_navigation.plugins.navigation.costmap_parameters import costmap_parameters
 from simkit_navigation.plugins.navigation.planner_server import PlannerServer
+from simkit_navigation.plugins.navigation.smoother_server import SmootherServer
 
 Values = dict[str, object]
 """Values of parameters; blocks are dictionaries."""
+Places = Mapping[str, Where]
+"""Places of values in files by their names, such as `FollowPath.max_vel_x`."""
 
 _ELEMENT: Final = re.compile(r"[A-Za-z_][\w.-]*")
 _EKF_INPUT: Final = re.compile(
     r"(odom|pose|twist|imu)\d+(_config|_differential|_relative|_queue_size|_nodelay|_remove_gravitational_acceleration"
     r"|(_pose|_twist|_linear_acceleration)?_rejection_threshold)?"
 )
-_PURSUIT: Final = "nav2_regulated_pure_pursuit_controller::RegulatedPurePursuitController"
-_SHIM: Final = "nav2_rotation_shim_controller::RotationShimController"
-_NAVFN: Final = "nav2_navfn_planner::NavfnPlanner"
+_TUTORIAL_CLASSES: Final = frozenset(
+    (
+        "nav2_gradient_costmap_plugin::GradientLayer",
+        "nav2_pure_pursuit_controller::PurePursuitController",
+        "nav2_straightline_planner::StraightLine",
+    )
+)
+"""Classes of Nav2's tutorials, which a user often replaces by a class of his own with other parameters."""
+_PREFIXES_OF_NAV2: Final = ("nav2_", "dwb_", "opennav_")
 _MOTION_MODELS: Final = {
     "differential": "nav2_amcl::DifferentialMotionModel",
     "omnidirectional": "nav2_amcl::OmniMotionModel",
 }
-_SPEEDS: Final = ("desired_linear_vel", "max_vel_x", "vx_max", "max_linear_vel")
-_TURNING_RATES: Final = ("rotate_to_heading_angular_vel", "max_vel_theta", "wz_max", "max_angular_vel")
-_OF_ALL_NODES: Final = frozenset(("use_sim_time", "qos_overrides", "bond_heartbeat_period"))
+_OF_ALL_NODES: Final = frozenset(
+    (
+        *("use_sim_time", "qos_overrides", "bond_heartbeat_period", "use_realtime_priority"),
+        *(
+            "introspection_mode",
+            "service_introspection_mode",
+            "allow_parameter_qos_overrides",
+            "action_server_result_timeout",
+        ),
+        *("enable_groot_monitoring", "groot_zmq_publisher_port", "groot_zmq_server_port"),
+    )
+)
 """Parameters of nodes that change nothing here and need no warning."""
+_OF_OTHER_MODELS: Final = ("z_max", "z_short", "lambda_short", "save_pose_rate", "always_reset_initial_pose")
+"""Parameters of AMCL's beam model, and of a file for the next start of the node."""
+_OF_BEAM_SKIPPING: Final = ("do_beamskip", "beam_skip_distance", "beam_skip_threshold", "beam_skip_error_threshold")
 
 
 @dataclass
@@ -61,26 +87,54 @@ class PluginOfNode:
     blocks: list[str] = field(default_factory=list)
     told: list[str] = field(default_factory=list)
 
-    def elements(self, unused: list[str]) -> str:
-        """Return the elements of the plugin in a file.
+    def params(self, places: Places, unused: list[str], diagnostics: Diagnostics | None = None) -> Params:
+        """Return the parameters of the plugin as elements.
 
         Args:
+            places: places of the values by their names in the files.
             unused: list to which the names of parameters without an effect are added.
+            diagnostics: collector of the problems with the values.
         """
         names = {part for name in names_read(self.kind) for part in name.split(".")} | set(self.blocks)
-        return "".join(_elements(self.values, names, "", unused))
+        root = Params("plugin", diagnostics=diagnostics)
+        root.where = next(iter(places.values()), NOWHERE)
+        _add_elements(root, self.values, names, "", unused, places)
+        return root
 
 
-def _elements(values: Mapping[str, object], names: Collection[str], prefix: str, unused: list[str]) -> Iterator[str]:
+def _add_elements(
+    element: Params,
+    values: Mapping[str, object],
+    names: Collection[str] | None,
+    prefix: str,
+    unused: list[str],
+    places: Places,
+) -> None:
+    """Add the values that have an effect to an element; a value without a place has that of its block.
+
+    Without `names`, all values are added: a class of a user reads them.
+    """
     for key, value in values.items():
-        is_known = _ELEMENT.fullmatch(key) is not None and (key in names or _EKF_INPUT.fullmatch(key) is not None)
+        is_known = _ELEMENT.fullmatch(key) is not None and (
+            names is None or key in names or _EKF_INPUT.fullmatch(key) is not None
+        )
         if not is_known:
             if prefix or key not in _OF_ALL_NODES:
                 unused.append(f"{prefix}{key}")
-        elif isinstance(value, Mapping):
-            yield f"<{key}>{''.join(_elements(value, names, f'{prefix}{key}.', unused))}</{key}>"
-        else:
-            yield f"<{key}>{html.escape(_text(value))}</{key}>"
+            continue
+        where = places.get(f"{prefix}{key}", element.where)
+        text = "" if isinstance(value, Mapping) else _text(value)
+        child = Params(key, text, where=where, diagnostics=element.diagnostics)
+        if isinstance(value, Mapping):
+            inner = None if is_class_of_user(value.get("plugin")) else names
+            _add_elements(child, value, inner, f"{prefix}{key}.", unused, places)
+        element.children.append(child)
+
+
+def is_class_of_user(kind: object) -> bool:
+    """Check whether the class of a block may be one that a user has written: its parameters are not known here."""
+    name = str(kind or "").replace("/", "::")
+    return name in _TUTORIAL_CLASSES or (bool(name) and not name.startswith(_PREFIXES_OF_NAV2))
 
 
 def _text(value: object) -> str:
@@ -104,22 +158,62 @@ def nested(values: Mapping[str, object]) -> Values:
     return tree
 
 
-def model_of_plugins(model: str, plugins: Sequence[PluginOfNode], ros: str, unused: list[str]) -> str:
-    """Return a static model without a shape whose plugins do the work of a node.
+def shortened(names: Sequence[str]) -> str:
+    """Return a list of names as text; of a long list, the first twelve and the number of the others."""
+    return ", ".join(names[:12]) + (f" and {len(names) - 12} others" if len(names) > 12 else "")
+
+
+class ModelOfPlugins:
+    """Static model without a shape whose plugins do the work of a node.
 
     Args:
-        model: name of the model.
-        plugins: plugins.
-        ros: content of their blocks `<ros>`.
-        unused: list to which the names of parameters without an effect are added.
+        name: name of the model.
+        ros: content of the blocks `<ros>` of its plugins.
+
+    Attributes:
+        unused: names of parameters without an effect.
     """
-    texts = (
-        f'<plugin filename="{plugin.kind.filenames[0]}" name="{plugin.name}"><ros>{ros}</ros>'
-        f"{plugin.elements(unused)}</plugin>"
-        for plugin in plugins
-    )
-    link = '<static>true</static><link name="link"/>'
-    return f'<sdf version="1.9"><model name="{model}">{link}{"".join(texts)}</model></sdf>'
+
+    def __init__(self, name: str, ros: str) -> None:
+        self._name, self._ros = name, ros
+        self._lines = ["", ""]  # the lines of the model begin after those
+        self._places: dict[int, Where] = {}
+        self.unused: list[str] = []
+
+    def add(self, plugin: PluginOfNode, places: Places) -> None:
+        """Add a plugin.
+
+        Args:
+            plugin: plugin.
+            places: places of its values by their names in the files.
+        """
+        params = plugin.params(places, self.unused)
+        ros = f"<ros><{WITHOUT_RUN_FILES}>true</{WITHOUT_RUN_FILES}>{self._ros}</ros>"
+        start = f'<plugin filename="{plugin.kind.filenames[0]}" name="{plugin.name}">{ros}'
+        self._add_line(start, params.where)
+        self._add_children(params)
+        self._add_line("</plugin>", params.where)
+
+    def _add_children(self, element: Params) -> None:
+        for child in element.children:
+            self._add_line(f"<{child.name}>{html.escape(child.value)}", child.where)
+            self._add_children(child)
+            self._lines[-1] += f"</{child.name}>"
+
+    def _add_line(self, text: str, where: Where) -> None:
+        self._lines.append(text)
+        self._places[len(self._lines)] = where
+
+    @property
+    def text(self) -> str:
+        """Text of the model, with a line for each element."""
+        first = f'<sdf version="1.9"><model name="{self._name}">', '<static>true</static><link name="link"/>'
+        return "\n".join((*first, *self._lines[2:], "</model></sdf>"))
+
+    def placed(self, item: Diagnostic) -> Diagnostic:
+        """Return a diagnostic of the text with the place of the value in its file; another one is unchanged."""
+        where = self._places.get(item.line or 0) if item.file == TEXT_SOURCE else None
+        return item if where is None or not where.file else replace(item, file=where.file, line=where.line)
 
 
 # ---------------------------------------------------------------------- tables of the nodes
@@ -152,107 +246,41 @@ def _amcl(values: Values, _: Values) -> list[PluginOfNode]:
     if values.get("laser_model_type") == "beam":
         plugin.values["laser_model_type"] = "likelihood_field"
         plugin.told.append("the laser model 'beam' is not available; 'likelihood_field' is used")
+    if values.get("do_beamskip"):
+        plugin.told.append("no beams are skipped (do_beamskip)")
+    for name in (*_OF_OTHER_MODELS, *_OF_BEAM_SKIPPING):
+        plugin.values.pop(name, None)
+    pose = plugin.values.get("initial_pose")
+    if isinstance(pose, dict):
+        plugin.values["initial_pose"] = {name: value for name, value in pose.items() if name != "z"}
     return [plugin]
 
 
 def _costmap(name: str, values: Values) -> PluginOfNode:
-    plugin = PluginOfNode(Costmap2D, name, {"robot_base_frame": "base_link", **values})
-    layers = _names(values.get("plugins"))
-    kept = []
-    for layer in layers:
-        block = values.get(layer)
-        settings = dict(block) if isinstance(block, dict) else {}
-        kind = str(settings.get("plugin", "")).replace("/", "::")
-        if kind == "nav2_costmap_2d::VoxelLayer" or kind.endswith("VoxelLayer"):
-            settings["plugin"] = "nav2_costmap_2d::ObstacleLayer"
-            plugin.told.append(f"{layer}: an ObstacleLayer replaces the VoxelLayer")
-        elif kind and kind.startswith("nav2_") and kind.rpartition("::")[2] not in _LAYERS:
-            plugin.told.append(f"{layer}: the layer {kind} is left out")
-            continue
-        plugin.values[layer] = _without_clouds(layer, settings, plugin)
-        kept.append(layer)
-    if layers:
-        plugin.values["plugins"] = kept
-    plugin.blocks += kept
-    filters = _names(plugin.values.pop("filters", None))
-    if filters:
-        plugin.told.append(f"the filters {', '.join(filters)} are left out")
-    for block_name, block in values.items():  # a block of a layer that is not in the list has no effect in Nav2, either
-        if isinstance(block, dict) and "plugin" in block and layers and block_name not in kept:
-            plugin.values.pop(block_name, None)
-    return plugin
+    return PluginOfNode(Costmap2D, name, *costmap_parameters(values))
 
 
-_LAYERS: Final = frozenset(("StaticLayer", "ObstacleLayer", "InflationLayer"))
-
-
-def _without_clouds(layer: str, settings: Values, plugin: PluginOfNode) -> Values:
-    """Return the settings of a layer without its sources that are no laser scans."""
-    sources = _names(settings.get("observation_sources"))
-    scans = []
-    for source in sources:
-        block = settings.get(source)
-        kind = block.pop("data_type", "LaserScan") if isinstance(block, dict) else "LaserScan"
-        if kind == "LaserScan":
-            scans.append(source)
-        else:
-            settings.pop(source, None)
-            plugin.told.append(f"{layer}: the source {source} ({kind}) is left out; only laser scans are used")
-    if sources:
-        settings["observation_sources"] = " ".join(scans)
-        plugin.blocks += scans
-        if not scans:
-            settings["enabled"] = False
-    return settings
+def costmap_plugin(name: str, values: Values) -> PluginOfNode:
+    """Return the plugin of a costmap with the parameters of its node."""
+    return _costmap(name, values)
 
 
 def _planner(values: Values, costmap: Values) -> list[PluginOfNode]:
     plugin = PluginOfNode(PlannerServer, "planner_server", {**_frame_of(costmap), **values})
-    for name in _names(values.get("planner_plugins")):
-        plugin.blocks.append(name)
-        settings = _block(plugin.values, name)
-        kind = str(settings.get("plugin", "")).replace("/", "::")
-        if kind.startswith("nav2_") and kind != _NAVFN:
-            plugin.told.append(f"{name}: the planner {_NAVFN} replaces {kind}")
-            settings["plugin"] = _NAVFN
+    plugin.blocks += _names(values.get("planner_plugins"))
     return [_costmap("global_costmap", costmap), plugin]
 
 
+def _smoother(values: Values, _: Values) -> list[PluginOfNode]:
+    plugin = PluginOfNode(SmootherServer, "smoother_server", {"robot_base_frame": "base_link", **values})
+    plugin.blocks += _names(values.get("smoother_plugins"))
+    return [plugin]
+
+
 def _controller(values: Values, costmap: Values) -> list[PluginOfNode]:
-    outline = _outline_of(costmap)
-    plugin = PluginOfNode(ControllerServer, "controller_server", {**_frame_of(costmap), **outline, **values})
-    for name in _names(values.get("controller_plugins")):
-        plugin.blocks.append(name)
-        settings = _block(plugin.values, name)
-        kind = str(settings.get("plugin", "")).replace("/", "::")
-        if kind == _SHIM:
-            kind = str(settings.get("primary_controller", "")).replace("/", "::")
-            settings["plugin"] = kind
-        if not kind or kind == _PURSUIT or ".py:" in kind:
-            continue
-        plugin.told.append(f"{name}: the controller {_PURSUIT} replaces {kind}")
-        plugin.values[name] = _pursuit_settings(settings)
-    for wanted, element in (("goal_checker", "general_goal_checker"), ("progress_checker", "progress_checker")):
-        checkers = _names(values.get(f"{wanted}_plugins")) or _names(values.get(f"{wanted}_plugin")) or [wanted]
-        settings = _block(plugin.values, checkers[0])
-        plugin.values.pop(checkers[0], None)
-        if settings:
-            plugin.values[element] = {key: value for key, value in settings.items() if key != "plugin"}
-        for name in (f"{wanted}_plugins", f"{wanted}_plugin"):
-            plugin.values.pop(name, None)
+    found = controller_parameters(values, costmap, is_class_of_user)
+    plugin = PluginOfNode(ControllerServer, "controller_server", found.values, found.blocks, found.told)
     return [_costmap("local_costmap", costmap), plugin]
-
-
-def _pursuit_settings(settings: Values) -> Values:
-    """Return the settings of pure pursuit with the speeds of another controller."""
-    speed = next((settings[name] for name in _SPEEDS if name in settings), None)
-    rate = next((settings[name] for name in _TURNING_RATES if name in settings), None)
-    found: Values = {"plugin": _PURSUIT}
-    if isinstance(speed, (int, float)) and speed > 0:
-        found["desired_linear_vel"] = speed
-    if isinstance(rate, (int, float)) and rate > 0:
-        found["rotate_to_heading_angular_vel"] = rate
-    return found
 
 
 def _behaviors(values: Values, costmap: Values) -> list[PluginOfNode]:
@@ -303,6 +331,7 @@ def _ukf(values: Values, _: Values) -> list[PluginOfNode]:
 SERVER_NODES: Final[Mapping[str, ServerNode]] = {
     "amcl": ServerNode(_amcl, "amcl", has_live_parameters=True),
     "planner_server": ServerNode(_planner, "planner_server", "global_costmap"),
+    "smoother_server": ServerNode(_smoother, "smoother_server"),
     "controller_server": ServerNode(_controller, "controller_server", "local_costmap"),
     "behavior_server": ServerNode(_behaviors, "behavior_server", "local_costmap"),
     "recoveries_server": ServerNode(_behaviors, "recoveries_server", "local_costmap"),

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit import Params, Plugin, msgs
+from simkit import Params, msgs
 from simkit.errors import InputError, TransformError
 from simkit.extend import NEVER, Options, OptionsOf, integer, number, offers, text
 from simkit.msgs.goal_status import GoalStatus
 from simkit_navigation.plugins.lifecycle_state import GET_STATE, answer_active
+from simkit_navigation.plugins.navigation.node_parameters import NodeParameters
 from simkit_navigation.plugins.navigation.planar_pose import (
     Floats,
     PlanarPose,
@@ -88,7 +89,7 @@ class _Task:
     is_follow_retried: bool = False
 
 
-class BtNavigator(Plugin):
+class BtNavigator(NodeParameters):
     """Navigates to poses: actions `navigate_to_pose` and `navigate_through_poses`, topic `goal_pose`.
 
     The behaviour is that of Nav2's tree `navigate_to_pose_w_replanning_and_recovery`: a new path at `<planning_rate>`;
@@ -99,6 +100,7 @@ class BtNavigator(Plugin):
     filenames = ("libsimkit_bt_navigator.so",)
     names = ("simkit::BtNavigator", "nav2_bt_navigator::BtNavigator")
     parent_kind = ("world", "model")
+    executable = "bt_navigator"
     options = OptionsOf(BtNavigatorOptions)
     endpoints = (offers("~/get_state", GET_STATE),)
     before_step_rate = NEVER
