@@ -57,7 +57,7 @@ def test_each_replaced_class_and_each_parameter_without_effect_is_told_once(fold
         sim.run(0.5)
         told = "\n".join(warnings(sim, "SK-NAV-001"))
         assert "voxel_layer" not in told
-        assert "RegulatedPurePursuitController replaces dwb_core::DWBLocalPlanner" in told
+        assert "RegulatedPurePursuitController replaces teb_local_planner::TebLocalPlannerROS" in told
         assert "GridBased" not in told
         assert warnings(sim, "SK-NAV-002") == ["/amcl: no effect here: max_speed"]
         assert not [item for item in sim.diagnostics if item.code in ("SK-PARAM-003", "SK-SERVICE-004")]
