@@ -122,10 +122,12 @@ def execute(spec: RunSpec, parts: Sequence[RunPart], *, verbose: bool, quiet: bo
         blocked = stack.enter_context(BlockedPlugins(print_status))
         with load(spec.world, **spec.load_arguments()) as sim:
             try:
-                print_diagnostics([*spec.diagnostics, *sim.diagnostics], verbose=verbose)
-                if not verbose:
-                    _print_model_world(sim.diagnostics)
-                add_nodes(spec, sim)
+                try:
+                    add_nodes(spec, sim)
+                finally:
+                    print_diagnostics([*spec.diagnostics, *sim.diagnostics], verbose=verbose)
+                    if not verbose:
+                        _print_model_world(sim.diagnostics)
                 verdict.code = Session(spec, parts, sim, blocked, verdict, quiet=quiet).execute()
             finally:
                 add_diagnostics([*spec.diagnostics, *sim.diagnostics])

@@ -311,6 +311,7 @@ class Plugin(abc.ABC):
     def _describe(self, name: str, scoped: str, params: Params, where: Where) -> None:
         self.name, self.scoped, self.params, self.where = name, scoped, params, where
         self.ros = RosNames.from_params(self.params, self.name)
+        self.ros.scoped = scoped
         if self.params.has("on_error"):
             from simkit.runtime.engine.plugin_faults import PLUGIN_ERROR_POLICIES
 
@@ -328,6 +329,11 @@ class Plugin(abc.ABC):
         if rate != self.after_step_rate:
             self.after_step_rate = rate
             self.sim.engine.reschedule()
+
+    @property
+    def node_names(self) -> tuple[str, ...]:
+        """Full names of the nodes whose parameters the plugin has."""
+        return (f"{self.ros.namespace}/{self.ros.node}",)
 
     def report_unread(self) -> None:
         """Warn about elements of the file that the plugin did not read; done after `load`."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -132,18 +132,30 @@ class RosArguments(SharedByCopies):
         return self._files
 
     def values_of(
-        self, node: str, name: str | None, find: Callable[[str], Path | None], diagnostics: Diagnostics
+        self,
+        node: str,
+        name: str | None,
+        find: Callable[[str], Path | None],
+        diagnostics: Diagnostics,
+        before: Sequence[ParameterFile] = (),
     ) -> ParameterBlock | None:
         """Return the parameters of a node by its full name; None if there is no value for the parameter `name`.
 
         If `name` is None, one parameter of any name is enough.
+
+        Args:
+            node: full name of the node.
+            name: name of the parameter.
+            find: function that returns the file of a URI; None if there is no such file.
+            diagnostics: collector of the problems.
+            before: parameter files whose values those of the arguments replace.
         """
-        if not self._settings:
+        if not self._settings and not before:
             return None
         from simkit.plugins.ros_parameter_files import ParameterFiles
 
         self._used |= {"", name} if name is not None else {setting.name for setting in self._settings}
-        entry = ParameterFiles(self.parameter_files(find, diagnostics)).of_node(node)
+        entry = ParameterFiles([*before, *self.parameter_files(find, diagnostics)]).of_node(node)
         has_value = entry is not None and (name is None or name in (entry.below or {}))
         return entry.block(node, diagnostics) if entry is not None and has_value else None
 

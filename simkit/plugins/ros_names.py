@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from simkit.plugins.ros_parameter_block import ParameterBlock
 
 
+WITHOUT_RUN_FILES = "without_run_files"
+"""Element of `<ros>` in the plugin of a node, which has read the parameter files of the run itself."""
+
+
 def is_ros_1(params: Params, names: Iterable[str]) -> bool:
     """Check whether a plugin's parameters are those of ROS 1: one of `names` occurs, and there is no `<ros>` block."""
     return not params.has("ros") and any(params.has(name) for name in names)
@@ -33,6 +37,8 @@ class RosNames(SharedByCopies):
 
     Attributes:
         arguments: arguments of the node, as after `--ros-args`.
+        scoped: scoped name of the model with the plugin; empty for a plugin of the world.
+        has_run_files: False if the parameter files of the run do not concern the plugin.
     """
 
     def __init__(
@@ -44,7 +50,7 @@ class RosNames(SharedByCopies):
     ) -> None:
         self.node, self._original_node = node, node  # rules for a node use its name without remapping
         self._params, self._remappings = params, remappings
-        self.arguments = RosArguments(None)
+        self.arguments, self.scoped, self.has_run_files = RosArguments(None), "", True
         self._set_namespace(namespace)
 
     def _set_namespace(self, namespace: str) -> None:
@@ -61,6 +67,7 @@ class RosNames(SharedByCopies):
             namespace = ros.text("namespace", namespace)
         names = cls(node, namespace, params=params)
         names.arguments = RosArguments(ros)
+        names.has_run_files = ros is None or not ros.boolean(WITHOUT_RUN_FILES, False)
         special = names.arguments.special_names(node)
         names.node = special.get("__node", special.get("__name", node))
         names._set_namespace(special.get("__ns", namespace))
@@ -69,17 +76,28 @@ class RosNames(SharedByCopies):
     def in_namespace(self, namespace: str) -> RosNames:
         """Return the names of the same node, with the same arguments, in another namespace."""
         names = RosNames(self.node, namespace, self._remappings, self._params)
-        names.arguments = self.arguments
+        names.arguments, names.scoped, names.has_run_files = self.arguments, self.scoped, self.has_run_files
         names._set_namespace(namespace)
         return names
 
     def values_with(self, name: str | None, builder: SpecBuilder) -> ParameterBlock | None:
-        """Return the parameters of the node in the arguments; None if there is no value for the parameter `name`.
+        """Return the parameters of the node in the files of the run and in the arguments, whose values come last.
 
-        Without a name, one parameter of any name is enough.
+        None if there is no value for the parameter `name`. Without a name, one parameter of any name is enough.
         """
         if self._params is None:
             return None
+        return self.values_of_node(f"{self.namespace}/{self.node}", name, builder)
+
+    def values_of_node(self, full_name: str, name: str | None, builder: SpecBuilder) -> ParameterBlock | None:
+        """Return the parameters of a node by its full name, which may be another one than that of the plugin.
+
+        Args:
+            full_name: full name of the node, such as `/global_costmap/global_costmap`.
+            name: parameter that must be there; None for one of any name.
+            builder: finds the files, and has those of the run (`--params-file`).
+        """
+        assert self._params is not None
         file = self._params.where.file
         folder = Path(file).resolve().parent if file else None
 
@@ -91,7 +109,9 @@ class RosNames(SharedByCopies):
             builder.files_read += [path] if path is not None and path.is_file() else []
             return path if path is not None and path.is_file() else None
 
-        return self.arguments.values_of(f"{self.namespace}/{self.node}", name, find, self._params.diagnostics)
+        files = builder.parameter_files if self.has_run_files else ()
+        of_run = [item.file for item in files if item.is_for_plugin(self.scoped)]
+        return self.arguments.values_of(full_name, name, find, self._params.diagnostics, of_run)
 
     def topic_of_node(self, name: str, node: str, own_rules: Iterable[tuple[str, str]] = ()) -> str:
         """Return the name of a topic in another node of the plugin, such as a controller: `~/x` becomes `node/x`.

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
-from simkit.plugins.ros_parameter_files import ParameterFile, read_parameter_file
+from simkit.plugins.ros_parameter_files import ParameterFile, node_matches, read_parameter_file
 from simkit.run_files import is_there, model_and_file
 
 if TYPE_CHECKING:
@@ -39,8 +39,18 @@ class RunParameterFile:
 
     def is_for(self, model: SceneModel) -> bool:
         """Check whether plugins of a model read the file: for all models, for this model or for an outer model."""
-        scoped = f"{model.scoped}::"
-        return not self.model or self.model == model.name or scoped.startswith(f"{self.model}::")
+        return self.model == model.name or self.is_for_plugin(model.scoped)
+
+    def is_for_plugin(self, scoped: str) -> bool:
+        """Check whether a plugin of a model reads the file, by the scoped name of the model; empty for the world."""
+        return not self.model or f"{scoped}::".startswith(f"{self.model}::")
+
+    def names_node(self, full_name: str) -> bool:
+        """Check whether the file has parameters of a node: under its name, not under a pattern for all nodes."""
+        if self.file.root is not None:
+            return False
+        patterns = (pattern for pattern, _ in self.file.nodes if pattern.strip("/*"))
+        return any(node_matches(pattern, full_name) for pattern in patterns)
 
 
 def read_run_parameter_files(
@@ -114,7 +124,7 @@ def report_unused_control(
     with_hosts = {plugin.scoped for plugin in plugins if plugin.reads_parameter_files}
     hosts = [model for model in models if model.scoped in with_hosts]
     for file in parameter_files:
-        if any(file.is_for(model) for model in hosts):
+        if any(file.is_for(model) for model in hosts) or _is_read(file, plugins):
             continue
         name, where = file.file.path.name, Where(str(file.file.path), 1)
         if file.model and not any(file.is_for(model) for model in models):
@@ -125,6 +135,12 @@ def report_unused_control(
             message = f"no plugin reads {name}: {owner} has {'no' if file.model else 'a'} control plugin"
             hint = "add libgazebo_ros_control.so, libgazebo_ros2_control.so or gz_ros2_control to the robot"
         diagnostics.warning("SK-CONTROL-060", message, where, hint)
+
+
+def _is_read(file: RunParameterFile, plugins: Iterable[AttachedPlugin]) -> bool:
+    """Check whether a parameter file has a block for the node of one of the plugins."""
+    names = (name for plugin in plugins if file.is_for_plugin(plugin.scoped) for name in plugin.node_names)
+    return any(map(file.names_node, names))
 
 
 def _report_unloaded_controllers(

@@ -25,7 +25,7 @@ TWO_FAULTS = """<sdf version="1.9"><world name="w">
     <plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">
       <left_joint>ljj</left_joint><right_joint>rj</right_joint>
     </plugin>
-    <plugin filename="libsolar_sensor.so" name="solar"><light_name>sun</light_name></plugin>
+    <plugin filename="libsolar_sensor.so" name="solar"><frame_name>sun</frame_name></plugin>
   </model>
 </world></sdf>
 """
@@ -59,7 +59,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_diagnostics_of_plugins_are_printed_with_the_errors_of_the_file(here: Path) -> None:
-    """A joint that a plugin misses, and a light that it misses when it is loaded, beside two faults of the file."""
+    """A joint that a plugin misses, and a link that another one misses, beside two faults of the file."""
     found = [d for d in simkit.check(TWO_FAULTS) if d.severity == "error"]
     said = sorted(f"{d.code} {d.line}" for d in found)
     assert said == ["SK-PLUGIN-003 11", "SK-PLUGIN-003 8", "SK-SDF-008 7", "SK-SDF-025 2"]

@@ -179,7 +179,7 @@ PLUGINS = {
       <wheel_diameter>0.1</wheel_diameter><max_wheel_torque>20</max_wheel_torque><update_rate>50</update_rate>
       <max_wheel_acceleration>1</max_wheel_acceleration><odometry_source>1</odometry_source><publish_odom>1</publish_odom>
       <covariance_x>0.1</covariance_x><covariance_y>0.1</covariance_y><covariance_yaw>0.1</covariance_yaw>""",
-    "libsolar_sensor.so": """<light_name>sun</light_name><gaussian_noise>0.1</gaussian_noise>
+    "libsolar_sensor.so": """<light_name>sun</light_name><rpy_noise>0.1</rpy_noise>
       <update_rate>50</update_rate>""",
     "gz-sim-trajectory-follower-system": """<link_name>l</link_name><force>1</force><torque>1</torque><loop>1</loop>
       <range_tolerance>0.5</range_tolerance><bearing_tolerance>2</bearing_tolerance><zero_vel_on_bearing_reached>1

@@ -219,7 +219,7 @@ def test_a_spawn_with_an_existing_name_is_an_error():
 
 def test_a_model_whose_plugin_has_an_error_is_not_spawned():
     broken = BOX.format(name="box", x=3.0).replace(
-        "</model>", '<plugin name="p" filename="libsolar_sensor.so"><light_name>nowhere</light_name></plugin></model>'
+        "</model>", '<plugin name="p" filename="libsolar_sensor.so"><frame_name>nowhere</frame_name></plugin></model>'
     )
     with load(BALL.format(extra="")) as sim:
         sim.step(10)

@@ -85,7 +85,7 @@ def _split(argument: str) -> list[str]:
 
 def _parsed(words: Sequence[str], *, is_classic: bool) -> SimulatorCommand:
     world, seed, waits, is_client = "", None, not is_classic, False
-    rest = list(words)
+    rest = _without_ros_arguments(words)
     while rest:
         word = rest.pop(0)
         if not word.startswith("-"):
@@ -105,6 +105,19 @@ def _parsed(words: Sequence[str], *, is_classic: bool) -> SimulatorCommand:
         else:
             waits = waits or name in ("-u", "--pause")
     return SimulatorCommand(world, is_client and not world, waits, seed)
+
+
+def _without_ros_arguments(words: Sequence[str]) -> list[str]:
+    """Return the words that are not between `--ros-args` and `--` or the end of the command."""
+    kept, is_kept = [], True
+    for word in words:
+        if word == "--ros-args":
+            is_kept = False
+        elif not is_kept and word == "--":
+            is_kept = True
+        elif is_kept:
+            kept.append(word)
+    return kept
 
 
 def _is_world(word: str) -> bool:

@@ -26,6 +26,8 @@ TALKER = "import rclpy\nrclpy.init()\n"
         (("ign", "gazebo", "shapes.sdf"), SimulatorCommand("shapes.sdf", waits=True)),
         (("gz", "sim", "-g"), SimulatorCommand(is_client=True, waits=True)),
         (("gzserver", "-s", "libgazebo_ros_init.so", "--verbose", "w.world"), SimulatorCommand("w.world")),
+        (("gzserver", "", "--ros-args", "--params-file", "p.yaml"), SimulatorCommand()),
+        (("gzserver", "--ros-args", "-p", "a:=1", "--", "w.world"), SimulatorCommand("w.world")),
         (("gazebo", "--pause", "w.world"), SimulatorCommand("w.world", waits=True)),
         (("gzclient",), SimulatorCommand(is_client=True)),
         (("gz", "topic", "-l"), None),

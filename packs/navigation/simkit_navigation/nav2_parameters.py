@@ -8,11 +8,14 @@ from __future__ import annotations
 
 import html
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Final
 
-from simkit import Plugin
+from simkit import Params, Plugin
+from simkit.diagnostic_record import TEXT_SOURCE
+from simkit.diagnostics import NOWHERE, Diagnostic, Diagnostics, Where
+from simkit.plugins.ros_names import WITHOUT_RUN_FILES
 from simkit.plugins.unread_parameters import names_read
 from simkit_navigation.plugins.localisation.amcl import Amcl
 from simkit_navigation.plugins.localisation.robot_localization import EkfNode
@@ -24,6 +27,8 @@ from simkit_navigation.plugins.navigation.planner_server import PlannerServer
 
 Values = dict[str, object]
 """Values of parameters; blocks are dictionaries."""
+Places = Mapping[str, Where]
+"""Places of values in files by their names, such as `FollowPath.max_vel_x`."""
 
 _ELEMENT: Final = re.compile(r"[A-Za-z_][\w.-]*")
 _EKF_INPUT: Final = re.compile(
@@ -61,26 +66,42 @@ class PluginOfNode:
     blocks: list[str] = field(default_factory=list)
     told: list[str] = field(default_factory=list)
 
-    def elements(self, unused: list[str]) -> str:
-        """Return the elements of the plugin in a file.
+    def params(self, places: Places, unused: list[str], diagnostics: Diagnostics | None = None) -> Params:
+        """Return the parameters of the plugin as elements.
 
         Args:
+            places: places of the values by their names in the files.
             unused: list to which the names of parameters without an effect are added.
+            diagnostics: collector of the problems with the values.
         """
         names = {part for name in names_read(self.kind) for part in name.split(".")} | set(self.blocks)
-        return "".join(_elements(self.values, names, "", unused))
+        root = Params("plugin", diagnostics=diagnostics)
+        root.where = next(iter(places.values()), NOWHERE)
+        _add_elements(root, self.values, names, "", unused, places)
+        return root
 
 
-def _elements(values: Mapping[str, object], names: Collection[str], prefix: str, unused: list[str]) -> Iterator[str]:
+def _add_elements(
+    element: Params,
+    values: Mapping[str, object],
+    names: Collection[str],
+    prefix: str,
+    unused: list[str],
+    places: Places,
+) -> None:
+    """Add the values that have an effect to an element; a value without a place has that of its block."""
     for key, value in values.items():
         is_known = _ELEMENT.fullmatch(key) is not None and (key in names or _EKF_INPUT.fullmatch(key) is not None)
         if not is_known:
             if prefix or key not in _OF_ALL_NODES:
                 unused.append(f"{prefix}{key}")
-        elif isinstance(value, Mapping):
-            yield f"<{key}>{''.join(_elements(value, names, f'{prefix}{key}.', unused))}</{key}>"
-        else:
-            yield f"<{key}>{html.escape(_text(value))}</{key}>"
+            continue
+        where = places.get(f"{prefix}{key}", element.where)
+        text = "" if isinstance(value, Mapping) else _text(value)
+        child = Params(key, text, where=where, diagnostics=element.diagnostics)
+        if isinstance(value, Mapping):
+            _add_elements(child, value, names, f"{prefix}{key}.", unused, places)
+        element.children.append(child)
 
 
 def _text(value: object) -> str:
@@ -104,22 +125,62 @@ def nested(values: Mapping[str, object]) -> Values:
     return tree
 
 
-def model_of_plugins(model: str, plugins: Sequence[PluginOfNode], ros: str, unused: list[str]) -> str:
-    """Return a static model without a shape whose plugins do the work of a node.
+def shortened(names: Sequence[str]) -> str:
+    """Return a list of names as text; of a long list, the first twelve and the number of the others."""
+    return ", ".join(names[:12]) + (f" and {len(names) - 12} others" if len(names) > 12 else "")
+
+
+class ModelOfPlugins:
+    """Static model without a shape whose plugins do the work of a node.
 
     Args:
-        model: name of the model.
-        plugins: plugins.
-        ros: content of their blocks `<ros>`.
-        unused: list to which the names of parameters without an effect are added.
+        name: name of the model.
+        ros: content of the blocks `<ros>` of its plugins.
+
+    Attributes:
+        unused: names of parameters without an effect.
     """
-    texts = (
-        f'<plugin filename="{plugin.kind.filenames[0]}" name="{plugin.name}"><ros>{ros}</ros>'
-        f"{plugin.elements(unused)}</plugin>"
-        for plugin in plugins
-    )
-    link = '<static>true</static><link name="link"/>'
-    return f'<sdf version="1.9"><model name="{model}">{link}{"".join(texts)}</model></sdf>'
+
+    def __init__(self, name: str, ros: str) -> None:
+        self._name, self._ros = name, ros
+        self._lines = ["", ""]  # the lines of the model begin after those
+        self._places: dict[int, Where] = {}
+        self.unused: list[str] = []
+
+    def add(self, plugin: PluginOfNode, places: Places) -> None:
+        """Add a plugin.
+
+        Args:
+            plugin: plugin.
+            places: places of its values by their names in the files.
+        """
+        params = plugin.params(places, self.unused)
+        ros = f"<ros><{WITHOUT_RUN_FILES}>true</{WITHOUT_RUN_FILES}>{self._ros}</ros>"
+        start = f'<plugin filename="{plugin.kind.filenames[0]}" name="{plugin.name}">{ros}'
+        self._add_line(start, params.where)
+        self._add_children(params)
+        self._add_line("</plugin>", params.where)
+
+    def _add_children(self, element: Params) -> None:
+        for child in element.children:
+            self._add_line(f"<{child.name}>{html.escape(child.value)}", child.where)
+            self._add_children(child)
+            self._lines[-1] += f"</{child.name}>"
+
+    def _add_line(self, text: str, where: Where) -> None:
+        self._lines.append(text)
+        self._places[len(self._lines)] = where
+
+    @property
+    def text(self) -> str:
+        """Text of the model, with a line for each element."""
+        first = f'<sdf version="1.9"><model name="{self._name}">', '<static>true</static><link name="link"/>'
+        return "\n".join((*first, *self._lines[2:], "</model></sdf>"))
+
+    def placed(self, item: Diagnostic) -> Diagnostic:
+        """Return a diagnostic of the text with the place of the value in its file; another one is unchanged."""
+        where = self._places.get(item.line or 0) if item.file == TEXT_SOURCE else None
+        return item if where is None or not where.file else replace(item, file=where.file, line=where.line)
 
 
 # ---------------------------------------------------------------------- tables of the nodes
@@ -181,6 +242,11 @@ def _costmap(name: str, values: Values) -> PluginOfNode:
         if isinstance(block, dict) and "plugin" in block and layers and block_name not in kept:
             plugin.values.pop(block_name, None)
     return plugin
+
+
+def costmap_plugin(name: str, values: Values) -> PluginOfNode:
+    """Return the plugin of a costmap with the parameters of its node."""
+    return _costmap(name, values)
 
 
 _LAYERS: Final = frozenset(("StaticLayer", "ObstacleLayer", "InflationLayer"))

@@ -130,12 +130,13 @@ class LockStep(TaskHost):
         source = program if callable(program) else program_source(program, package_paths, self.graph.shared)
         if isinstance(source, KnownNode) and source.nothing:
             self._sim.engine.reports.note("SK-NODE-064", f"{source.name} has no effect here: {source.nothing}")
+        files = self._run_parameter_files()
         options = NodeOptions(
             name=name,
             namespace=namespace,
             remap=copy(remap),
             params=copy(params),
-            args=copy(args),
+            args=(*files, *args) if files and not isinstance(args, str) else copy(args),
             latency=latency,
             discovery=discovery,
             limit=limit,
@@ -159,6 +160,16 @@ class LockStep(TaskHost):
             self._loads_controllers = True
         self._prepare_start(added)
         return added
+
+    def _run_parameter_files(self) -> tuple[str, ...]:
+        """Return the arguments with the parameter files of the run (`--params-file`) for all models, as for ROS 2."""
+        files = self._sim.engine.structure.builder.parameter_files
+        paths = [item.file.path for item in files if not item.model and item.file.root is None]
+        if not paths:
+            return ()
+        reports, names = self._sim.engine.reports, {str(path) for path in paths}
+        reports.drop([item for item in reports if item.code == "SK-CONTROL-060" and item.file in names])
+        return ("--ros-args", *(word for path in paths for word in ("--params-file", str(path))), "--")
 
     def set_parameters(self, values: Mapping[str, object]) -> None:
         """Set parameters of ROS 1 for all programs. See `Simulation.set_ros_parameters`."""

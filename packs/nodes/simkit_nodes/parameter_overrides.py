@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final
 
 import yaml
 
+from simkit.diagnostics import Where
 from simkit.errors import InputError
 from simkit.input_file import read_failure, read_input_text
 from simkit.plugins.ros_parameter_files import node_matches
@@ -49,6 +51,32 @@ def parameter_overrides(
             values[name] = rule_value(name, text)
     values.update(flat_values(params))
     return values
+
+
+def parameter_places(node: str, arguments: RosArguments) -> dict[str, Where]:
+    """Return file and line of each value and block of a node's parameter files, by its name with dots.
+
+    Args:
+        node: full name of the node.
+        arguments: arguments after `--ros-args`.
+
+    Raises:
+        InputError: SK-NODE-031 a file cannot be read.
+    """
+    places: dict[str, Where] = {}
+    for path in arguments.parameter_files:
+        for pattern, block in _nodes_of_file(Path(path)):
+            if node_matches(pattern, node):
+                places.update(_places("", block, path))
+    return places
+
+
+def _places(prefix: str, block: yaml.Node, path: str) -> Iterator[tuple[str, Where]]:
+    if isinstance(block, yaml.MappingNode):
+        for key, below in block.value:
+            name = f"{prefix}.{key.value}" if prefix else str(key.value)
+            yield name, Where(path, key.start_mark.line + 1)
+            yield from _places(name, below, path)
 
 
 def check_parameters(arguments: RosArguments) -> None:
@@ -116,9 +144,14 @@ def file_values(path: Path) -> Iterator[tuple[str, str, ParameterContent]]:
 
 def _nodes_of_file(path: Path) -> Iterator[tuple[str, yaml.Node]]:
     """Yield the pattern of each node's name in a file, and the block of its parameters."""
-    root = _read_yaml(path, lambda text: yaml.compose(text, yaml.SafeLoader))
+    root = _read_yaml(path, _composed)
     if isinstance(root, (yaml.MappingNode, yaml.SequenceNode)):  # rcl accepts an empty file, and a single word
         yield from _nodes_of_block(root, "", path)
+
+
+@lru_cache(maxsize=8)  # all nodes of a launch file read the same long file
+def _composed(text: str) -> yaml.Node | None:
+    return yaml.compose(text, yaml.SafeLoader)
 
 
 def _read_yaml(path: Path, read: Callable[[str], Any]) -> Any:

@@ -10,20 +10,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from simkit import msgs
-from simkit.diagnostics import NOWHERE
+from simkit.diagnostics import NOWHERE, did_you_mean
 from simkit.linear_algebra import matmul
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import publishes
-from simkit.plugins.find_entities import find_light, find_link
-from simkit.plugins.options import Options, OptionsOf, block, boolean, choice, number, text, vector3
+from simkit.plugins.find_entities import find_link
+from simkit.plugins.options import Options, OptionsOf, block, boolean, choice, number, text, vector3, without_effect
 from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate, quat_to_matrix
 from simkit.sensors.environment import solar_irradiance
 from simkit.sensors.environment.solar_irradiance import SolarReading, SolarView
 
 if TYPE_CHECKING:
     from simkit.compiler import Compiled, SpecBuilder
-    from simkit.runtime import Light, Model, Simulation
+    from simkit.runtime import Light, Model
     from simkit.runtime.communication.publisher import Publisher
     from simkit.scene import SceneModel
 
@@ -47,9 +47,11 @@ class SolarSensorOptions(Options):
     body_name: str = text()
     xyz_offsets: tuple[float, float, float] = vector3(unit="m")
     xyz_offset: tuple[float, float, float] = vector3(unit="m")
-    rpy_offsets: tuple[float, float, float] = vector3(unit="rad")
-    rpy_offset: tuple[float, float, float] = vector3(unit="rad")
+    rpy_offsets: bool = without_effect()
+    rpy_offset: bool = without_effect()
+    rotation: tuple[float, float, float] = vector3(unit="rad")
     gaussian_noise: float = number(0.0, minimum=0, maximum=LARGEST)
+    rpy_noise: float = number(0.0, minimum=0, maximum=LARGEST)
     angular_noise: float = number(0.0, minimum=0, maximum=LARGEST)
     normal: tuple[float, float, float] = vector3((0.0, 0.0, 1.0))
     irradiance: str = text()
@@ -66,18 +68,20 @@ class SolarSensor(ModelPlugin):
     """Publishes the direction of a light, seen from a link, as the orientation of an `Imu` on `sunloin_imu`.
 
     Let (x, y, z) be the unit vector from the link's origin to the light, in the link's axes, plus `<xyz_offset>`. The
-    orientation has pitch = asin(-z) and yaw = atan2(y, x), so its x axis points at the light. `<rpy_offset>` then turns
-    this orientation.
+    orientation has pitch = asin(-z) and yaw = atan2(y, x), so its x axis points at the light. The course's listing
+    reads `<rpy_offset>` and does not use it for the message, so it has no effect here either. A missing light is a
+    warning and a line of the log, as in the listing: the sensor publishes nothing, and the world runs.
 
     `<frame_name>` is the message's frame and also names the link. If the link has another name, write that name into
-    `<body_name>`. The default is the model's canonical link. `<gaussian_noise>` [rad] is the standard deviation of
-    independent noise on roll, pitch and yaw; its square is on the diagonal of the covariance. `<update_rate>` is in Hz;
-    0 means every step.
+    `<body_name>`. The default is the model's canonical link. The square of `<gaussian_noise>` [rad] is on the diagonal
+    of the covariance; the orientation itself has no noise. `<update_rate>` is in Hz; 0 means every step.
 
     simkit adds options, which are all off by default. `<simkit:shadow>`, `<simkit:field_of_view>`,
     `<simkit:irradiance>`, `<simkit:panel>`, `<simkit:falloff>` and `<simkit:normal>` have the same meaning as in the
-    `solar_irradiance` sensor; their readings are on topics below `sunloin_imu`. `<simkit:angular_noise>` [rad] turns
-    the direction about a random perpendicular axis. If `<simkit:towards>` is `direction`, the rays of a directional
+    `solar_irradiance` sensor; their readings are on topics below `sunloin_imu`. `<simkit:rpy_noise>` [rad] is the
+    standard deviation of independent noise on roll, pitch and yaw, and `<simkit:angular_noise>` [rad] turns the
+    direction about a random perpendicular axis; both add their variance to the covariance. `<simkit:rotation>` [rad]
+    turns the orientation by roll, pitch and yaw. If `<simkit:towards>` is `direction`, the rays of a directional
     light are parallel.
     """
 
@@ -98,24 +102,47 @@ class SolarSensor(ModelPlugin):
         link = find_link(scene, name, params) if name else None
         self._link_name = link.scoped if link else scene.canonical_link
         self._frame = frame or self._link_name.rsplit("::", 1)[-1]
-        self._xyz = _offset(params, "xyz_offset")
-        self._rpy = _offset(params, "rpy_offset")
-        self._noise = self.options.gaussian_noise
+        self._xyz = _offset(params)
+        self._rpy = self.options.rotation
+        self._noise = self.options.rpy_noise
         self._angular = self.options.angular_noise
         self._options = solar_irradiance.read_solar_options(params, "position")
         self.after_step_rate = self.options.update_rate
 
     def load(self, parent: Model, params: Params) -> None:
-        self._light = _find_light(self.sim, params, self.options.light_name)
+        for name in ("rpy_offset", "rpy_offsets"):
+            if (child := params.child(name)) is not None:
+                message = f"<{name}> has no effect: the plugin of the course does not use it for the message"
+                params.diagnostics.note(
+                    "SK-PLUGIN-095", message, child.where, "<simkit:rotation> turns the orientation"
+                )
+        self._light = self._find_light(params)
         self._link = self.sim.link(self._link_name)
         self._turn = quat_from_rpy(*self._rpy)
         self._turn_matrix = quat_to_matrix(self._turn)
-        self._covariance = np.eye(3).reshape(9) * self._noise**2
+        self._covariance = np.eye(3).reshape(9) * (self.options.gaussian_noise**2 + self._noise**2)
         self._stream = self.random("gaussian_noise", 3) if self._noise > 0 else None
         self._angular_stream = self.random("angular_noise", 2) if self._angular > 0 else None
         self._index = 0
         self._readings = self.advertise("sunloin_imu", IMU)
         self._create_view(params)
+
+    def _find_light(self, params: Params) -> Light | None:
+        """Return the light that `<light_name>` names; None after a diagnostic and a line of the log."""
+        sim, name = self.sim, self.options.light_name
+        lights = sim.contents.lights
+        if name in lights:
+            return lights[name]
+        if name and not lights and sim.world.where == NOWHERE:
+            message = f"a model without a world has no light {name!r}; nothing is published until a world has it"
+            params.diagnostics.note("SK-PLUGIN-009", message, params.where)
+            return None
+        listed = ", ".join(repr(n) for n in sorted(lights)) or "none"
+        problem = f"there is no light {name!r}" if name else f"<{params.name}> has no <light_name>"
+        message = f"{problem}; this sensor publishes nothing; the lights are: {listed}"
+        params.warning("SK-PLUGIN-094", message, did_you_mean(name, lights))
+        self.log.error(message)
+        return None
 
     def _create_view(self, params: Params) -> None:
         """Create the view of the light, and open the topics of the options that the file enables."""
@@ -209,23 +236,10 @@ class SolarSensor(ModelPlugin):
         return math.asin(-max(-1.0, min(1.0, z))), math.atan2(y, x)
 
 
-def _find_light(sim: Simulation, params: Params, name: str) -> Light | None:
-    """Return the light that `<light_name>` names; None after an error, or after a note if there is no world."""
-    if name and not sim.contents.lights and sim.world.where == NOWHERE:
-        message = f"a model without a world has no light {name!r}; nothing is published until a world has this light"
-        params.diagnostics.note("SK-PLUGIN-009", message, params.where)
-        return None
-    if name:
-        return find_light(sim, name, params)
-    listed = ", ".join(repr(n) for n in sorted(sim.contents.lights)) or "none"
-    params.error("SK-PARAM-001", f"<{params.name}> needs <light_name>: the name of a light", f"lights are: {listed}")
-    return None
-
-
-def _offset(params: Params, name: str) -> tuple[float, float, float]:
-    """Read the numbers of an element [m or rad]; the old spelling, with an s at the end, causes a warning."""
-    older = params.child(name + "s")
-    if older is None or params.has(name):
-        return params.vector3(name, (0.0, 0.0, 0.0))
-    params.diagnostics.warning("SK-PARAM-004", f"<{older.name}> is an old spelling", older.where, f"write <{name}>")
-    return params.vector3(name + "s", (0.0, 0.0, 0.0))
+def _offset(params: Params) -> tuple[float, float, float]:
+    """Read the numbers of `<xyz_offset>`; the old spelling, with an s at the end, causes a warning."""
+    older = params.child("xyz_offsets")
+    if older is None or params.has("xyz_offset"):
+        return params.vector3("xyz_offset", (0.0, 0.0, 0.0))
+    params.diagnostics.warning("SK-PARAM-004", f"<{older.name}> is an old spelling", older.where, "write <xyz_offset>")
+    return params.vector3("xyz_offsets", (0.0, 0.0, 0.0))

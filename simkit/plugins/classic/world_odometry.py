@@ -26,30 +26,31 @@ if TYPE_CHECKING:
 class GazeboWorldOdometryOptions(Options):
     """Options of `GazeboWorldOdometry`."""
 
-    frame_name: str = text("world", element="frameName")
-    body_name: str = text(element="bodyName", required=True)
-    topic_name: str = text("ft_data", element="topicName")
-    update_rate: float = number(1000.0, "Hz", element="updateRate", minimum=0)
+    frame_name: str = text("world", ros_1="frameName")
+    body_name: str = text(required=True, ros_1="bodyName")
+    topic_name: str = text("ft_data", ros_1="topicName")
+    update_rate: float = number(1000.0, "Hz", ros_1="updateRate", minimum=0)
 
 
 class GazeboWorldOdometry(ModelPlugin):
-    """Publishes the true pose of the link `<bodyName>` in the world on `<topicName>`, for any `<frameName>`.
+    """Publishes the true pose of the link `<body_name>` in the world on `<topic_name>`, for any `<frame_name>`.
 
-    As in Gazebo, `<frameName>` (`world`) sets only the frame of the message, and it names the link if there is no
-    `<bodyName>`. The linear velocity is in the world's axes, and the angular velocity in the link's axes.
-    `<updateRate>` is 1000 Hz by default. The live parameters `x_offset`, `y_offset` [m] and `yaw_offset` [rad] shift
+    As in Gazebo, `<frame_name>` (`world`) sets only the frame of the message, and it names the link if there is no
+    `<body_name>`. The linear velocity is in the world's axes, and the angular velocity in the link's axes.
+    `<update_rate>` is 1000 Hz by default. Files for ROS 1 write `<bodyName>`, `<topicName>` and so on. The live parameters `x_offset`, `y_offset` [m] and `yaw_offset` [rad] shift
     the published pose. `gaussian_noise` adds a random walk: the standard deviation of each step of x and y [m] and of
     the yaw [rad].
     """
 
-    endpoints = (publishes("ft_data", ODOMETRY, named_by=("topicName",)),)
+    endpoints = (publishes("ft_data", ODOMETRY, named_by=("topic_name", "topicName")),)
     options = OptionsOf(GazeboWorldOdometryOptions)
     filenames = ("libgazebo_world_odometry.so",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        self._frame = self.options.frame_name
-        element = "bodyName" if params.has("bodyName") or not params.has("frameName") else "frameName"
-        self._body = find_named_link(scene, element, params)
+        options = self.options
+        self._frame = options.frame_name
+        body, frame = options.element_of("body_name"), options.element_of("frame_name")
+        self._body = find_named_link(scene, body if params.has(body) or not params.has(frame) else frame, params)
         self._rate = self.options.update_rate
 
     def load(self, parent: Model, params: Params) -> None:

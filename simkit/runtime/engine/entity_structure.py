@@ -126,6 +126,10 @@ class AttachedPlugin(Protocol):
     def reads_parameter_files(self) -> bool:
         """True if the plugin reads the parameter files of the run."""
 
+    @property
+    def node_names(self) -> tuple[str, ...]:
+        """Full names of the nodes whose parameters the plugin has."""
+
     @classmethod
     def has_hook(cls, hook: Any) -> bool:
         """Check whether the plugin's class defines a hook."""

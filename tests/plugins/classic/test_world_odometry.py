@@ -37,6 +37,15 @@ def test_the_pose_is_in_the_world_with_the_named_frame_id() -> None:
         assert yaw(published.pose.pose.orientation) == pytest.approx(link.pose.rpy[2])
 
 
+def test_files_for_ros_2_have_the_same_elements_with_underscores() -> None:
+    with opened(body_name="arm", frame_name="world", topic_name="truth", update_rate=100) as sim:
+        odometry = sim.subscribe("/truth")
+        sim.run(0.1)
+        assert [d for d in sim.diagnostics if d.severity != "note"] == []
+        assert odometry.latest.child_frame_id == "arm"
+        assert len(odometry.messages) == 10
+
+
 def test_linear_velocity_is_in_the_worlds_axes_and_angular_in_the_links() -> None:
     with opened(bodyName="arm", topicName="truth", robotNamespace="pmb2", updateRate=100) as sim:
         odometry = sim.subscribe("/pmb2/truth")
@@ -79,7 +88,7 @@ def test_a_missing_link_is_an_error_with_the_closest_name() -> None:
     with pytest.raises(simkit.LoadError, match=r"SK-PLUGIN-003.*'arn'") as caught:
         opened(bodyName="arn", topicName="truth")
     assert "arm" in str(caught.value)
-    with pytest.raises(simkit.LoadError, match="SK-PARAM-001.*bodyName"):
+    with pytest.raises(simkit.LoadError, match="SK-PARAM-001.*body_name"):
         opened(topicName="truth")
 
 

@@ -24,6 +24,8 @@ PARAMETERS = "ros__parameters"
 
 def parse_words(words: list[str]) -> tuple[argparse.Namespace, list[argparse.Namespace]]:
     """Read a command line: options for all controllers, and those of each controller."""
+    # an empty word is an option that is not set, unless it is the value of the option before it
+    words = [word for before, word in pairwise(["", *words]) if word or before.startswith("-")]
     parser = argparse.ArgumentParser(prog="spawner", allow_abbrev=False)
     parser.add_argument("-c", "--controller-manager", default="controller_manager")
     parser.add_argument("--controller-manager-timeout", type=float, default=0.0)
@@ -60,7 +62,7 @@ def parse_words(words: list[str]) -> tuple[argparse.Namespace, list[argparse.Nam
     shared, rest = own.parse_known_args(words)
     parser.add_argument("controllers", nargs="+")
     parsed = parser.parse_args(rest)
-    names = [name for name in parsed.controllers if name]  # an empty word is an option that is not set
+    names = [name for name in parsed.controllers if name]
     return parsed, [argparse.Namespace(**{**vars(shared), "name": name}) for name in names]
 
 

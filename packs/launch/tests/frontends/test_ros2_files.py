@@ -485,3 +485,24 @@ def test_all_errors_of_a_yaml_file_are_found_in_one_pass(read_yaml: Read) -> Non
 def test_a_file_that_is_no_launch_file_is_an_error(read_yaml: Read, text: str, message: str) -> None:
     (found,) = errors(read_yaml, text)
     assert message in found
+
+
+def test_the_launch_file_of_twist_mux_passes_its_files_and_its_output(read: Read, tmp_path: Path) -> None:
+    arguments = f'<arg name="config_topics" value="{tmp_path}/t.yaml"/><arg name="cmd_vel_out" value="base/cmd_vel"/>'
+    file = "$(find-pkg-share twist_mux)/launch/twist_mux_launch.py"
+    sources = {"t.yaml": "twist_mux: {ros__parameters: {topics: {keys: {topic: key_vel}}}}"}
+    process = only_process(read(f'<include file="{file}">{arguments}</include>', files=sources))
+    assert (process.package, process.executable) == ("twist_mux", "twist_mux")
+    assert ("cmd_vel_out", "base/cmd_vel") in process.remappings
+    assert any(str(each).endswith("t.yaml") for each in process.parameters)
+
+
+def test_a_load_controller_description_of_humble_names_the_type(tmp_path: Path) -> None:
+    """Humble's function has the argument `controller_type`, which later versions do not have."""
+    file = tmp_path / "arm.launch.py"
+    file.write_text(
+        "from controller_manager.launch_utils import generate_load_controller_launch_description as load\n"
+        "def generate_launch_description():\n    return load(controller_name='arm', controller_type='a/B')\n"
+    )
+    arguments = only_process(read_launch_file(file, {})).arguments
+    assert "--controller-type a/B" in " ".join(arguments)

@@ -64,6 +64,15 @@ def test_with_a_spawner_only_its_controllers_are_loaded(sim: Simulation) -> None
     assert node.log[-1].endswith(f"Configured and activated {BROADCASTER}")
 
 
+def test_empty_words_are_options_that_are_not_set(sim: Simulation) -> None:
+    """A launch file computes such words: "--unload-on-kill", or nothing."""
+    words = [BROADCASTER, "-c", "controller_manager", "", "--controller-type", f"{BROADCASTER}/JointStateBroadcaster"]
+    node = sim.add_node("controller_manager/spawner", args=words)
+    sim.run(0.1)
+    assert node.exit_code == 0, node.log
+    assert states(sim) == {BROADCASTER: "active"}
+
+
 def test_spawners_run_beside_each_other_and_a_spawned_controller_moves_the_joint(sim: Simulation) -> None:
     sim.add_node("controller_manager/spawner", args=[BROADCASTER])
     sim.add_node("controller_manager/spawner", args=["arm_controller", "-c", "/controller_manager"])

@@ -11,9 +11,9 @@ from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.node import Node
 
 from simkit.errors import SimkitError
-from simkit_navigation.nav2_parameters import model_of_plugins, nested, server_node
+from simkit_navigation.nav2_parameters import ModelOfPlugins, nested, server_node, shortened
 from simkit_nodes.host import current_host, current_program
-from simkit_nodes.parameter_overrides import parameter_overrides
+from simkit_nodes.parameter_overrides import parameter_overrides, parameter_places
 
 TRANSFORMS = ("/tf", "/tf_static")
 
@@ -38,20 +38,39 @@ class PluginHost:
         name, space = node.get_fully_qualified_name(), node.get_namespace().rstrip("/")
         values = nested(parameter_overrides(name, arguments, params))
         costmap = self._server.costmap
-        of_costmap = parameter_overrides(f"{space}/{costmap}/{costmap}", arguments, params) if costmap else {}
+        name_of_costmap = f"{space}/{costmap}/{costmap}"
+        of_costmap = parameter_overrides(name_of_costmap, arguments, params) if costmap else {}
         plugins = self._server.plugins(values, nested(of_costmap))
         plugins[-1].name = node.get_name()
-        unused = []
-        text = model_of_plugins(self._model, plugins, self._names(arguments, space), unused)
-        try:
-            self._sim.spawn(text)
-        except SimkitError as error:
-            for line in str(error).splitlines():
-                node.get_logger().error(line)
+        model = ModelOfPlugins(self._model, self._names(arguments, space))
+        for plugin in plugins:
+            is_costmap = bool(costmap) and plugin is not plugins[-1]
+            model.add(plugin, parameter_places(name_of_costmap if is_costmap else name, arguments))
+        missing = self._spawned(model, [plugin.name for plugin in plugins])
+        for line in missing:
+            node.get_logger().error(line)
+        if missing:
+            self.remove()
             return False
-        self._is_added = True
-        self._tell([sentence for plugin in plugins for sentence in plugin.told], unused)
+        self._tell([sentence for plugin in plugins for sentence in plugin.told], model.unused)
         return True
+
+    def _spawned(self, model, names):
+        """Add the model to the world; return the reasons why one of its plugins is not there."""
+        reports = self._sim.engine.reports
+        before = set(reports)
+        try:
+            self._sim.spawn(model.text)
+        except SimkitError as error:
+            found = [model.placed(item) for item in getattr(error, "diagnostics", ())]
+            return [str(item) for item in found if item.severity == "error"] or str(error).splitlines()
+        self._is_added = True
+        found = [item for item in reports if item not in before]
+        reports.drop(found)
+        placed = [model.placed(item) for item in found]
+        reports.extend(placed)
+        missing = [name for name in names if f"{self._model}::{name}" not in self._sim.plugins]
+        return [str(item) for item in placed if item.code.startswith("SK-PARAM")] if missing else []
 
     def _names(self, arguments, space):
         """Return namespace and remappings of the node as elements; transforms have one topic for all."""
@@ -70,8 +89,7 @@ class PluginHost:
         for sentence in sentences:
             warn(self._node, "SK-NAV-001", sentence)
         if unused:
-            listed = ", ".join(unused[:12]) + (f" and {len(unused) - 12} others" if len(unused) > 12 else "")
-            warn(self._node, "SK-NAV-002", f"no effect here: {listed}")
+            warn(self._node, "SK-NAV-002", f"no effect here: {shortened(unused)}")
 
     def remove(self):
         """Remove the plugins."""

@@ -14,7 +14,7 @@ from simkit.errors import SimkitError
 from simkit.extend import Where
 from simkit.msgs.goal_status import GoalStatus
 from simkit_navigation.move_base_parameters import ROS1_NODES
-from simkit_navigation.nav2_parameters import model_of_plugins
+from simkit_navigation.nav2_parameters import ModelOfPlugins, shortened
 from simkit_nodes.host import current_host
 
 PERIOD = 0.05  # [s] between two looks at a goal
@@ -37,17 +37,18 @@ def add_plugins(executable):
         rules = [(f"{space}/{topic}", rospy.resolve_name(topic)) for topic in GLOBAL_TOPICS]
     ros = f"<namespace>{space}</namespace>" if space else ""
     ros += "".join(f"<remapping>{old}:={new}</remapping>" for old, new in rules)
-    unused = []
+    model = ModelOfPlugins(name.strip("/").replace("/", "_"), ros)
+    for plugin in plugins:
+        model.add(plugin, {})
     try:
-        simulation.spawn(model_of_plugins(name.strip("/").replace("/", "_"), plugins, ros, unused))
+        simulation.spawn(model.text)
     except SimkitError as error:
         sys.exit(str(error))
     reports, where = simulation.engine.reports, Where(sys.argv[0])
     for sentence in (sentence for plugin in plugins for sentence in plugin.told):
         reports.warning("SK-NAV-001", f"{name}: {sentence}", where)
-    if unused:
-        listed = ", ".join(unused[:12]) + (f" and {len(unused) - 12} others" if len(unused) > 12 else "")
-        reports.warning("SK-NAV-002", f"{name}: no effect here: {listed}", where)
+    if model.unused:
+        reports.warning("SK-NAV-002", f"{name}: no effect here: {shortened(model.unused)}", where)
     return simulation
 
 

@@ -706,7 +706,7 @@ WORLDS: dict[str, str] = {
             "TriggeredPublisher",
         )
     ),
-    "SolarSensor": lab(model=plugin("libsolar_sensor.so", tags(light_name="sun", gaussian_noise=0.1, update_rate=50))),
+    "SolarSensor": lab(model=plugin("libsolar_sensor.so", tags(light_name="sun", rpy_noise=0.1, update_rate=50))),
     "MapServer": lab(world=plugin("libsimkit_map_server.so", tags(height=0.05))),
     "MapSaver": lab(world=plugin("libsimkit_map_server.so", tags(height=0.05)) + plugin("libsimkit_map_saver.so")),
     "Amcl": rooms("<set_initial_pose>true</set_initial_pose><initial_pose><x>1</x><y>1</y></initial_pose>"),

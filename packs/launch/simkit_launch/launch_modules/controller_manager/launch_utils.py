@@ -62,7 +62,10 @@ def generate_controllers_spawner_launch_description_from_dict(
 
 
 def generate_load_controller_launch_description(
-    controller_name: Any, controller_params_file: Any = None, extra_spawner_args: Any = ()
+    controller_name: Any,
+    controller_params_file: Any = None,
+    extra_spawner_args: Any = (),
+    controller_type: Any = None,
 ) -> LaunchDescription:
     """Return the description of a spawner for one controller.
 
@@ -70,9 +73,11 @@ def generate_load_controller_launch_description(
         controller_name: name of the controller.
         controller_params_file: file of its parameters; None for no file.
         extra_spawner_args: further words of the spawner's command line.
+        controller_type: type of the controller, an argument of the function in Humble; None for the type in the file.
     """
+    words = [] if controller_type is None else ["--controller-type", controller_type]
     return generate_controllers_spawner_launch_description(
-        [controller_name], [controller_params_file], extra_spawner_args
+        [controller_name], [controller_params_file], [*words, *extra_spawner_args]
     )
 
 

@@ -77,6 +77,7 @@ class BehaviorServer(CostmapReader):
     filenames = ("libsimkit_behavior_server.so",)
     names = ("simkit::BehaviorServer", "behavior_server::BehaviorServer")
     parent_kind = ("world", "model")
+    executable = "behavior_server"
     options = OptionsOf(BehaviorServerOptions)
     endpoints = (listens("local_costmap/costmap_raw", COSTMAP, named_by=("costmap_topic",)),)
     before_step_rate = NEVER

@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from simkit import Params, Plugin, msgs
+from simkit import Params, msgs
 from simkit.errors import InputError, TransformError
 from simkit.extend import (
     NEVER,
@@ -31,6 +31,7 @@ from simkit_navigation.behavior_trees.path_geometry import nearest_index, path_l
 from simkit_navigation.behavior_trees.tree_node import RUNNING, SUCCESS, TreeError
 from simkit_navigation.behavior_trees.tree_reader import build_tree, read_tree_file
 from simkit_navigation.plugins.lifecycle_state import GET_STATE, answer_active
+from simkit_navigation.plugins.navigation.node_parameters import NodeParameters
 from simkit_navigation.plugins.navigation.planar_pose import (
     PlanarPose,
     look_up,
@@ -118,7 +119,7 @@ class _Task:
     next_feedback_ns: int = 0
 
 
-class BtNavigator(Plugin):
+class BtNavigator(NodeParameters):
     """Navigates to poses: actions `navigate_to_pose` and `navigate_through_poses`, topic `goal_pose`.
 
     A behaviour tree in the XML of Nav2 and BehaviorTree.CPP says what the robot does. Without a file, it is that of
@@ -130,6 +131,7 @@ class BtNavigator(Plugin):
     filenames = ("libsimkit_bt_navigator.so",)
     names = ("simkit::BtNavigator", "nav2_bt_navigator::BtNavigator")
     parent_kind = ("world", "model")
+    executable = "bt_navigator"
     options = OptionsOf(BtNavigatorOptions)
     endpoints = (offers("~/get_state", GET_STATE), publishes("behavior_tree_log", _LOG))
     before_step_rate = NEVER

@@ -104,6 +104,7 @@ class ControllerServer(CostmapReader, ServerPlugin):
 
     filenames = ("libsimkit_controller_server.so",)
     names = ("simkit::ControllerServer", "nav2_controller::ControllerServer")
+    executable = "controller_server"
     options = OptionsOf(ControllerServerOptions)
     option_types = (PurePursuitOptions,)
     endpoints = (

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import Final
 
-from simkit import Plugin, msgs
+from simkit import msgs
 from simkit_navigation.plugins.navigation.cost_grid import CostGrid, grid_of_message
+from simkit_navigation.plugins.navigation.node_parameters import NodeParameters
 
 COSTMAP: Final = "nav2_msgs/msg/Costmap"
 
 
-class CostmapReader(Plugin):
+class CostmapReader(NodeParameters):
     """Plugin that receives a costmap.
 
     Attributes:

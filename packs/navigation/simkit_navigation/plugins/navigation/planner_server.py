@@ -93,6 +93,7 @@ class PlannerServer(CostmapReader, ServerPlugin):
 
     filenames = ("libsimkit_planner_server.so",)
     names = ("simkit::PlannerServer", "nav2_planner::PlannerServer")
+    executable = "planner_server"
     options = OptionsOf(PlannerServerOptions)
     option_types = (GridPlannerOptions,)
     endpoints = (listens("global_costmap/costmap_raw", COSTMAP, named_by=("costmap_topic",)),)

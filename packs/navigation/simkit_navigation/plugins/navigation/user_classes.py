@@ -12,6 +12,7 @@ from simkit.msgs import Message
 from simkit.plugins.attribute_state import copy_attributes, restore_attributes
 from simkit.plugins.discovery.user_plugins import find_user_class
 from simkit.scene import ScenePlugin
+from simkit_navigation.plugins.navigation.node_parameters import NodeParameters
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.subscription import Subscription
@@ -24,7 +25,7 @@ class _Parts(SharedByCopies):
         self.by_name: dict[str, Any] = {}
 
 
-class ServerPlugin(Plugin):
+class ServerPlugin(NodeParameters):
     """Plugin whose work is done by objects of selectable classes.
 
     A snapshot contains the attributes of these objects. A restore keeps the objects, because callbacks refer to them.
