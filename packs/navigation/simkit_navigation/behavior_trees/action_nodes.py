@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final
 from simkit import msgs
 from simkit.msgs.goal_status import GoalStatus
 from simkit_navigation.behavior_trees.path_geometry import is_same
-from simkit_navigation.behavior_trees.tree_node import FAILURE, RUNNING, SUCCESS, TreeNode
+from simkit_navigation.behavior_trees.tree_node import FAILURE, RUNNING, SUCCESS, Ports, TreeNode
 
 if TYPE_CHECKING:
     from simkit.extend import GoalHandle
@@ -108,7 +108,17 @@ class ActionNode(TreeNode):
 class ComputePathToPose(ActionNode):
     """Asks the planner for a path to `goal`."""
 
-    ports = ("goal", "start", "use_start", "planner_id", "path", "viapoints", "planning_time", *_SERVER, *_ERRORS)
+    ports: ClassVar[Ports] = (
+        "goal",
+        "start",
+        "use_start",
+        "planner_id",
+        "path",
+        "viapoints",
+        "planning_time",
+        *_SERVER,
+        *_ERRORS,
+    )
     action, is_needed = "compute_path_to_pose", True
 
     def prepare(self) -> None:
@@ -136,7 +146,7 @@ class ComputePathToPose(ActionNode):
 class ComputePathThroughPoses(ComputePathToPose):
     """Asks the planner for a path through `goals`."""
 
-    ports = ("goals", *ComputePathToPose.ports, "last_reached_index")
+    ports: ClassVar[Ports] = ("goals", *ComputePathToPose.ports, "last_reached_index")
     action = "compute_path_through_poses"
 
     def request(self) -> dict[str, object]:
@@ -148,7 +158,7 @@ class ComputePathThroughPoses(ComputePathToPose):
 class SmoothPath(ActionNode):
     """Asks the smoother for a smooth path."""
 
-    ports = (
+    ports: ClassVar[Ports] = (
         *("unsmoothed_path", "max_smoothing_duration", "check_for_collisions", "smoother_id", "smoothed_path"),
         *("smoothing_duration", "was_completed", *_SERVER, *_ERRORS),
     )
@@ -175,7 +185,7 @@ class SmoothPath(ActionNode):
 class FollowPath(ActionNode):
     """Sends `path` to the controller, and each new path while it drives."""
 
-    ports = (
+    ports: ClassVar[Ports] = (
         *("path", "controller_id", "goal_checker_id", "progress_checker_id", "path_handler_id", "tracking_feedback"),
         *("distance_to_goal", *_SERVER, *_ERRORS),
     )
@@ -221,7 +231,14 @@ class _Behavior(ActionNode):
 class Spin(_Behavior):
     """Turns the robot."""
 
-    ports = ("spin_dist", "time_allowance", "is_recovery", "disable_collision_checks", *_SERVER, *_ERRORS)
+    ports: ClassVar[Ports] = (
+        "spin_dist",
+        "time_allowance",
+        "is_recovery",
+        "disable_collision_checks",
+        *_SERVER,
+        *_ERRORS,
+    )
     action = "spin"
 
     def request(self) -> dict[str, object]:
@@ -231,7 +248,14 @@ class Spin(_Behavior):
 class BackUp(_Behavior):
     """Drives backwards."""
 
-    ports = ("backup_dist", "backup_speed", "time_allowance", "disable_collision_checks", *_SERVER, *_ERRORS)
+    ports: ClassVar[Ports] = (
+        "backup_dist",
+        "backup_speed",
+        "time_allowance",
+        "disable_collision_checks",
+        *_SERVER,
+        *_ERRORS,
+    )
     action = "backup"
 
     def request(self) -> dict[str, object]:
@@ -245,7 +269,14 @@ class BackUp(_Behavior):
 class DriveOnHeading(_Behavior):
     """Drives straight on."""
 
-    ports = ("dist_to_travel", "speed", "time_allowance", "disable_collision_checks", *_SERVER, *_ERRORS)
+    ports: ClassVar[Ports] = (
+        "dist_to_travel",
+        "speed",
+        "time_allowance",
+        "disable_collision_checks",
+        *_SERVER,
+        *_ERRORS,
+    )
     action, is_recovery = "drive_on_heading", False
 
     def request(self) -> dict[str, object]:
@@ -259,7 +290,7 @@ class DriveOnHeading(_Behavior):
 class AssistedTeleop(_Behavior):
     """Lets a person drive, without collisions."""
 
-    ports = ("time_allowance", "is_recovery", *_SERVER, *_ERRORS)
+    ports: ClassVar[Ports] = ("time_allowance", "is_recovery", *_SERVER, *_ERRORS)
     action, is_recovery = "assisted_teleop", False
 
     def request(self) -> dict[str, object]:
@@ -269,7 +300,7 @@ class AssistedTeleop(_Behavior):
 class Wait(_Behavior):
     """Waits."""
 
-    ports = ("wait_duration", "duration", *_SERVER, *_ERRORS)
+    ports: ClassVar[Ports] = ("wait_duration", "duration", *_SERVER, *_ERRORS)
     action = "wait"
 
     def request(self) -> dict[str, object]:
@@ -282,7 +313,7 @@ class Wait(_Behavior):
 class NavigateToPose(ActionNode):
     """Sends `goal` to a navigator, which must be another one than that of the tree."""
 
-    ports = ("goal", "behavior_tree", *_SERVER, *_ERRORS)
+    ports: ClassVar[Ports] = ("goal", "behavior_tree", *_SERVER, *_ERRORS)
     action = "navigate_to_pose"
 
     def request(self) -> dict[str, object]:
@@ -294,7 +325,7 @@ class NavigateToPose(ActionNode):
 class NavigateThroughPoses(ActionNode):
     """Sends `goals` to a navigator, which must be another one than that of the tree."""
 
-    ports = ("goals", "behavior_tree", *_SERVER, *_ERRORS)
+    ports: ClassVar[Ports] = ("goals", "behavior_tree", *_SERVER, *_ERRORS)
     action = "navigate_through_poses"
 
     def request(self) -> dict[str, object]:
@@ -307,7 +338,7 @@ class NavigateThroughPoses(ActionNode):
 class CancelNode(TreeNode):
     """Cancels the goals of a server, and succeeds."""
 
-    ports = _SERVER
+    ports: ClassVar[Ports] = _SERVER
     action: ClassVar[str] = ""
 
     def tick(self) -> str:
@@ -317,7 +348,7 @@ class CancelNode(TreeNode):
 class CancelControl(CancelNode):
     """Cancels the goals of the controller."""
 
-    ports = (*_SERVER, "service_name")
+    ports: ClassVar[Ports] = (*_SERVER, "service_name")
     action = "follow_path"
 
 

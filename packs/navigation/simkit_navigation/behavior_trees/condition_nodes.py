@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Final
 
 from simkit_navigation.behavior_trees.path_geometry import index_after, is_same, nearest_index, path_length
 from simkit_navigation.behavior_trees.scripts import Script, ScriptError
-from simkit_navigation.behavior_trees.tree_node import FAILURE, IDLE, RUNNING, SUCCESS, TreeError, TreeNode
+from simkit_navigation.behavior_trees.tree_node import FAILURE, IDLE, RUNNING, SUCCESS, Ports, TreeError, TreeNode
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose, pose_of_message
 
 _SECOND: Final = 1_000_000_000
@@ -35,7 +35,7 @@ class AlwaysFailure(TreeNode):
 class ScriptNode(TreeNode):
     """Executes a script."""
 
-    ports = ("code",)
+    ports: ClassVar[Ports] = ("code",)
 
     def prepare(self) -> None:
         try:
@@ -54,7 +54,7 @@ class ScriptNode(TreeNode):
 class SetBlackboard(TreeNode):
     """Writes a value to an entry of the blackboard."""
 
-    ports = ("value", "output_key")
+    ports: ClassVar[Ports] = ("value", "output_key")
 
     def tick(self) -> str:
         if "output_key" not in self.inputs:
@@ -70,7 +70,7 @@ class SetBlackboard(TreeNode):
 class UnsetBlackboard(TreeNode):
     """Removes an entry of the blackboard."""
 
-    ports = ("key",)
+    ports: ClassVar[Ports] = ("key",)
 
     def tick(self) -> str:
         self.board.unset(self.inputs.get("key", "").strip("{} "))
@@ -80,7 +80,7 @@ class UnsetBlackboard(TreeNode):
 class Sleep(TreeNode):
     """Runs for `msec` milliseconds and succeeds."""
 
-    ports = ("msec",)
+    ports: ClassVar[Ports] = ("msec",)
 
     def prepare(self) -> None:
         self.end_ns = 0
@@ -94,7 +94,7 @@ class Sleep(TreeNode):
 class WasEntryUpdated(TreeNode):
     """Succeeds if an entry of the blackboard has changed since the last tick."""
 
-    ports = ("entry",)
+    ports: ClassVar[Ports] = ("entry",)
 
     def prepare(self) -> None:
         self.value: Any = None
@@ -115,7 +115,7 @@ class GoalUpdated(TreeNode):
     first one after a pause, fail.
     """
 
-    ports = ("goal", "goals")
+    ports: ClassVar[Ports] = ("goal", "goals")
 
     def prepare(self) -> None:
         self.goals: tuple[Any, Any] = (None, None)
@@ -131,7 +131,7 @@ class GoalUpdated(TreeNode):
 class GlobalUpdatedGoal(TreeNode):
     """Succeeds at its first tick, and if the goal has changed since the last one."""
 
-    ports = ("goal", "goals")
+    ports: ClassVar[Ports] = ("goal", "goals")
 
     def prepare(self) -> None:
         self.goals: tuple[Any, Any] | None = None
@@ -144,7 +144,7 @@ class GlobalUpdatedGoal(TreeNode):
 class GoalReached(TreeNode):
     """Succeeds if the robot is within `goal_reached_tol` of the goal."""
 
-    ports = ("goal", "robot_base_frame", "global_frame")
+    ports: ClassVar[Ports] = ("goal", "robot_base_frame", "global_frame")
 
     def tick(self) -> str:
         goal = self.input("goal") if "goal" in self.inputs else self.tree.goal
@@ -158,7 +158,7 @@ class GoalReached(TreeNode):
 class ArePosesNear(TreeNode):
     """Succeeds if two poses are within `tolerance`."""
 
-    ports = ("ref_pose", "target_pose", "global_frame", "tolerance")
+    ports: ClassVar[Ports] = ("ref_pose", "target_pose", "global_frame", "tolerance")
 
     def tick(self) -> str:
         first, second = self.input("ref_pose"), self.input("target_pose")
@@ -176,7 +176,13 @@ class ArePosesNear(TreeNode):
 class IsGoalNearby(TreeNode):
     """Succeeds if the rest of the path is shorter than `proximity_threshold`."""
 
-    ports = ("path", "proximity_threshold", "max_robot_pose_search_dist", "global_frame", "robot_base_frame")
+    ports: ClassVar[Ports] = (
+        "path",
+        "proximity_threshold",
+        "max_robot_pose_search_dist",
+        "global_frame",
+        "robot_base_frame",
+    )
 
     def prepare(self) -> None:
         self.path: Any = None
@@ -199,7 +205,7 @@ class IsGoalNearby(TreeNode):
 class PathExpiringTimer(TreeNode):
     """Succeeds if the path has not changed for `seconds`."""
 
-    ports = ("seconds", "path")
+    ports: ClassVar[Ports] = ("seconds", "path")
 
     def prepare(self) -> None:
         self.start_ns: int | None = None
@@ -221,7 +227,7 @@ class PathExpiringTimer(TreeNode):
 class TimeExpired(TreeNode):
     """Succeeds each time `seconds` have passed."""
 
-    ports = ("seconds",)
+    ports: ClassVar[Ports] = ("seconds",)
 
     def prepare(self) -> None:
         self.start_ns = 0
@@ -240,7 +246,7 @@ class TimeExpired(TreeNode):
 class DistanceTraveled(TreeNode):
     """Succeeds each time the robot has moved `distance`."""
 
-    ports = ("distance", "global_frame", "robot_base_frame")
+    ports: ClassVar[Ports] = ("distance", "global_frame", "robot_base_frame")
 
     def prepare(self) -> None:
         self.start: PlanarPose | None = None
@@ -259,7 +265,7 @@ class DistanceTraveled(TreeNode):
 class TransformAvailable(TreeNode):
     """Succeeds from the moment on at which there is a transform between two frames."""
 
-    ports = ("child", "parent")
+    ports: ClassVar[Ports] = ("child", "parent")
 
     def prepare(self) -> None:
         self.was_found = False
@@ -275,7 +281,7 @@ class TransformAvailable(TreeNode):
 class InitialPoseReceived(TreeNode):
     """Succeeds if the entry `initial_pose_received` is true."""
 
-    ports = ("initial_pose_received",)
+    ports: ClassVar[Ports] = ("initial_pose_received",)
 
     def tick(self) -> str:
         value = self.input_or_entry("initial_pose_received", False)
@@ -301,7 +307,7 @@ class IsStuck(TreeNode):
 class CheckStopStatus(TreeNode):
     """Succeeds if the robot has stood still for `duration_stopped` milliseconds."""
 
-    ports = ("velocity_threshold", "duration_stopped")
+    ports: ClassVar[Ports] = ("velocity_threshold", "duration_stopped")
 
     def prepare(self) -> None:
         self.stopped_ns: int | None = None
@@ -325,7 +331,7 @@ class CheckStopStatus(TreeNode):
 class IsBatteryLow(TreeNode):
     """Succeeds if the percentage, or the voltage, of the battery is at most `min_battery`."""
 
-    ports = ("min_battery", "battery_topic", "is_voltage")
+    ports: ClassVar[Ports] = ("min_battery", "battery_topic", "is_voltage")
 
     def prepare(self) -> None:
         self.topic = self.inputs.get("battery_topic", "/battery_status")
@@ -342,7 +348,7 @@ class IsBatteryLow(TreeNode):
 class IsBatteryCharging(IsBatteryLow):
     """Succeeds if the battery is charging."""
 
-    ports = ("battery_topic",)
+    ports: ClassVar[Ports] = ("battery_topic",)
 
     def tick(self) -> str:
         message = self.tree.latest(self.topic)
@@ -352,12 +358,20 @@ class IsBatteryCharging(IsBatteryLow):
 class AreErrorCodesPresent(TreeNode):
     """Succeeds if `error_code` is one of `error_codes_to_check`."""
 
-    ports = ("error_code", "error_codes_to_check", "error_code_id", "current_error_code", "current_error_codes")
+    ports: ClassVar[Ports] = (
+        "error_code",
+        "error_codes_to_check",
+        "error_code_id",
+        "current_error_code",
+        "current_error_codes",
+    )
     codes: ClassVar[tuple[int, ...]] = ()
     """Error codes of the node, in place of the port."""
 
     def tick(self) -> str:
-        port = next((name for name in self.ports if name in self.inputs and name != "error_codes_to_check"), "error_code")
+        port = next(
+            (name for name in self.ports if name in self.inputs and name != "error_codes_to_check"), "error_code"
+        )
         codes: tuple[int, ...] = self.codes or tuple(_integers(self.text("error_codes_to_check")))
         return _status(self.integer(port, 0) in codes)
 
@@ -396,7 +410,7 @@ class WouldARouteRecoveryHelp(AreErrorCodesPresent):
 class IsWithinPathTrackingBounds(TreeNode):
     """Succeeds if the tracking errors of the controller's feedback are within bounds, or if there are none."""
 
-    ports = ("max_error_left", "max_error_right", "max_error_heading", "tracking_feedback")
+    ports: ClassVar[Ports] = ("max_error_left", "max_error_right", "max_error_heading", "tracking_feedback")
 
     def tick(self) -> str:
         feedback = self.input("tracking_feedback")
@@ -405,7 +419,9 @@ class IsWithinPathTrackingBounds(TreeNode):
         error, heading = feedback.position_tracking_error, feedback.heading_tracking_error
         side = "max_error_left" if error >= 0 else "max_error_right"
         is_near = abs(error) <= abs(self.number(side, 0.5))
-        return _status(is_near and abs(heading) <= abs(self.number("max_error_heading", 3.14)) and math.isfinite(heading))
+        return _status(
+            is_near and abs(heading) <= abs(self.number("max_error_heading", 3.14)) and math.isfinite(heading)
+        )
 
 
 CONDITION_NODES: Final = {

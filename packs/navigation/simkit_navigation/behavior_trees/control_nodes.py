@@ -10,6 +10,7 @@ from simkit_navigation.behavior_trees.tree_node import (
     SKIPPED,
     SUCCESS,
     ControlNode,
+    Ports,
     TreeError,
 )
 
@@ -97,7 +98,14 @@ class ReactiveFallback(ReactiveSequence):
 class Parallel(ControlNode):
     """Ticks all children at each tick, until enough have succeeded or failed."""
 
-    ports = ("success_count", "failure_count", "threshold", "success_threshold", "failure_threshold", "threshold_M")
+    ports: ClassVar[Ports] = (
+        "success_count",
+        "failure_count",
+        "threshold",
+        "success_threshold",
+        "failure_threshold",
+        "threshold_M",
+    )
 
     def prepare(self) -> None:
         self.clear()
@@ -140,7 +148,7 @@ class Parallel(ControlNode):
 class ParallelAll(ControlNode):
     """Ticks all children until all have ended; fails after `max_failures` failures."""
 
-    ports = ("max_failures",)
+    ports: ClassVar[Ports] = ("max_failures",)
 
     def prepare(self) -> None:
         self.clear()
@@ -171,7 +179,7 @@ class ParallelAll(ControlNode):
 class IfThenElse(ControlNode):
     """Ticks the second child if the first one succeeds, or else the third one."""
 
-    child_counts = (2, 3)
+    child_counts: ClassVar[tuple[int, int | None]] = (2, 3)
 
     def prepare(self) -> None:
         self.index = 0
@@ -198,7 +206,7 @@ class IfThenElse(ControlNode):
 class WhileDoElse(ControlNode):
     """Ticks the second child while the first one succeeds, or else the third one; checks at each tick."""
 
-    child_counts = (2, 3)
+    child_counts: ClassVar[tuple[int, int | None]] = (2, 3)
 
     def tick(self) -> str:
         self.set_status(RUNNING)
@@ -221,7 +229,7 @@ class WhileDoElse(ControlNode):
 class Switch(ControlNode):
     """Ticks the child whose case equals a variable, or the last child."""
 
-    ports = ("variable", *(f"case_{index}" for index in range(1, 7)))
+    ports: ClassVar[Ports] = ("variable", *(f"case_{index}" for index in range(1, 7)))
 
     def prepare(self) -> None:
         self.running: int | None = None
@@ -285,7 +293,7 @@ class PipelineSequence(ControlNode):
 class RoundRobin(ControlNode):
     """Ticks the children in turn until one succeeds, and begins with the next one the next time."""
 
-    ports = ("wrap_around",)
+    ports: ClassVar[Ports] = ("wrap_around",)
 
     def prepare(self) -> None:
         self.index = self.failed = 0
@@ -320,8 +328,8 @@ class RoundRobin(ControlNode):
 class RecoveryNode(ControlNode):
     """Ticks the first child; if it fails, ticks the second one and then the first one again."""
 
-    ports = ("number_of_retries", "num_of_retries")
-    child_counts = (2, 2)
+    ports: ClassVar[Ports] = ("number_of_retries", "num_of_retries")
+    child_counts: ClassVar[tuple[int, int | None]] = (2, 2)
 
     def prepare(self) -> None:
         self.index = self.retries = 0
@@ -377,7 +385,7 @@ class NonblockingSequence(ControlNode):
 class PersistentSequence(ControlNode):
     """Sequence whose present child is an entry of the blackboard."""
 
-    ports = ("current_child_idx",)
+    ports: ClassVar[Ports] = ("current_child_idx",)
 
     def tick(self) -> str:
         if not self.has_input("current_child_idx"):

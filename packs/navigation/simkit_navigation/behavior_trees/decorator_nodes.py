@@ -15,6 +15,7 @@ from simkit_navigation.behavior_trees.tree_node import (
     SKIPPED,
     SUCCESS,
     DecoratorNode,
+    Ports,
     TreeError,
 )
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose
@@ -62,7 +63,7 @@ class KeepRunningUntilFailure(_Mapped):
 class Repeat(DecoratorNode):
     """Ticks the child until it has succeeded `num_cycles` times; -1 repeats without an end."""
 
-    ports = ("num_cycles",)
+    ports: ClassVar[Ports] = ("num_cycles",)
     again: ClassVar[str] = SUCCESS
     port: ClassVar[str] = "num_cycles"
 
@@ -95,7 +96,7 @@ class Repeat(DecoratorNode):
 class RetryUntilSuccessful(Repeat):
     """Ticks the child until it succeeds, at most `num_attempts` times; -1 for no limit."""
 
-    ports = ("num_attempts",)
+    ports: ClassVar[Ports] = ("num_attempts",)
     again = FAILURE
     port = "num_attempts"
 
@@ -103,7 +104,7 @@ class RetryUntilSuccessful(Repeat):
 class Delay(DecoratorNode):
     """Ticks the child after `delay_msec` milliseconds."""
 
-    ports = ("delay_msec",)
+    ports: ClassVar[Ports] = ("delay_msec",)
 
     def prepare(self) -> None:
         self.end_ns: int | None = None
@@ -127,7 +128,7 @@ class Delay(DecoratorNode):
 class Timeout(DecoratorNode):
     """Halts the child and fails after `msec` milliseconds."""
 
-    ports = ("msec",)
+    ports: ClassVar[Ports] = ("msec",)
 
     def prepare(self) -> None:
         self.end_ns: int | None = None
@@ -154,7 +155,7 @@ class Timeout(DecoratorNode):
 class RunOnce(DecoratorNode):
     """Ticks the child until it has ended once; then the node is skipped, or returns the same status."""
 
-    ports = ("then_skip",)
+    ports: ClassVar[Ports] = ("then_skip",)
 
     def prepare(self) -> None:
         self.result = ""
@@ -173,7 +174,7 @@ class RunOnce(DecoratorNode):
 class Precondition(DecoratorNode):
     """Ticks the child if a script is true; returns `else` (SUCCESS, FAILURE, RUNNING) otherwise."""
 
-    ports = ("if", "else")
+    ports: ClassVar[Ports] = ("if", "else")
 
     def prepare(self) -> None:
         try:
@@ -197,7 +198,7 @@ class Precondition(DecoratorNode):
 class BlackboardCheck(DecoratorNode):
     """Ticks the child if two values are equal (BehaviorTree.CPP 3)."""
 
-    ports = ("value_A", "value_B", "return_on_mismatch")
+    ports: ClassVar[Ports] = ("value_A", "value_B", "return_on_mismatch")
 
     def tick(self) -> str:
         first, second = self.input("value_A"), self.input("value_B")
@@ -214,7 +215,7 @@ class BlackboardCheck(DecoratorNode):
 class RateController(DecoratorNode):
     """Ticks the child `hz` times a second, and while it is running."""
 
-    ports = ("hz", "rate")
+    ports: ClassVar[Ports] = ("hz", "rate")
 
     def prepare(self) -> None:
         self.start_ns, self.is_first, self.period = 0, False, 0.0
@@ -240,7 +241,7 @@ class RateController(DecoratorNode):
 class DistanceController(DecoratorNode):
     """Ticks the child each time the robot has moved `distance`, and while it is running."""
 
-    ports = ("distance", "global_frame", "robot_base_frame")
+    ports: ClassVar[Ports] = ("distance", "global_frame", "robot_base_frame")
 
     def prepare(self) -> None:
         self.start: PlanarPose | None = None
@@ -279,7 +280,7 @@ class _OfGoal(DecoratorNode):
 class GoalUpdatedController(_OfGoal):
     """Ticks the child for each new goal, and while it is running."""
 
-    ports = ("goal", "goals")
+    ports: ClassVar[Ports] = ("goal", "goals")
 
     def tick(self) -> str:
         is_new = self._has_new_goal() or not self.is_active
@@ -290,7 +291,7 @@ class GoalUpdatedController(_OfGoal):
 class SpeedController(_OfGoal):
     """Ticks the child at a rate between `min_rate` and `max_rate`, in proportion to the robot's speed."""
 
-    ports = ("min_rate", "max_rate", "min_speed", "max_speed", "filter_duration", "goal", "goals")
+    ports: ClassVar[Ports] = ("min_rate", "max_rate", "min_speed", "max_speed", "filter_duration", "goal", "goals")
 
     def prepare(self) -> None:
         super().prepare()
@@ -319,7 +320,7 @@ class SpeedController(_OfGoal):
 class GoalUpdater(DecoratorNode):
     """Ticks the child with the newest goal of the topic `goal_update`."""
 
-    ports = ("input_goal", "output_goal", "input_goals", "output_goals")
+    ports: ClassVar[Ports] = ("input_goal", "output_goal", "input_goals", "output_goals")
 
     def prepare(self) -> None:
         self.topic = self.tree.option("goal_updater_topic", "goal_update")
@@ -341,16 +342,16 @@ def _stamp(message: msgs.Message) -> tuple[int, int]:
 class PathLongerOnApproach(DecoratorNode):
     """Ticks the child if a new path near the goal is longer than the old one by `length_factor`."""
 
-    ports = ("path", "prox_len", "length_factor")
+    ports: ClassVar[Ports] = ("path", "prox_len", "length_factor")
 
     def prepare(self) -> None:
-        self.path: msgs.Path | None = None
+        self.path: Any = None
         self.is_first = True
 
     def tick(self) -> str:
         new, old = self.input("path"), self.path
-        if not self.is_first and not (_has_poses(old) and _has_poses(new) and old.poses[-1].pose == new.poses[-1].pose):
-            self.is_first = True
+        is_of_same_goal = _has_poses(old) and _has_poses(new) and old.poses[-1].pose == new.poses[-1].pose
+        self.is_first = self.is_first or not is_of_same_goal
         self.set_status(RUNNING)
         if not self.is_first and not is_same(new, old) and self._is_longer(old, new):
             status = self.children[0].execute()
@@ -363,7 +364,10 @@ class PathLongerOnApproach(DecoratorNode):
 
     def _is_longer(self, old: msgs.Path, new: msgs.Path) -> bool:
         length = path_length(old.poses)
-        return length < self.number("prox_len", 3.0) and path_length(new.poses) > self.number("length_factor", 2.0) * length
+        return (
+            length < self.number("prox_len", 3.0)
+            and path_length(new.poses) > self.number("length_factor", 2.0) * length
+        )
 
 
 def _has_poses(path: msgs.Path | None) -> bool:
@@ -390,7 +394,7 @@ class SingleTrigger(DecoratorNode):
 class EntryUpdated(DecoratorNode):
     """Ticks the child if an entry of the blackboard has changed since the last tick."""
 
-    ports = ("entry",)
+    ports: ClassVar[Ports] = ("entry",)
     otherwise: ClassVar[str] = SKIPPED
 
     def prepare(self) -> None:

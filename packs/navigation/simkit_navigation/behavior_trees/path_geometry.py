@@ -33,7 +33,9 @@ def path_length(poses: Sequence[msgs.PoseStamped], begin: int = 0) -> float:
 def nearest_index(poses: Sequence[msgs.PoseStamped], x: float, y: float, begin: int = 0, end: int | None = None) -> int:
     """Return the index of the pose that is nearest to a point."""
     indices = range(begin, len(poses) if end is None else max(end, begin + 1))
-    return min(indices, key=lambda index: math.hypot(poses[index].pose.position.x - x, poses[index].pose.position.y - y))
+    return min(
+        indices, key=lambda index: math.hypot(poses[index].pose.position.x - x, poses[index].pose.position.y - y)
+    )
 
 
 def index_after(poses: Sequence[msgs.PoseStamped], begin: int, length: float, step: int = 1) -> int:

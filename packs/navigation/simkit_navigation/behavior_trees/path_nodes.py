@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 from simkit import msgs
 from simkit.pose import wrap_angle
 from simkit_navigation.behavior_trees.path_geometry import distance, index_after, is_same, nearest_index
-from simkit_navigation.behavior_trees.tree_node import FAILURE, SUCCESS, TreeNode
+from simkit_navigation.behavior_trees.tree_node import FAILURE, SUCCESS, Ports, TreeNode
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose, pose_of_message, stamped_pose
 
 
 class RemovePassedGoals(TreeNode):
     """Removes the first goals while the robot is within `radius` of them; the last goal stays."""
 
-    ports = (
+    ports: ClassVar[Ports] = (
         *("input_goals", "output_goals", "radius", "robot_base_frame", "global_frame", "nb_goals_to_consider"),
         *("input_waypoint_statuses", "output_waypoint_statuses"),
     )
@@ -40,7 +40,7 @@ def _distance(goal: msgs.PoseStamped, pose: PlanarPose) -> float:
 class TruncatePath(TreeNode):
     """Removes the end of a path, up to `distance` from its last pose."""
 
-    ports = ("distance", "input_path", "output_path")
+    ports: ClassVar[Ports] = ("distance", "input_path", "output_path")
 
     def tick(self) -> str:
         path = self.input("input_path")
@@ -60,7 +60,7 @@ class TruncatePath(TreeNode):
 class TruncatePathLocal(TreeNode):
     """Keeps the part of a path around the robot."""
 
-    ports = (
+    ports: ClassVar[Ports] = (
         *("input_path", "output_path", "distance_forward", "distance_backward", "robot_base_frame", "robot_frame"),
         *("transform_tolerance", "pose", "angular_distance_weight", "max_robot_pose_search_dist"),
     )
@@ -103,7 +103,7 @@ class TruncatePathLocal(TreeNode):
 class GetPoseFromPath(TreeNode):
     """Writes the pose of an index of a path; -1 is the last one."""
 
-    ports = ("path", "pose", "index")
+    ports: ClassVar[Ports] = ("path", "pose", "index")
 
     def tick(self) -> str:
         path, index = self.input("path"), self.integer("index", 0)
@@ -120,7 +120,7 @@ class GetPoseFromPath(TreeNode):
 class ConcatenatePaths(TreeNode):
     """Joins two paths."""
 
-    ports = ("input_path1", "input_path2", "output_path")
+    ports: ClassVar[Ports] = ("input_path1", "input_path2", "output_path")
 
     def tick(self) -> str:
         paths = [path for path in (self.input("input_path1"), self.input("input_path2")) if path is not None]
@@ -135,7 +135,7 @@ class ConcatenatePaths(TreeNode):
 class GetCurrentPose(TreeNode):
     """Writes the pose of the robot."""
 
-    ports = ("global_frame", "robot_base_frame", "current_pose")
+    ports: ClassVar[Ports] = ("global_frame", "robot_base_frame", "current_pose")
 
     def tick(self) -> str:
         pose = self.tree.pose_of(self)
@@ -149,7 +149,7 @@ class GetCurrentPose(TreeNode):
 class GetNextFewGoals(TreeNode):
     """Writes the first goals of a list."""
 
-    ports = ("input_goals", "num_goals", "output_goals")
+    ports: ClassVar[Ports] = ("input_goals", "num_goals", "output_goals")
 
     def tick(self) -> str:
         goals = list(self.input("input_goals") or ())
@@ -162,7 +162,7 @@ class GetNextFewGoals(TreeNode):
 class AppendGoalPoseToGoals(TreeNode):
     """Appends a goal to a list."""
 
-    ports = ("goal_pose", "input_goals", "output_goals")
+    ports: ClassVar[Ports] = ("goal_pose", "input_goals", "output_goals")
 
     def tick(self) -> str:
         goal = self.input("goal_pose")

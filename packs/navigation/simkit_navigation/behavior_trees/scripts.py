@@ -1,13 +1,15 @@
 """Scripts of BehaviorTree.CPP 4, such as `tries := tries + 1; done = tries > 3`.
 
-The language: statements with `;`, assignments `:=`, `=`, `+=`, `-=`, `*=`, `/=`, `a ? b : c`, `||`, `&&`, `|`, `^`, `&`,
-comparisons, `+`, `-`, `*`, `/`, `..` (joins texts), `!`, `~`, parentheses, numbers, `'texts'`, `true` and `false`.
+The language: statements with `;`, assignments `:=`, `=`, `+=`, `-=`, `*=`, `/=`, `a ? b : c`, `||`, `&&`, `|`, `^`,
+`&`, comparisons, `+`, `-`, `*`, `/`, `..` (joins texts), `!`, `~`, parentheses, numbers, `'texts'`, `true`, `false`.
 Names are entries of the blackboard. Source: https://www.behaviortree.dev/docs/guides/scripting
 """
 
 from __future__ import annotations
 
+import operator as operators
 import re
+from collections.abc import Callable
 from typing import Any, Final, Protocol
 
 _TOKEN: Final = re.compile(
@@ -15,7 +17,16 @@ _TOKEN: Final = re.compile(
     r"|(?P<text>'[^']*'|\"[^\"]*\")|(?P<sign>:=|\+=|-=|\*=|/=|==|!=|<=|>=|&&|\|\||\.\.|[-+*/<>=!~?:;()|&^]))"
 )
 _ASSIGNMENTS: Final = (":=", "=", "+=", "-=", "*=", "/=")
-_LEVELS: Final = (("||",), ("&&",), ("|", "^"), ("&",), ("==", "!=", "<", ">", "<=", ">="), ("..",), ("+", "-"), ("*", "/"))
+_LEVELS: Final = (
+    ("||",),
+    ("&&",),
+    ("|", "^"),
+    ("&",),
+    ("==", "!=", "<", ">", "<=", ">="),
+    ("..",),
+    ("+", "-"),
+    ("*", "/"),
+)
 _DEEPEST: Final = 50
 _CONSTANTS: Final = {"true": True, "false": False, "SUCCESS": 2, "FAILURE": 3, "RUNNING": 1, "IDLE": 0, "SKIPPED": 4}
 
@@ -171,8 +182,7 @@ def _value(expression: Expression, board: Board) -> Any:
     if kind == "if":
         return _value(expression[2] if _value(expression[1], board) else expression[3], board)
     if kind == "unary":
-        value = _value(expression[2], board)
-        return {"!": lambda: not value, "-": lambda: -value, "~": lambda: ~int(value), "+": lambda: value}[expression[1]]()
+        return _UNARY[expression[1]](_value(expression[2], board))
     operator, left = expression[1], _value(expression[2], board)
     if operator in ("&&", "||"):
         is_decided = bool(left) is (operator == "||")
@@ -203,17 +213,25 @@ def _combine(operator: str, left: Any, right: Any) -> Any:
     if operator in ("&", "|", "^"):
         a, b = int(left), int(right)
         return a & b if operator == "&" else a | b if operator == "|" else a ^ b
-    calls = {
-        "+": lambda: left + right,
-        "-": lambda: left - right,
-        "*": lambda: left * right,
-        "/": lambda: left / right,
-        "<": lambda: left < right,
-        ">": lambda: left > right,
-        "<=": lambda: left <= right,
-        ">=": lambda: left >= right,
-    }
-    return calls[operator]()
+    return _OPERATORS[operator](left, right)
+
+
+_OPERATORS: Final[dict[str, Callable[[Any, Any], Any]]] = {
+    "+": operators.add,
+    "-": operators.sub,
+    "*": operators.mul,
+    "/": operators.truediv,
+    "<": operators.lt,
+    ">": operators.gt,
+    "<=": operators.le,
+    ">=": operators.ge,
+}
+_UNARY: Final[dict[str, Callable[[Any], Any]]] = {
+    "!": operators.not_,
+    "-": operators.neg,
+    "+": operators.pos,
+    "~": lambda value: ~int(value),
+}
 
 
 def _number_of(value: Any) -> Any:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
-from simkit_navigation.behavior_trees.tree_node import FAILURE, RUNNING, SUCCESS, TreeNode
+from simkit_navigation.behavior_trees.tree_node import FAILURE, RUNNING, SUCCESS, Ports, TreeNode
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.service_server import ServiceCall
@@ -55,7 +55,7 @@ class ServiceNode(TreeNode):
 class ClearEntireCostmap(ServiceNode):
     """Clears a costmap."""
 
-    ports = (*_SERVICE, "plugins")
+    ports: ClassVar[Ports] = (*_SERVICE, "plugins")
     service = "global_costmap/clear_entirely_global_costmap"
 
     def on_start(self) -> None:
@@ -65,7 +65,7 @@ class ClearEntireCostmap(ServiceNode):
 class ClearCostmapAroundRobot(ClearEntireCostmap):
     """Clears a costmap near the robot."""
 
-    ports = (*ClearEntireCostmap.ports, "reset_distance")
+    ports: ClassVar[Ports] = (*ClearEntireCostmap.ports, "reset_distance")
     service = "local_costmap/clear_around_local_costmap"
 
     def request(self) -> dict[str, object]:
@@ -81,7 +81,7 @@ class ClearCostmapExceptRegion(ClearCostmapAroundRobot):
 class ClearCostmapAroundPose(ClearCostmapAroundRobot):
     """Clears a costmap near a pose."""
 
-    ports = (*ClearCostmapAroundRobot.ports, "pose")
+    ports: ClassVar[Ports] = (*ClearCostmapAroundRobot.ports, "pose")
     service = "local_costmap/clear_around_pose_local_costmap"
 
     def request(self) -> dict[str, object]:
@@ -92,14 +92,14 @@ class ClearCostmapAroundPose(ClearCostmapAroundRobot):
 class ReinitializeGlobalLocalization(ServiceNode):
     """Spreads the particles of AMCL over the map."""
 
-    ports = _SERVICE
+    ports: ClassVar[Ports] = _SERVICE
     service = "reinitialize_global_localization"
 
 
 class IsPathValid(ServiceNode):
     """Succeeds if no pose of `path` is in an obstacle."""
 
-    ports = (
+    ports: ClassVar[Ports] = (
         *(*_SERVICE, "path", "max_cost", "consider_unknown_as_obstacle", "layer_name", "footprint"),
         *("stop_at_first_collision", "max_lookahead_distance", "collision_poses"),
     )
@@ -119,7 +119,7 @@ class IsPathValid(ServiceNode):
 class ToggleCollisionMonitor(ServiceNode):
     """Switches the collision monitor on or off."""
 
-    ports = (*_SERVICE, "enable")
+    ports: ClassVar[Ports] = (*_SERVICE, "enable")
     service = "collision_monitor/toggle"
 
     def request(self) -> dict[str, object]:
@@ -129,7 +129,7 @@ class ToggleCollisionMonitor(ServiceNode):
 class GoalsInCosts(ServiceNode):
     """Asks a costmap for the costs of poses."""
 
-    ports = (
+    ports: ClassVar[Ports] = (
         *(*_SERVICE, "input_goals", "output_goals", "cost_threshold", "use_footprint", "consider_unknown_as_obstacle"),
         *("input_waypoint_statuses", "output_waypoint_statuses", "nb_goals_to_consider"),
     )
@@ -160,14 +160,16 @@ class RemoveInCollisionGoals(GoalsInCosts):
         if not getattr(response, "success", True):
             self.output("output_goals", poses)
             return FAILURE
-        self.output("output_goals", [pose for pose, cost in zip(poses, response.costs, strict=False) if self._is_free(cost)])
+        self.output(
+            "output_goals", [pose for pose, cost in zip(poses, response.costs, strict=False) if self._is_free(cost)]
+        )
         return SUCCESS
 
 
 class CheckPoseOccupancy(GoalsInCosts):
     """Succeeds if a pose is in an obstacle."""
 
-    ports = (*GoalsInCosts.ports, "pose")
+    ports: ClassVar[Ports] = (*GoalsInCosts.ports, "pose")
 
     def _poses(self) -> list[Any]:
         pose = self.input("pose")
@@ -204,7 +206,9 @@ class Selector(TreeNode):
 def _selector(what: str) -> type[Selector]:
     ports = (f"selected_{what}", f"default_{what}", "topic_name")
     name = "".join(word.title() for word in what.split("_")) + "Selector"
-    return type(name, (Selector,), {"__doc__": f"Selects the {what}.", "what": what, "ports": ports, "__module__": __name__})
+    return type(
+        name, (Selector,), {"__doc__": f"Selects the {what}.", "what": what, "ports": ports, "__module__": __name__}
+    )
 
 
 PlannerSelector = _selector("planner")

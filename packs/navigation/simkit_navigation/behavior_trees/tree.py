@@ -124,7 +124,8 @@ class Tree:
     @property
     def goal(self) -> msgs.PoseStamped | None:
         """Goal on the blackboard."""
-        return self.board.get(str(self.option("goal_blackboard_id", "goal")))
+        goal: msgs.PoseStamped | None = self.board.get(str(self.option("goal_blackboard_id", "goal")))
+        return goal
 
     def look_up(self, target: str, source: str) -> PlanarPose | None:
         """Return the pose of the frame `source` in the frame `target`; None if it is not known."""

@@ -26,6 +26,10 @@ COMPLETED: Final = (SUCCESS, FAILURE)
 """Statuses of a node that has ended."""
 
 
+Ports = Sequence[str]
+"""Names of ports."""
+
+
 class TreeError(Exception):
     """Error of a node that ends the tree, such as a port without a value."""
 
@@ -48,14 +52,14 @@ class Blackboard:
 
     def _owner(self, name: str) -> tuple[Blackboard, str]:
         """Return the blackboard with the value of a name, and its name there."""
-        board = self
-        while board.parent is not None:
+        board: Blackboard = self
+        while (outer := board.parent) is not None:
             if name.startswith("@"):
-                board = board.parent
+                board = outer
             elif name in board.remapped:
-                board, name = board.parent, board.remapped[name]
+                board, name = outer, board.remapped[name]
             elif board.remaps_all and name not in board.values and not name.startswith("_"):
-                board = board.parent
+                board = outer
             else:
                 break
         return board, name.removeprefix("@")
@@ -93,7 +97,7 @@ class TreeNode:
         board: blackboard.
     """
 
-    ports: ClassVar[Sequence[str]] = ()
+    ports: ClassVar[Ports] = ()
     """Names of the ports."""
     child_counts: ClassVar[tuple[int, int | None]] = (0, 0)
     """Smallest and largest number of children; None for no limit."""
@@ -254,13 +258,13 @@ def _key_of(text: str, port: str) -> str:
 class ControlNode(TreeNode):
     """Node with children."""
 
-    child_counts = (1, None)
+    child_counts: ClassVar[tuple[int, int | None]] = (1, None)
 
 
 class DecoratorNode(TreeNode):
     """Node with one child."""
 
-    child_counts = (1, 1)
+    child_counts: ClassVar[tuple[int, int | None]] = (1, 1)
 
     def execute(self) -> str:
         """Tick the node; a child that has ended is reset."""

@@ -229,7 +229,8 @@ class _Builder:
             return None
         attributes = {key: text for key, text in element.attributes.items() if key not in (*_OF_EDITORS, *_SCRIPTS)}
         is_shared = any(_is_true(attributes.pop(key, "")) for key in _SHARED)
-        remaps_all = any([_is_true(attributes.pop(key, "")) for key in _REMAPS_ALL])
+        remaps_all = any(_is_true(attributes.get(key, "")) for key in _REMAPS_ALL)
+        attributes = {key: text for key, text in attributes.items() if key not in _REMAPS_ALL}
         own = board
         if not is_shared:
             own = Blackboard(parent=board, remaps_all=remaps_all)

@@ -434,7 +434,7 @@ class BtNavigator(NodeParameters):
             return
         events = [
             {
-                "timestamp": msgs.header(change.time_ns).stamp,
+                "timestamp": _stamp(change.time_ns),
                 "node_name": change.name,
                 "uid": change.uid,
                 "previous_status": change.before,
@@ -442,4 +442,9 @@ class BtNavigator(NodeParameters):
             }
             for change in changes
         ]
-        self._log_publisher.publish(msgs.make(_LOG, timestamp=msgs.header(self.sim.time_ns).stamp, event_log=events))
+        self._log_publisher.publish(msgs.make(_LOG, timestamp=_stamp(self.sim.time_ns), event_log=events))
+
+
+def _stamp(time_ns: int) -> msgs.Time:
+    """Return a time as a message."""
+    return msgs.header(time_ns, "").stamp
