@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from simkit.diagnostics import did_you_mean
-from simkit.errors import InputError, MessageError
+from simkit.errors import ActionError, InputError, MessageError
 
 if TYPE_CHECKING:
     from simkit.runtime import Model, Simulation
+    from simkit.runtime.communication.action_server import GoalHandle
 
 TWISTS: Final = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 Bounds = tuple[float, float]
@@ -28,6 +30,11 @@ _FINE, _COARSE, _TURN_STEP = 0.01, 0.05, 0.1  # [m/s, m/s, rad/s] change per key
 _SLOW: Final = 0.5  # [m/s]: robots up to this speed are driven in fine steps
 
 
+KeyCommand = tuple[Any, ...]
+"""Effect of a key for a robot with keys of its own: `("velocity", FORWARD, YAW_RATE)` sends a command once [m/s and
+rad/s], `("goal", ACTION, FIELDS)` sends a goal, `("cancel",)` cancels the newest goal, `("end",)` ends the driving."""
+
+
 @dataclass(frozen=True)
 class TeleopTarget:
     """Topic, model and speed limits of the driven robot.
@@ -38,6 +45,8 @@ class TeleopTarget:
         linear, angular: lowest and highest forward speed [m/s] and yaw rate [rad/s]; infinite if unknown.
         linear_step, angular_step: change of speed [m/s] and yaw rate [rad/s] per key.
         sideways: True if the robot can drive sideways; the limits are those of the forward speed.
+        key_commands: effect of each key, if the drive plugin has keys of its own, which replace those of `Teleop`.
+        key_help: line that explains those keys.
     """
 
     topic: str
@@ -47,6 +56,8 @@ class TeleopTarget:
     linear_step: float = _COARSE
     angular_step: float = _TURN_STEP
     sideways: bool = False
+    key_commands: Mapping[str, KeyCommand] | None = None
+    key_help: str = ""
 
 
 def find_target(sim: Simulation, requested: str = "") -> TeleopTarget:
@@ -117,6 +128,8 @@ def _describe_target(sim: Simulation, topic: str, owner: object) -> TeleopTarget
         _FINE if linear[1] <= _SLOW else _COARSE,
         _TURN_STEP,
         any(_HOLONOMIC_DRIVES.search(name) for name in names),
+        owner.key_commands(topic) if hasattr(owner, "key_commands") else None,
+        getattr(owner, "key_help", ""),
     )
 
 
@@ -185,12 +198,16 @@ class Teleop:
         self._key_time = self._sent_time = 0.0  # [s] simulated
         self._sent: int | None = None  # tick of the last periodic command
         self._last_command: tuple[int, tuple[float, float, float]] | None = None  # tick and speeds
+        self._goal: GoalHandle | None = None  # newest goal of a key
+        self._has_ended = False
 
     # ------------------------------------------------------------------ keys
 
     def press(self, key: str) -> bool:
         """Process a key, upper or lower case; return True if it is a driving key."""
         key = key.lower()
+        if self.target.key_commands is not None:
+            return self._press_own_key(self.target.key_commands.get(key))
         if key == "s":
             self._note_key()
             self.stop()
@@ -204,6 +221,30 @@ class Teleop:
             self._multiply(_SCALE[key])
         else:
             self._add(_AHEAD.get(key, 0), _SIDEWAYS.get(key, 0), _TURN.get(key, 0))
+        return True
+
+    def _press_own_key(self, command: KeyCommand | None) -> bool:
+        """Process a key of a robot with keys of its own; its commands are sent once."""
+        if command is None or self._has_ended:
+            return False
+        kind, *arguments = command
+        if kind == "velocity":
+            self.speeds = arguments[0], 0.0, arguments[1]
+            self._send()
+            self.speeds = _EMPTY
+        elif kind == "goal":
+            action, fields = arguments
+            try:
+                self._goal = self._sim.send_goal(action, fields)
+                self.fault = ""
+            except ActionError as error:  # the robot was removed
+                self.fault = str(error)
+        elif kind == "cancel":
+            if self._goal is not None and self._goal.is_active:
+                self._goal.cancel()
+        else:
+            self._has_ended = True
+            self.fault = "driving has ended with the key q; Ctrl-C ends the run"
         return True
 
     def drive(self, ahead: float, left: float, turn: float) -> None:

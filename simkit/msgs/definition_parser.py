@@ -125,19 +125,22 @@ def interface_of(type_name: str) -> tuple[str, int] | None:
     return None
 
 
-def parse_interface(name: str, text: str, *, is_foreign: bool = False) -> tuple[list[MessageDefinition], list[Problem]]:
+def parse_interface(
+    name: str, text: str, *, is_foreign: bool = False, is_ros1: bool = False
+) -> tuple[list[MessageDefinition], list[Problem]]:
     """Parse the definition of a message, service or action.
 
     Args:
         name: full name, such as `my_msgs/srv/AddInts`.
         text: content of the file.
-        is_foreign: accept names of fields and constants that ROS 2 refuses, for definitions in bags.
+        is_foreign: accept names of types, fields and constants that ROS 2 refuses, for definitions in bags.
+        is_ros1: accept names of fields and constants that ROS 2 refuses, such as `int64 A`.
 
     Returns:
         One definition for each part (request and response, for example), and all problems.
     """
     _, kind, _ = name.split("/")
-    reader = _Reader(name, is_foreign)
+    reader = _Reader(name, is_foreign, has_any_names=is_foreign or is_ros1)
     lines = text.replace("\r\n", "\n").split("\n")
     for number, line in enumerate(lines, 1):
         reader.read(number, line)
@@ -150,12 +153,18 @@ def parse_interface(name: str, text: str, *, is_foreign: bool = False) -> tuple[
     return reader.parts, reader.problems
 
 
+def names_of_ros1(part: MessageDefinition) -> list[str]:
+    """Return the names of fields and constants in a definition that ROS 2 refuses, such as `A` of `int64 A`."""
+    fields = [name for name, _ in part.fields if not _FIELD_NAME.fullmatch(name)]
+    return fields + [name for name, _, _ in part.constants if not _CONSTANT_NAME.fullmatch(name)]
+
+
 class _Reader:
     """Reader of the lines of one definition file."""
 
-    def __init__(self, name: str, is_foreign: bool) -> None:
+    def __init__(self, name: str, is_foreign: bool, *, has_any_names: bool) -> None:
         self.package, self.kind, _ = name.split("/")
-        self.is_foreign = is_foreign
+        self.is_foreign, self._has_any_names = is_foreign, has_any_names
         self.parts = [MessageDefinition()]
         self.problems: list[Problem] = []
         self._names: set[str] = set()
@@ -229,7 +238,7 @@ class _Reader:
         return f"{packages[0] if packages else self.package}/msg/{short}"
 
     def _is_valid_name(self, number: int, name: str, pattern: re.Pattern[str], what: str) -> bool:
-        pattern = _FOREIGN_NAME if self.is_foreign else pattern
+        pattern = _FOREIGN_NAME if self._has_any_names else pattern
         if not pattern.fullmatch(name):
             case, change = ("upper", str.upper) if pattern is _CONSTANT_NAME else ("lower", _snake_case)
             text = f"{name!r:.80} is not the name of a {what}; expected {case}-case letters, digits and single _"

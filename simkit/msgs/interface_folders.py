@@ -54,6 +54,16 @@ def _package_xml_name(folder: Path) -> str:
     return match[1].decode() if match else folder.name
 
 
+def is_in_ros1_package(file: Path) -> bool:
+    """Check whether the package of a definition file is built with catkin, the build tool of ROS 1."""
+    for ancestor in file.resolve().parents[:4]:
+        try:
+            return b"catkin" in read_input(ancestor / "package.xml", 65536, inside=ancestor)
+        except OSError:
+            continue
+    return False
+
+
 def _prefixes() -> list[Path]:
     return [Path(p) for p in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
 

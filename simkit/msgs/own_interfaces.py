@@ -7,9 +7,10 @@ loaded world. A type has one definition in a process.
 
 from __future__ import annotations
 
+import logging
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Final
@@ -28,14 +29,16 @@ from simkit.msgs.definition_parser import (
     MessageDefinition,
     interface_of,
     name_problem,
+    names_of_ros1,
     parse_interface,
 )
-from simkit.msgs.interface_folders import definitions_in, installed_file, installed_names
+from simkit.msgs.interface_folders import definitions_in, installed_file, installed_names, is_in_ros1_package
 from simkit.msgs.shipped_interfaces import rosbags_types, shipped_message_types, shipped_parts
 from simkit.msgs.type_limits import DefinitionTooLarge, check_size
 
 VARIABLE: Final = "SIMKIT_INTERFACES"
 _DIFFERS, _TOO_LARGE, _UNREADABLE = "SK-INTERFACE-004", "SK-INTERFACE-005", "SK-INTERFACE-006"
+_NAMES_OF_ROS1: Final = "SK-INTERFACE-007"
 _LARGEST_FILE: Final = 1 << 20  # [bytes]; the longest definition of ROS 2 Jazzy has 20 kB with its comments
 
 
@@ -71,6 +74,8 @@ InterfaceFinder = Callable[[str, str], Path | None]
 _added: dict[str, OwnInterface] = {}
 _received: dict[str, tuple[str, str]] = {}  # text and sender of definitions that were not used yet
 _used: set[str] = set()  # names that were looked up
+_left_out: dict[str, list[Diagnostic]] = {}  # problems of definitions in folders that were left out
+_told: set[str] = set()  # reports that were printed
 _missing: set[str] = set()  # names that no folder has; looked up again after a change of the folders
 _finders: list[InterfaceFinder] = []
 _read_variable = ""
@@ -83,6 +88,8 @@ def find(name: str) -> OwnInterface | None:
         InterfaceError: the definition, or another definition in its folder, has errors.
     """
     read_environment()
+    if name in _left_out and name not in _added:
+        raise InterfaceError(_left_out[name])
     if name not in _added and name not in _missing:
         # a package std_msgs of a ROS workspace must not compete with simkit's types
         source = _located(name) if shipped_parts(name) is None else None
@@ -132,7 +139,7 @@ def add_received(texts: Mapping[str, str]) -> None:
     Raises:
         InterfaceError: see `add`.
     """
-    add_definitions(texts)
+    _add_all(list(texts.items()), is_ros1=True)
 
 
 def remember_received(texts: Mapping[str, str], sender: str) -> None:
@@ -157,11 +164,16 @@ def remember_received(texts: Mapping[str, str], sender: str) -> None:
     _missing.clear()
 
 
-def add_folders(folders: Iterable[str | os.PathLike[str]]) -> None:
+def add_folders(folders: Iterable[str | os.PathLike[str]]) -> list[Diagnostic]:
     """Define all interfaces in folders: ROS packages, workspaces, or folders with definition files.
 
+    A definition with errors is left out, with those that use it; the others can be used.
+
+    Returns:
+        Warnings about definitions that were left out, and notes about names that only ROS 1 allows.
+
     Raises:
-        InterfaceError: a folder or a definition has errors; the exception lists all of them.
+        InterfaceError: a folder has no definitions, or all its definitions have errors; the exception lists all errors.
     """
     definitions: list[tuple[str, str | Path]] = []
     problems: list[Diagnostic] = []
@@ -177,7 +189,23 @@ def add_folders(folders: Iterable[str | os.PathLike[str]]) -> None:
             hint = "give a ROS package, a workspace, or a folder such as my_msgs with my_msgs/msg/Num.msg"
             problems.append(Diagnostic(_UNREADABLE, "error", f"interfaces: {str(path)!r} {what}", hint=hint))
         definitions += in_folder
-    _add_all(definitions, problems)
+    batch = _Batch(list(problems))
+    for name, source in definitions:
+        batch.read(name, source)
+    batch.check()
+    reports = [] if problems else batch.leave_out_invalid()
+    _store(batch)
+    return [*reports, *batch.notes]
+
+
+def note_told(reports: Iterable[Diagnostic]) -> None:
+    """Note that reports of `add_folders` were printed, so that a world with the same folders does not repeat them."""
+    _told.update(str(report) for report in reports)
+
+
+def untold(reports: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """Return the reports that were not printed yet."""
+    return [report for report in reports if str(report) not in _told]
 
 
 def add_definitions(definitions: Mapping[str, str | Path]) -> None:
@@ -200,7 +228,8 @@ def read_environment() -> None:
     if value != _read_variable:
         _read_variable = value  # first, because the search for a type that a definition uses comes here again
         try:
-            add_folders(folder for folder in value.split(os.pathsep) if folder)
+            for report in add_folders(folder for folder in value.split(os.pathsep) if folder):
+                logging.getLogger("simkit").warning("%s", report)
         except BaseException:
             _read_variable = ""
             raise
@@ -252,25 +281,36 @@ def _located(name: str) -> Path | str | None:
     return installed_file(package, file) or next((f for find in _finders if (f := find(package, file))), None)
 
 
-def _add_all(definitions: Sequence[tuple[str, str | Path]], problems: Sequence[Diagnostic] = ()) -> None:
+def _add_all(definitions: Sequence[tuple[str, str | Path]], *, is_ros1: bool = False) -> None:
     """Parse, check and store definitions, and those definitions in workspaces that they use.
 
     Args:
         definitions: name, and text or file, of each definition.
-        problems: problems that were found before.
+        is_ros1: accept names of fields and constants that only ROS 1 allows.
 
     Raises:
         InterfaceError: there are problems; nothing is stored.
     """
-    batch = _Batch(list(problems))
+    batch = _Batch([])
     for name, source in definitions:
-        batch.read(name, source)
+        batch.read(name, source, is_ros1=is_ros1)
     batch.check()
+    _store(batch)
+
+
+def _store(batch: _Batch) -> None:
+    """Store the definitions of a batch.
+
+    Raises:
+        InterfaceError: there are problems; nothing is stored.
+    """
     if batch.problems:
         raise InterfaceError(batch.problems)
     if batch.interfaces:
         _added.update(batch.interfaces)
         _missing.clear()
+        for name in batch.interfaces:
+            _left_out.pop(name, None)
 
 
 class _Batch:
@@ -278,16 +318,19 @@ class _Batch:
 
     def __init__(self, problems: list[Diagnostic]) -> None:
         self.problems = problems
+        self.notes: list[Diagnostic] = []
         self.interfaces: dict[str, OwnInterface] = {}
         self._waiting: list[OwnInterface] = []
 
-    def read(self, name: str, source: str | Path, label: str = "") -> None:
+    def read(self, name: str, source: str | Path, label: str = "", *, is_ros1: bool = False) -> None:
         """Parse one definition and compare it with the definition that the type may have already.
 
         Args:
             name: full name of the interface.
             source: text or file.
             label: source of a text in messages; default: the name.
+            is_ros1: accept names of fields and constants that only ROS 1 allows; a file of a catkin package may have
+                such names in any case.
         """
         file = str(source) if isinstance(source, Path) else label or name
         wrong = name_problem(name)
@@ -302,10 +345,47 @@ class _Batch:
         except (OSError, UnicodeDecodeError) as error:
             self._report(file, _UNREADABLE, 0, f"the definition cannot be read: {read_failure(error)}")
             return
-        parts, mistakes = parse_interface(name, text)
+        has_any_names = is_ros1 or bool(label) or (isinstance(source, Path) and is_in_ros1_package(source))
+        parts, mistakes = parse_interface(name, text, is_ros1=has_any_names)
+        self._note_names(parts, source)
         for problem in mistakes:
             self._report(file, problem.code, problem.line, problem.message, problem.hint)
         self._put(OwnInterface(name, tuple(parts), file), is_valid=not mistakes)
+
+    def _note_names(self, parts: Sequence[MessageDefinition], source: str | Path) -> None:
+        names = [name for part in parts for name in names_of_ros1(part)] if isinstance(source, Path) else []
+        if names:
+            text = f"names that ROS 1 allows and ROS 2 refuses: {', '.join(names)}"
+            self.notes.append(Diagnostic(_NAMES_OF_ROS1, "note", text, str(source)))
+
+    def leave_out_invalid(self) -> list[Diagnostic]:
+        """Leave out the definitions with errors and those that use them; return a warning for each error.
+
+        If no valid definition remains, nothing changes and the result is empty.
+        """
+        reports: list[Diagnostic] = []
+        kept, problems = dict(self.interfaces), self.problems
+        while problems:
+            files = {problem.file for problem in problems}
+            invalid = {name for name, interface in kept.items() if interface.source in files}
+            kept = {name: interface for name, interface in kept.items() if name not in invalid}
+            reports += problems
+            problems = [
+                Diagnostic(UNKNOWN_TYPE, "error", f"{used} is left out", interface.source, part.lines[field])
+                for interface in kept.values()
+                for part in interface.parts
+                for field, used in part.used_types()
+                if used in invalid
+            ]
+        if not kept:
+            return []
+        for name, interface in self.interfaces.items():
+            if name not in kept:
+                _left_out[name] = [problem for problem in reports if problem.file == interface.source]
+        self.interfaces, self.problems = kept, []
+        for interface in kept.values():
+            self._check_size(interface)
+        return [replace(r, severity="warning", message=f"{r.message}; the definition is left out") for r in reports]
 
     def _put(self, interface: OwnInterface, *, is_valid: bool) -> None:
         known = self.interfaces.get(interface.name) or _added.get(interface.name) or _shipped(interface.name)
@@ -368,7 +448,11 @@ class _Batch:
 def _received_interface(name: str) -> OwnInterface | None:
     """Return an interface that was received and not used yet."""
     text, sender = _received.get(name, ("", ""))
-    return OwnInterface(name, tuple(parse_interface(name, text)[0]), f"{name} of {sender}") if sender else None
+    return (
+        OwnInterface(name, tuple(parse_interface(name, text, is_ros1=True)[0]), f"{name} of {sender}")
+        if sender
+        else None
+    )
 
 
 def _shipped(name: str) -> OwnInterface | None:

@@ -520,6 +520,10 @@ class Simulation(ScriptGraph, InProcess):
         check_table(values, object, "values", "parameters")
         self._started_programs("sim.set_ros_parameters").set_parameters(values)
 
+    def ros1_parameters(self) -> Any:
+        """Return the parameter server of ROS 1, which all programs of ROS 1 share; for clients in other processes."""
+        return self._started_programs("sim.set_ros_parameters").parameters
+
     def _started_programs(self, name: str) -> Programs:
         """Return the programs of the simulation, which a user's name needs."""
         self.engine.check_open()

@@ -237,6 +237,10 @@ class Programs(Protocol):
     programs: list[Any]
     ended_by: str
 
+    @property
+    def parameters(self) -> Any:
+        """Parameter server of ROS 1."""
+
     def add(
         self,
         program: str | PathLike[str] | Callable[[], object],

@@ -173,6 +173,40 @@ def test_problems_of_all_folders_and_files_are_reported_together_with_their_file
     assert sorted(d.code[-1] for d in caught.value.diagnostics) == ["1", "2", "3", "6"]
 
 
+def test_a_definition_with_errors_is_left_out_with_those_that_use_it(write: Write, tmp_path: Path) -> None:
+    bad = write("own_r/msg/Bad.msg", "int64 num\nint64 num\n")
+    user = write("own_r/msg/User.msg", "float32 value\nBad bad\n")
+    write("own_r/msg/Good.msg", "int64 num\n")
+    reports = own_interfaces.add_folders([tmp_path / "own_r"])
+    assert [(r.code, r.severity, r.file, r.line) for r in reports] == [
+        ("SK-INTERFACE-001", "warning", str(bad), 2),
+        ("SK-INTERFACE-003", "warning", str(user), 2),
+    ]
+    assert msgs.make("own_r/Good", num=3).num == 3
+    with pytest.raises(InterfaceError, match="defined twice"):
+        msgs.make("own_r/Bad")
+    bad.write_text("int64 num\n", encoding="utf-8")
+    assert own_interfaces.add_folders([tmp_path / "own_r"]) == []
+    assert msgs.make("own_r/User", bad={"num": 4}).bad.num == 4
+
+
+def test_a_catkin_package_may_have_the_names_and_types_of_ros_1(write: Write, tmp_path: Path) -> None:
+    catkin = "<package><name>own_t</name><buildtool_depend>catkin</buildtool_depend></package>"
+    write("own_t/package.xml", catkin)
+    file = write("own_t/srv/AddInts.srv", "int64 A\nint64 B\n---\nint64 Sum\n")
+    write("own_t/msg/Stamped.msg", "Header header\ntime begin\nduration length\n")
+    (note,) = own_interfaces.add_folders([tmp_path / "own_t"])
+    assert (note.code, note.severity, note.file) == ("SK-INTERFACE-007", "note", str(file))
+    assert "A, B, Sum" in note.message
+    request = msgs.make("own_t/srv/AddInts_Request", A=1, B=2)
+    assert msgs.deserialize(msgs.serialize(request), "own_t/srv/AddInts_Request") == request
+    stamped = msgs.make("own_t/Stamped", header={"frame_id": "map"}, begin={"sec": 1}, length={"sec": 2})
+    assert (stamped.header.frame_id, stamped.begin.sec, stamped.length.sec) == ("map", 1, 2)
+    write("own_t/package.xml", catkin.replace("catkin", "ament_cmake").replace("own_t", "own_u"))
+    with pytest.raises(InterfaceError, match="is not the name of a field"):
+        own_interfaces.add_folders([tmp_path / "own_t" / "srv"])
+
+
 def test_the_variable_and_a_ros_workspace_are_read(
     write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

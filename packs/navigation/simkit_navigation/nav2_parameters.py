@@ -23,7 +23,9 @@ from simkit_navigation.plugins.navigation.behavior_server import BehaviorServer
 from simkit_navigation.plugins.navigation.bt_navigator import BtNavigator
 from simkit_navigation.plugins.navigation.controller_server import ControllerServer
 from simkit_navigation.plugins.navigation.costmap_2d import Costmap2D
+from simkit_navigation.plugins.navigation.costmap_parameters import costmap_parameters
 from simkit_navigation.plugins.navigation.planner_server import PlannerServer
+from simkit_navigation.plugins.navigation.smoother_server import SmootherServer
 from simkit_navigation.plugins.navigation.waypoint_follower import WaypointFollower
 
 Values = dict[str, object]
@@ -38,7 +40,15 @@ _EKF_INPUT: Final = re.compile(
 )
 _PURSUIT: Final = "nav2_regulated_pure_pursuit_controller::RegulatedPurePursuitController"
 _SHIM: Final = "nav2_rotation_shim_controller::RotationShimController"
-_NAVFN: Final = "nav2_navfn_planner::NavfnPlanner"
+_TUTORIAL_CLASSES: Final = frozenset(
+    (
+        "nav2_gradient_costmap_plugin::GradientLayer",
+        "nav2_pure_pursuit_controller::PurePursuitController",
+        "nav2_straightline_planner::StraightLine",
+    )
+)
+"""Classes of Nav2's tutorials, which a user often replaces by a class of his own with other parameters."""
+_PREFIXES_OF_NAV2: Final = ("nav2_", "dwb_", "opennav_")
 _MOTION_MODELS: Final = {
     "differential": "nav2_amcl::DifferentialMotionModel",
     "omnidirectional": "nav2_amcl::OmniMotionModel",
@@ -85,14 +95,19 @@ class PluginOfNode:
 def _add_elements(
     element: Params,
     values: Mapping[str, object],
-    names: Collection[str],
+    names: Collection[str] | None,
     prefix: str,
     unused: list[str],
     places: Places,
 ) -> None:
-    """Add the values that have an effect to an element; a value without a place has that of its block."""
+    """Add the values that have an effect to an element; a value without a place has that of its block.
+
+    Without `names`, all values are added: a class of a user reads them.
+    """
     for key, value in values.items():
-        is_known = _ELEMENT.fullmatch(key) is not None and (key in names or _EKF_INPUT.fullmatch(key) is not None)
+        is_known = _ELEMENT.fullmatch(key) is not None and (
+            names is None or key in names or _EKF_INPUT.fullmatch(key) is not None
+        )
         if not is_known:
             if prefix or key not in _OF_ALL_NODES:
                 unused.append(f"{prefix}{key}")
@@ -101,8 +116,15 @@ def _add_elements(
         text = "" if isinstance(value, Mapping) else _text(value)
         child = Params(key, text, where=where, diagnostics=element.diagnostics)
         if isinstance(value, Mapping):
-            _add_elements(child, value, names, f"{prefix}{key}.", unused, places)
+            inner = None if is_class_of_user(value.get("plugin")) else names
+            _add_elements(child, value, inner, f"{prefix}{key}.", unused, places)
         element.children.append(child)
+
+
+def is_class_of_user(kind: object) -> bool:
+    """Check whether the class of a block may be one that a user has written: its parameters are not known here."""
+    name = str(kind or "").replace("/", "::")
+    return name in _TUTORIAL_CLASSES or (bool(name) and not name.startswith(_PREFIXES_OF_NAV2))
 
 
 def _text(value: object) -> str:
@@ -218,31 +240,7 @@ def _amcl(values: Values, _: Values) -> list[PluginOfNode]:
 
 
 def _costmap(name: str, values: Values) -> PluginOfNode:
-    plugin = PluginOfNode(Costmap2D, name, {"robot_base_frame": "base_link", **values})
-    layers = _names(values.get("plugins"))
-    kept = []
-    for layer in layers:
-        block = values.get(layer)
-        settings = dict(block) if isinstance(block, dict) else {}
-        kind = str(settings.get("plugin", "")).replace("/", "::")
-        if kind == "nav2_costmap_2d::VoxelLayer" or kind.endswith("VoxelLayer"):
-            settings["plugin"] = "nav2_costmap_2d::ObstacleLayer"
-            plugin.told.append(f"{layer}: an ObstacleLayer replaces the VoxelLayer")
-        elif kind and kind.startswith("nav2_") and kind.rpartition("::")[2] not in _LAYERS:
-            plugin.told.append(f"{layer}: the layer {kind} is left out")
-            continue
-        plugin.values[layer] = _without_clouds(layer, settings, plugin)
-        kept.append(layer)
-    if layers:
-        plugin.values["plugins"] = kept
-    plugin.blocks += kept
-    filters = _names(plugin.values.pop("filters", None))
-    if filters:
-        plugin.told.append(f"the filters {', '.join(filters)} are left out")
-    for block_name, block in values.items():  # a block of a layer that is not in the list has no effect in Nav2, either
-        if isinstance(block, dict) and "plugin" in block and layers and block_name not in kept:
-            plugin.values.pop(block_name, None)
-    return plugin
+    return PluginOfNode(Costmap2D, name, *costmap_parameters(values))
 
 
 def costmap_plugin(name: str, values: Values) -> PluginOfNode:
@@ -250,39 +248,16 @@ def costmap_plugin(name: str, values: Values) -> PluginOfNode:
     return _costmap(name, values)
 
 
-_LAYERS: Final = frozenset(("StaticLayer", "ObstacleLayer", "InflationLayer"))
-
-
-def _without_clouds(layer: str, settings: Values, plugin: PluginOfNode) -> Values:
-    """Return the settings of a layer without its sources that are no laser scans."""
-    sources = _names(settings.get("observation_sources"))
-    scans = []
-    for source in sources:
-        block = settings.get(source)
-        kind = block.pop("data_type", "LaserScan") if isinstance(block, dict) else "LaserScan"
-        if kind == "LaserScan":
-            scans.append(source)
-        else:
-            settings.pop(source, None)
-            plugin.told.append(f"{layer}: the source {source} ({kind}) is left out; only laser scans are used")
-    if sources:
-        settings["observation_sources"] = " ".join(scans)
-        plugin.blocks += scans
-        if not scans:
-            settings["enabled"] = False
-    return settings
-
-
 def _planner(values: Values, costmap: Values) -> list[PluginOfNode]:
     plugin = PluginOfNode(PlannerServer, "planner_server", {**_frame_of(costmap), **values})
-    for name in _names(values.get("planner_plugins")):
-        plugin.blocks.append(name)
-        settings = _block(plugin.values, name)
-        kind = str(settings.get("plugin", "")).replace("/", "::")
-        if kind.startswith("nav2_") and kind != _NAVFN:
-            plugin.told.append(f"{name}: the planner {_NAVFN} replaces {kind}")
-            settings["plugin"] = _NAVFN
+    plugin.blocks += _names(values.get("planner_plugins"))
     return [_costmap("global_costmap", costmap), plugin]
+
+
+def _smoother(values: Values, _: Values) -> list[PluginOfNode]:
+    plugin = PluginOfNode(SmootherServer, "smoother_server", {"robot_base_frame": "base_link", **values})
+    plugin.blocks += _names(values.get("smoother_plugins"))
+    return [plugin]
 
 
 def _controller(values: Values, costmap: Values) -> list[PluginOfNode]:
@@ -295,7 +270,7 @@ def _controller(values: Values, costmap: Values) -> list[PluginOfNode]:
         if kind == _SHIM:
             kind = str(settings.get("primary_controller", "")).replace("/", "::")
             settings["plugin"] = kind
-        if not kind or kind == _PURSUIT or ".py:" in kind:
+        if not kind or kind == _PURSUIT or is_class_of_user(kind):
             continue
         plugin.told.append(f"{name}: the controller {_PURSUIT} replaces {kind}")
         plugin.values[name] = _pursuit_settings(settings)
@@ -386,6 +361,7 @@ def _ukf(values: Values, _: Values) -> list[PluginOfNode]:
 SERVER_NODES: Final[Mapping[str, ServerNode]] = {
     "amcl": ServerNode(_amcl, "amcl", has_live_parameters=True),
     "planner_server": ServerNode(_planner, "planner_server", "global_costmap"),
+    "smoother_server": ServerNode(_smoother, "smoother_server"),
     "controller_server": ServerNode(_controller, "controller_server", "local_costmap"),
     "behavior_server": ServerNode(_behaviors, "behavior_server", "local_costmap"),
     "recoveries_server": ServerNode(_behaviors, "recoveries_server", "local_costmap"),

@@ -56,10 +56,9 @@ def test_each_replaced_class_and_each_parameter_without_effect_is_told_once(fold
         add_navigation(sim, "amcl")
         sim.run(0.5)
         told = "\n".join(warnings(sim, "SK-NAV-001"))
-        assert "/controller_server: voxel_layer: an ObstacleLayer replaces the VoxelLayer" in told
-        assert "voxel_layer: the source camera (PointCloud2) is left out" in told
+        assert "voxel_layer" not in told
         assert "RegulatedPurePursuitController replaces dwb_core::DWBLocalPlanner" in told
-        assert "NavfnPlanner replaces nav2_smac_planner::SmacPlanner2D" in told
+        assert "GridBased" not in told
         assert warnings(sim, "SK-NAV-002") == ["/amcl: no effect here: beam_skip_distance, initial_pose.z"]
         assert not [item for item in sim.diagnostics if item.code in ("SK-PARAM-003", "SK-SERVICE-004")]
 
@@ -102,19 +101,19 @@ def test_the_map_is_published_with_the_activation_and_can_be_replaced(folder: Pa
 
 def test_the_manager_goes_on_without_a_node_that_does_not_exist(folder: Path) -> None:
     with simkit.load(rooms()) as sim:
-        sim.add_node("nav2_smoother/smoother_server")
-        params = {"autostart": True, "node_names": ["ghost", "smoother_server"]}
+        sim.add_node("nav2_route/route_server")
+        params = {"autostart": True, "node_names": ["ghost", "route_server"]}
         sim.add_node("nav2_lifecycle_manager/lifecycle_manager", params=params)
         sim.run(6.0)
         assert warnings(sim, "SK-NAV-003") == [
             "/lifecycle_manager: no node 'ghost' after 5 s; the others are managed without it"
         ]
-        assert "paths are not smoothed" in warnings(sim, "SK-NAV-004")[0]
-        assert sim.call("/smoother_server/get_state").current_state.label == "active"
+        assert "there are no routes on a graph" in warnings(sim, "SK-NAV-004")[0]
+        assert sim.call("/route_server/get_state").current_state.label == "active"
         assert sim.call("/lifecycle_manager/is_active").success
         sim.call("/lifecycle_manager/manage_nodes", {"command": 1}, on_done=lambda _: None)  # PAUSE
         sim.run(0.2)
-        assert sim.call("/smoother_server/get_state").current_state.label == "inactive"
+        assert sim.call("/route_server/get_state").current_state.label == "inactive"
 
 
 def test_a_parameter_that_is_not_valid_ends_the_activation_with_the_reason(folder: Path) -> None:

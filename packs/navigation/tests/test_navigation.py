@@ -126,12 +126,12 @@ def test_several_poses_are_reached_in_turn(tmp_path: Path) -> None:
     with simkit.load(world(tmp_path)) as sim:
         sim.run(1.3)
         feedback: list[Any] = []
-        poses = [pose(0.5, 0.1), pose(0.9, 0.4, 0.7)]
+        poses = [pose(0.9, 0.0), pose(1.1, 0.6, 0.7)]
         goal = sim.send_goal("/navigate_through_poses", {"poses": poses}, on_feedback=feedback.append)
         run_until_done(sim, goal)
         assert goal.status.name == "SUCCEEDED"
         assert {one.number_of_poses_remaining for one in feedback} == {1, 2}
-        distance, angle = reached(sim, 0.9, 0.4, 0.7)
+        distance, angle = reached(sim, 1.1, 0.6, 0.7)
         assert distance < 0.08 and angle < 4.0
 
 

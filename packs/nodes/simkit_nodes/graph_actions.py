@@ -380,7 +380,7 @@ class GraphActionClient(GraphEndpoint):
         """Close the client; its goals continue."""
         if self.is_open:
             self.is_open = False
-            self.actions.clients.remove(self)
+            self.actions.remove_client(self)
         if self in self.node.endpoints:
             self.node.endpoints.remove(self)
 

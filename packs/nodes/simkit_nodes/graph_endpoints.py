@@ -80,6 +80,9 @@ class OutsideTable(Protocol):
     def find(self, name: str) -> object:
         """Return the one that a new one of the name would clash with; None without one."""
 
+    def open_client(self, name: str, type_name: str, *, node: str) -> Closable:
+        """Note a client of a program, for lists of nodes."""
+
 
 ServerT = TypeVar("ServerT", bound=GraphEndpoint)
 ClientT = TypeVar("ClientT", bound=GraphEndpoint)
@@ -102,6 +105,7 @@ class GraphTable(ABC, Generic[ServerT, ClientT, OpenedT]):
         self.clients: list[ClientT] = []
         self._servers: dict[str, list[ServerT]] = {}
         self._opened: dict[str, OpenedT] = {}
+        self._noted: dict[ClientT, Closable] = {}
 
     @abstractmethod
     def _open(self, name: str) -> None:
@@ -129,7 +133,13 @@ class GraphTable(ABC, Generic[ServerT, ClientT, OpenedT]):
     def add_client(self, client: ClientT) -> None:
         """Add a client; it knows the servers of other programs after the discovery."""
         self.clients.append(client)
+        self._noted[client] = self._outside.open_client(client.name, client.type_name, node=client.node.name)
         self._graph.after_discovery(client.node, client.discover)
+
+    def remove_client(self, client: ClientT) -> None:
+        """Remove a client."""
+        self.clients.remove(client)
+        self._noted.pop(client).close()
 
     def is_known(self, client: ClientT) -> bool:
         """Check whether a client knows a server of its name and type: that of its own program at once, as in ROS."""

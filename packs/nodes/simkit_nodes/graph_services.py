@@ -182,7 +182,7 @@ class GraphClient(GraphEndpoint):
         """Close the client; responses that have not arrived are lost."""
         if self.is_open:
             self.is_open = False
-            self._services.clients.remove(self)
+            self._services.remove_client(self)
         if self in self.node.endpoints:
             self.node.endpoints.remove(self)
 

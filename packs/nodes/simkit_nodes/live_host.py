@@ -24,9 +24,11 @@ from simkit.bridges.simulation_link import SimulationLink
 from simkit.live import LiveClosed, LiveError
 from simkit.msgs import type_of
 from simkit_nodes.graph import Graph, GraphNode
+from simkit_nodes.live_parameters import SharedParameterServer
 from simkit_nodes.live_services import LiveActions, LiveServices
 from simkit_nodes.live_topics import LiveTopics
 from simkit_nodes.program_lock import ProgramLock, locked
+from simkit_nodes.ros1_parameters import SERVER
 
 if TYPE_CHECKING:
     from types import FrameType
@@ -176,11 +178,17 @@ class LiveHost:
     def start(self, program: NodeProgram) -> None:
         """Exchange data with the simulation from now on, and let Ctrl-C end the program."""
         self._program = program
+        self._graph.shared[SERVER] = SharedParameterServer(self.ask)
         signal.signal(signal.SIGINT, self._on_interrupt)
         with self.lock:
             self._request_graph()
             self._link.wait(self._has_graph, self._link.timeout)
         self._thread.start()
+
+    def ask(self, question: str, **args: object) -> Any:
+        """Send a request to the simulation and return its answer."""
+        with self.lock:
+            return self._link.request(question, args)[0]
 
     def close(self) -> None:
         """Send what waits, close the connection and stop the exchange of data."""

@@ -65,6 +65,26 @@ class LiveEndpoint:
             self.link.ask("close_endpoint", {"number": self.number})
 
 
+class LiveClient:
+    """Client that a program has of a service or an action of the simulation, for lists of nodes.
+
+    Args:
+        link: connection to the simulation.
+        kind: `service` or `action`.
+        name: absolute name of the service or action.
+        type_name: type of the service or action.
+        node: full name of the node that has the client.
+    """
+
+    def __init__(self, link: SimulationLink, kind: str, name: str, type_name: str, node: str) -> None:
+        self._link, self._number = link, link.next_number()
+        link.ask("open_client", {"number": self._number, "kind": kind, "name": name, "type": type_name, "node": node})
+
+    def close(self) -> None:
+        """Remove the client from the lists of nodes."""
+        self._link.ask("close_endpoint", {"number": self._number})
+
+
 class LiveServices:
     """Services of a simulation in another process.
 
@@ -95,6 +115,10 @@ class LiveServices:
         """Return the service of this process with a name; None without one. The simulation refuses any other clash."""
         service = self._opened.get(name)
         return service if service is not None and service.is_open else None
+
+    def open_client(self, name: str, type_name: str, *, node: str) -> LiveClient:
+        """Note a client of a program, for lists of nodes."""
+        return LiveClient(self._link, "service", name, type_name, node)
 
     def offer(self, name: str, type_name: str, handler: Callable[[Message], Message], *, remote: Any) -> LiveEndpoint:
         """Open a service whose calls `remote` receives."""
@@ -298,6 +322,10 @@ class LiveActions:
         """Return the action of this process with a name; None without one. The simulation refuses any other clash."""
         action = self._opened.get(name)
         return action if action is not None and action.is_open else None
+
+    def open_client(self, name: str, type_name: str, *, node: str) -> LiveClient:
+        """Note a client of a program, for lists of nodes."""
+        return LiveClient(self.link, "action", name, type_name, node)
 
     def act(
         self,

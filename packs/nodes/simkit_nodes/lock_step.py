@@ -16,7 +16,7 @@ from simkit_nodes.graph import Graph
 from simkit_nodes.known_nodes import KnownNode
 from simkit_nodes.node_options import Keys, NodeOptions
 from simkit_nodes.programs import NodeProgram, program_source
-from simkit_nodes.ros1_parameters import set_run_parameters
+from simkit_nodes.ros1_parameters import ParameterServer, parameter_server, set_run_parameters
 from simkit_nodes.simulation_topics import SimulationTopics
 from simkit_nodes.task_host import TaskHost
 from simkit_nodes.tasks import TaskScheduler, current_task, deadlocked_tasks
@@ -174,6 +174,11 @@ class LockStep(TaskHost):
     def set_parameters(self, values: Mapping[str, object]) -> None:
         """Set parameters of ROS 1 for all programs. See `Simulation.set_ros_parameters`."""
         set_run_parameters(self, values)
+
+    @property
+    def parameters(self) -> ParameterServer:
+        """Parameter server of ROS 1, which clients in other processes use, too."""
+        return parameter_server(self)
 
     def _prepare_start(self, program: NodeProgram) -> None:
         """Start a program, or let it wait for the condition of its start."""

@@ -12,7 +12,8 @@ from simkit_nodes.ros1_names import SEP, is_global, is_legal_name, is_private
 if TYPE_CHECKING:
     from simkit_nodes.host import Host
 
-_SERVER: Final = "ROS 1 parameters"
+SERVER: Final = "ROS 1 parameters"
+"""Name of the parameter server among the objects that all programs share."""
 _VALUES: Final = (bool, int, float, str, bytes, datetime)
 _INTEGERS: Final = range(-(2**31), 2**31)
 
@@ -155,9 +156,9 @@ def _leaves(folder: dict[str, Any], prefix: str) -> Iterator[str]:
 
 def parameter_server(host: Host) -> ParameterServer:
     """Return the parameter server of the programs of a host; it begins with the parameters of the run."""
-    server = host.graph.shared.get(_SERVER)
+    server = host.graph.shared.get(SERVER)
     if server is None:
-        server = host.graph.shared[_SERVER] = ParameterServer(host.graph.run_parameters)
+        server = host.graph.shared[SERVER] = ParameterServer(host.graph.run_parameters)
     assert isinstance(server, ParameterServer)
     return server
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import simkit
+from simkit.bridges.teleop import Teleop, find_target
 
 MIDDLE = 5.544445
 SIZE = 499 / 45
@@ -160,7 +161,7 @@ def test_requests_without_a_meaning_are_refused_in_the_log(
     assert set(sim.models) == {"square", "turtle1"}
 
 
-def test_pens_draw_in_their_colour_and_clear_wipes_with_the_background(sim: simkit.Simulation) -> None:
+def test_the_background_changes_at_once_below_the_trails_of_pens_which_clear_wipes(sim: simkit.Simulation) -> None:
     assert colours(sim) - {BACKGROUND} and PEN not in colours(sim)  # the turtle is drawn, too
     drive(sim, x=2.0)
     assert PEN in colours(sim)
@@ -168,6 +169,8 @@ def test_pens_draw_in_their_colour_and_clear_wipes_with_the_background(sim: simk
     drive(sim, x=2.0)
     assert (255, 10, 0) in colours(sim)
     sim.set_parameter("/turtlesim", "background_r", 200)
+    found = colours(sim)
+    assert {(200, *BACKGROUND[1:]), PEN, (255, 10, 0)} <= found and BACKGROUND not in found  # trails stay
     sim.call("/clear")
     found = colours(sim)
     assert (200, *BACKGROUND[1:]) in found and not found & {PEN, (255, 10, 0), BACKGROUND}
@@ -220,6 +223,35 @@ def test_a_removed_model_removes_its_turtle(sim: simkit.Simulation) -> None:
     sim.run(0.1)
     assert set(sim.models) == {"square", "turtle1"}
     assert not any("turtle2" in topic for topic in sim.topics())
+
+
+def test_the_keys_of_teleop_are_those_of_turtle_teleop_key(sim: simkit.Simulation) -> None:
+    teleop = Teleop(sim, find_target(sim))
+    assert teleop.press("up") and not teleop.press("w")
+    sim.run(1.5)
+    assert pose(sim) == pytest.approx((MIDDLE + 2.0, MIDDLE, 0.0), abs=0.04)  # 2 m/s for 1 s
+    teleop.press("left")
+    sim.run(1.5)
+    assert pose(sim)[2] == pytest.approx(2.0, abs=0.04)
+    for key, heading in zip("gtredcvb", (0, 45, 90, 135, 180, -135, -90, -45), strict=True):
+        teleop.press(key.upper())
+        sim.run(3.5)
+        assert math.cos(pose(sim)[2] - math.radians(heading)) == pytest.approx(1.0, abs=3e-4)
+    teleop.press("d")
+    sim.run(0.5)
+    teleop.press("f")
+    sim.run(0.5)
+    assert math.degrees(pose(sim)[2]) == pytest.approx(-45 - 0.5 * 57.3, abs=3.0)  # the turn at 1 rad/s was cancelled
+    assert teleop.press("q") and not teleop.press("up")
+
+
+def test_teleop_of_another_turtle_turns_that_turtle(sim: simkit.Simulation) -> None:
+    sim.call("/spawn", {"x": 2.0, "y": 3.0})
+    teleop = Teleop(sim, find_target(sim, "/turtle2/cmd_vel"))
+    teleop.press("r")
+    sim.run(2.0)
+    assert pose(sim, "turtle2")[2] == pytest.approx(math.pi / 2, abs=0.03)
+    assert pose(sim)[2] == 0.0
 
 
 MIMIC = Path(__file__).parents[3] / "labs" / "01_turtlesim" / "mimic.sdf"

@@ -21,6 +21,7 @@ from simkit.msgs.message_types import Message
 if TYPE_CHECKING:
     from simkit.bridges.live.topic_feed import TopicFeeds
     from simkit.runtime.communication.action_server import Action, GoalHandle
+    from simkit.runtime.communication.endpoint_table import NamedClient
     from simkit.runtime.communication.parameter import Parameter
     from simkit.runtime.communication.publisher import Listener
     from simkit.runtime.communication.service_server import Service, ServiceCall
@@ -90,6 +91,24 @@ class ClientEndpoint:
         else:
             self.peer.send_json(TELL, {**words, "type": msgs.type_name(message)}, msgs.serialize(message))
         self.peer.write()  # at once: the client may wait for nothing else
+
+
+class ClientOfEndpoint:
+    """Client that a program in another process has of a service or an action.
+
+    Attributes:
+        opened: client in the table of the simulation.
+    """
+
+    def __init__(self, opened: NamedClient) -> None:
+        self.opened = opened
+
+    def send_due(self) -> None:
+        """Do nothing: requests and goals are sent apart."""
+
+    def close(self) -> None:
+        """Remove the client from the lists of nodes."""
+        self.opened.close()
 
 
 class ClientService(ClientEndpoint):

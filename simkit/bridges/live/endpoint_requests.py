@@ -11,6 +11,7 @@ from simkit.bridges.live.client_endpoints import (
     ClientAction,
     ClientEndpoint,
     ClientInput,
+    ClientOfEndpoint,
     ClientParameter,
     ClientService,
 )
@@ -127,6 +128,19 @@ def declare(request: Request) -> object:
     return {"node": parameter.node, "value": parameter.value}
 
 
+def open_client(request: Request) -> object:
+    """Note that a node of the client has a client of a service or an action."""
+    number, kind = request.new_number(request.peer.endpoints), request.arg("kind", str)
+    messages = request.sim.communication
+    if kind not in ("service", "action"):
+        raise RequestRefused(f"{kind!r:.80} is not a kind of client; expected service or action")
+    request.note_node(number)
+    table = messages.services if kind == "service" else messages.actions
+    opened = table.open_client(_name(request), request.arg("type", str), node=request.peer.node_of(number))
+    request.peer.endpoints[number] = ClientOfEndpoint(opened)
+    return None
+
+
 def close_endpoint(request: Request) -> object:
     """Close an endpoint of the client."""
     _endpoint(request, ClientEndpoint).close()
@@ -166,6 +180,7 @@ ENDPOINT_REQUESTS: Final[Mapping[str, RequestHandler]] = MappingProxyType(
         "update_goal": update_goal,
         "listen": listen,
         "declare": declare,
+        "open_client": open_client,
         "close_endpoint": close_endpoint,
         "subscribers": subscribers,
         "log": log,

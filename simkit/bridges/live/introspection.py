@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from simkit.runtime.simulation import Simulation
 
 
+_ENDPOINTS = ("publishers", "subscribers", "services", "service_clients", "actions", "action_clients")
+
+
 def topic_list(sim: Simulation, clients: Collection[ClientConnection]) -> list[JsonObject]:
     """List every topic with its publishers and subscribers, including clients, sorted by name."""
     names = NodeNames(sim, clients)
@@ -51,13 +54,15 @@ def node_list(sim: Simulation, clients: Collection[ClientConnection]) -> dict[st
     """List the nodes with their publishers, subscribers, services, actions and parameters.
 
     Returns:
-        Node -> `publishers`, `subscribers`, `services`, `actions` (each name -> types) and `parameters` (names).
+        Node -> `publishers`, `subscribers`, `services`, `service_clients`, `actions`, `action_clients` (each name ->
+        types) and `parameters` (names).
     """
     names = NodeNames(sim, clients)
     nodes: dict[str, JsonObject] = {}
 
     def entry(node: str) -> JsonObject:
-        fresh: JsonObject = {"publishers": {}, "subscribers": {}, "services": {}, "actions": {}, "parameters": []}
+        fresh: JsonObject = {kind: {} for kind in _ENDPOINTS}
+        fresh["parameters"] = []
         return nodes.setdefault(node, fresh)
 
     for row in topic_list(sim, clients):
@@ -73,6 +78,13 @@ def node_list(sim: Simulation, clients: Collection[ClientConnection]) -> dict[st
         action = sim.communication.actions.find(name)
         if action is not None:
             entry(names.endpoint_node(action))["actions"][name] = [action.type_name]
+    messages = sim.communication
+    for kind, clients_of_kind in (
+        ("service_clients", messages.services.clients),
+        ("action_clients", messages.actions.clients),
+    ):
+        for client in clients_of_kind:
+            entry(client.node)[kind][client.name] = [client.type_name]
     for node, parameters in sim.communication.parameters.items():
         entry(node)["parameters"] = list(parameters)
     for peer in clients:

@@ -340,6 +340,32 @@ def set_parameter(request: SimulationRequest) -> object:
     return None
 
 
+def use_parameter_server(request: SimulationRequest) -> object:
+    """Use the parameter server of ROS 1: get, set, add, delete or search a name, or list all names.
+
+    Returns:
+        The value, names or name; None for a deleted or stored value, and an empty list if there is no such parameter.
+        A value is in a list of one item.
+    """
+    server, action, name = request.sim.ros1_parameters(), request.arg("action", str), request.arg("name", str)
+    value = request.args.get("value")
+    try:
+        if action == "get":
+            return [server.get(name)]
+        if action == "search":
+            return [server.search(request.arg("node", str), name)]
+        if action == "names":
+            return server.names()
+        if action in ("set", "add", "delete"):
+            getattr(server, action)(*((name,) if action == "delete" else (name, value)))
+            return [None]
+    except KeyError:
+        return []
+    except (TypeError, OverflowError) as error:
+        raise RequestRefused(f"parameter {name!r:.80} of the parameter server: {error}") from None
+    raise RequestRefused(f"{action!r:.80} is not an action; expected get, set, add, delete, search or names")
+
+
 def view(request: Request) -> object:
     """Show the run in a browser, and return the address of the page."""
     if request.server.open_view is None:
@@ -367,6 +393,7 @@ REQUESTS: Final[Mapping[str, RequestHandler]] = MappingProxyType(
         "cancel": cancel,
         "parameters": lambda request: parameter_list(request.sim),
         "set_parameter": set_parameter,
+        "parameter_server": use_parameter_server,
         "nodes": lambda request: node_list(request.sim, request.server.peers.values()),
         "models": lambda request: list(request.sim.models),
         "view": view,

@@ -37,18 +37,22 @@ def interfaces_option() -> Any:
 def _define_interfaces(ctx: typer.Context, folders: list[str]) -> None:
     """Define the types in the folders of the option, before the command runs or completes a value.
 
-    If a definition has errors, the command ends with exit code 2.
+    A definition with errors is left out with a warning. If no definition remains, the command ends with exit code 2.
     """
     if not folders:
         return
-    from simkit.cli.terminal.output import print_error
+    from simkit.cli.terminal.output import print_error, print_note
     from simkit.errors import InterfaceError
     from simkit.home_folder import expand_home
     from simkit.msgs import own_interfaces
 
     paths = [expand_home(folder).absolute() for folder in folders]
     try:
-        own_interfaces.add_folders(paths)
+        reports = own_interfaces.add_folders(paths)
+        if not ctx.resilient_parsing:
+            for report in reports:
+                print_note(str(report))
+            own_interfaces.note_told(reports)
     except InterfaceError as error:
         if not ctx.resilient_parsing:
             print_error(error)

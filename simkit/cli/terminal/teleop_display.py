@@ -35,7 +35,7 @@ class DriverLine:
 
     def lines(self) -> list[str]:
         """Return the status line, the requested speeds and the keys."""
-        keys = _HOLONOMIC_HELP if self._teleop.target.sideways else _DRIVE_HELP
+        keys = self._teleop.target.key_help or (_HOLONOMIC_HELP if self._teleop.target.sideways else _DRIVE_HELP)
         return [self.text(), self.requested(), keys, _RUN_HELP]
 
     def text(self) -> str:

@@ -36,7 +36,7 @@ def read_interfaces(
     """
     try:
         own_interfaces.read_environment()
-        own_interfaces.add_folders(folders)
+        diagnostics.extend(own_interfaces.untold(own_interfaces.add_folders(folders)))
     except InterfaceError as error:
         diagnostics.extend(error.diagnostics)
     is_text = isinstance(source, str) and "<" in source

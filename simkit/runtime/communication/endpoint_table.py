@@ -9,6 +9,7 @@ from simkit import msgs
 from simkit.argument_checks import check_text
 from simkit.diagnostics import NOWHERE, name_hint
 from simkit.errors import ActionError, ServiceError
+from simkit.in_process import InProcess
 from simkit.msgs import Message
 from simkit.msgs.message_arguments import checked_message
 from simkit.msgs.message_types import interface_parts
@@ -42,12 +43,35 @@ class Endpoint(Protocol):
 E = TypeVar("E", bound=Endpoint)
 
 
+class NamedClient(InProcess):
+    """Client that a program has of a service or an action; lists of nodes show it.
+
+    Attributes:
+        name: absolute name of the service or action.
+        type_name: type of the service or action.
+        node: full name of the node that has the client.
+    """
+
+    def __init__(self, clients: list[NamedClient], name: str, type_name: str, node: str) -> None:
+        self._clients = clients
+        self.name, self.type_name, self.node = name, type_name, node
+        clients.append(self)
+
+    def close(self) -> None:
+        """Remove the client from the lists of nodes."""
+        if self in self._clients:
+            self._clients.remove(self)
+
+
 class EndpointTable(Generic[E]):
     """All services or all actions of a simulation.
 
     Args:
         bus: topic bus, which records the owner of each new endpoint.
         engine: engine that calls plugins.
+
+    Attributes:
+        clients: clients that programs have, in the order in which they were opened.
     """
 
     article: ClassVar[str]
@@ -59,6 +83,11 @@ class EndpointTable(Generic[E]):
     def __init__(self, bus: TopicBus, engine: Engine) -> None:
         self._bus, self._engine = bus, engine
         self._endpoints: dict[str, list[E]] = {}
+        self.clients: list[NamedClient] = []
+
+    def open_client(self, name: str, type_name: str, *, node: str) -> NamedClient:
+        """Note that a node of a program has a client; it has no effect on requests and goals."""
+        return NamedClient(self.clients, name, type_name, node)
 
     def names(self) -> dict[str, str]:
         """Return the types by name, sorted, without unlisted services."""

@@ -8,13 +8,11 @@ from node_support import run, warn
 from rclpy.lifecycle import LifecycleNode
 
 MISSING = {
-    "smoother_server": "paths are not smoothed by an action smooth_path; the planner smooths its own paths",
     "docking_server": "robots do not dock: there is no action dock_robot",
     "opennav_docking": "robots do not dock: there is no action dock_robot",
     "opennav_following": "robots do not follow objects: there is no action follow_object",
     "following_server": "robots do not follow objects: there is no action follow_object",
     "route_server": "there are no routes on a graph: there is no action compute_route",
-    "costmap_filter_info_server": "costmaps have no filters, such as zones to keep out of",
 }
 """Sentences about the missing work, by the name of the executable."""
 

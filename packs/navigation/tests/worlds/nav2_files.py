@@ -54,8 +54,8 @@ local_costmap:
       voxel_layer:
         plugin: "nav2_costmap_2d::VoxelLayer"
         observation_sources: scan camera
-        scan: {{topic: /scan, data_type: LaserScan}}
-        camera: {{topic: /points, data_type: PointCloud2}}
+        scan: {{topic: /scan, data_type: LaserScan, clearing: true, max_obstacle_height: 2.0}}
+        camera: {{topic: /points, data_type: PointCloud2, min_obstacle_height: 0.05, max_obstacle_height: 2.0}}
 global_costmap:
   global_costmap:
     ros__parameters:{COSTMAP}

@@ -57,18 +57,21 @@ def info(
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> None:
-    """Print the node that serves an action."""
+    """Print the nodes with clients of an action, and the node that serves it."""
     with connect_to_simulation(sim) as client:
         known_type = interface_type(client, "action", client.actions(), action)
         nodes = client.ask("nodes")
     name = absolute_name(action)
     node = next((n for n, has in nodes.items() if name in has["actions"]), name.rpartition("/")[0] or name)
+    clients = [client for client, has in nodes.items() if name in has["action_clients"]]
     if json_:
-        print_json({"name": name, "types": [known_type], "clients": [], "servers": [node]})
+        print_json({"name": name, "types": [known_type], "clients": clients, "servers": [node]})
         return
-    print_line(f"Action: {name}\nAction clients: 0\nAction servers: 1")
-    if not count:
-        print_line(f"    {node} [{known_type}]" if show_types else f"    {node}")
+    print_line(f"Action: {name}")
+    for title, members in (("Action clients", clients), ("Action servers", [node])):
+        print_line(f"{title}: {len(members)}")
+        for member in () if count else members:
+            print_line(f"    {member} [{known_type}]" if show_types else f"    {member}")
 
 
 def send_goal(

@@ -8,14 +8,14 @@ import typer
 from typer import Option
 
 from simkit.cli.terminal import options
-from simkit.cli.terminal.output import JsonObject, absolute_name, not_found_error, print_json, print_line
-from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name
+from simkit.cli.terminal.output import absolute_name, print_json, print_line
+from simkit.cli.terminal.topic_sources import connect_to_simulation
 from simkit.extend import argument
 from simkit.msgs.topic_names import is_hidden
 from simkit_terminal.cli.terminal import completion
 from simkit_terminal.cli.terminal.live_command import live_command
 from simkit_terminal.cli.terminal.name_lists import print_names
-from simkit_terminal.cli.terminal.named_endpoints import node_names
+from simkit_terminal.cli.terminal.named_endpoints import node_endpoints, node_names
 
 LISTED_AFTER = "action"
 
@@ -45,13 +45,8 @@ def info(
 ) -> None:
     """Print the publishers, subscribers, services and actions of a node."""
     with connect_to_simulation(sim) as client:
-        nodes: dict[str, JsonObject] = client.ask("nodes")
+        endpoints = node_endpoints(client, node)
     node_name = absolute_name(node)
-    if node_name not in nodes:
-        raise not_found_error(
-            "node", node_name, [n for n in nodes if not is_hidden(n)], "SK-CLI-034", connection_name(client)
-        )
-    endpoints = nodes[node_name]
     if json_:
         print_json({"name": node_name, **endpoints})
         return
@@ -60,9 +55,9 @@ def info(
         ("Subscribers", "subscribers"),
         ("Publishers", "publishers"),
         ("Service Servers", "services"),
-        ("Service Clients", ""),
+        ("Service Clients", "service_clients"),
         ("Action Servers", "actions"),
-        ("Action Clients", ""),
+        ("Action Clients", "action_clients"),
     ):
         print_line(f"  {title}:")
         rows = [(n, t) for n, t in sorted(endpoints.get(key, {}).items()) if hidden or not is_hidden(n)]

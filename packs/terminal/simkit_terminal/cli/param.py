@@ -12,6 +12,7 @@ from simkit.cli.terminal import options
 from simkit.cli.terminal.options import compile_pattern
 from simkit.cli.terminal.output import (
     JsonObject,
+    JsonValue,
     absolute_name,
     not_found_error,
     print_json,
@@ -23,9 +24,16 @@ from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_
 from simkit.errors import InputError
 from simkit.extend import argument, option
 from simkit_terminal.cli.terminal import completion
+from simkit_terminal.cli.terminal.global_parameters import GlobalParameters, read_parameter_tree
 from simkit_terminal.cli.terminal.live_command import Ros2Command, live_command
 from simkit_terminal.cli.terminal.named_endpoints import LIST_PARAMETERS, parameter_nodes
-from simkit_terminal.cli.terminal.parameter_values import KINDS, parse_parameter_value, plain_value, read_parameter_file
+from simkit_terminal.cli.terminal.parameter_values import (
+    KINDS,
+    parse_parameter_value,
+    plain_value,
+    plain_yaml,
+    read_parameter_file,
+)
 
 if TYPE_CHECKING:
     from simkit.live import Client
@@ -35,6 +43,10 @@ LISTED_AFTER = "service"
 
 param = typer.Typer(help="List, read and set the parameters of a running simulation.", no_args_is_help=True)
 Node = Annotated[str, argument("Name of the node.", "NODE", completion.nodes)]
+NodeOrName = Annotated[
+    str, argument("Name of the node, or global name of a parameter as in rosparam.", "NODE", completion.nodes)
+]
+OptionalName = Annotated[str | None, argument("Name of the parameter.", "[NAME]", completion.parameters)]
 Names = Annotated[list[str], argument("Names of the parameters.", "NAME...", completion.parameters)]
 Name = Annotated[str, argument("Name of the parameter.", "NAME", completion.parameters)]
 
@@ -69,13 +81,16 @@ def list_(
 
 @live_command(param)
 def get(
-    node: Node,
-    name: Name,
+    node: NodeOrName,
+    name: OptionalName = None,
     hide_type: Annotated[bool, Option("--hide-type", help="Print only the value.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> None:
-    """Print the value of a parameter."""
+    """Print the value of a parameter, or with one global name all values below it, as `rosparam get /`."""
+    if name is None:
+        _print_global_value(node, sim, json_)
+        return
     with connect_to_simulation(sim) as client:
         full = _resolve_node(client, node)
         parameter_value = _existing_values(client, full, [name])[0]
@@ -90,6 +105,17 @@ def get(
         print_line(f"{label} {'values are' if kind.endswith('array') else 'value is'}: {_value_text(value, kind)}")
 
 
+def _print_global_value(name: str, sim: str | None, json_: bool) -> None:
+    from simkit.msgs.message_text import to_yaml as as_yaml
+
+    with connect_to_simulation(sim) as client:
+        value = GlobalParameters(client).value(absolute_name(name))
+    if json_:
+        print_json(value)
+    else:
+        print_line(as_yaml(value).rstrip("\n") if isinstance(value, dict | list) else str(value))
+
+
 def _value_text(value: object, kind: str) -> str:
     code = {"double array": "d", "integer array": "q"}.get(kind)
     return f"array('{code}', {value!r})" if code and value else f"array('{code}')" if code else str(value)
@@ -98,13 +124,18 @@ def _value_text(value: object, kind: str) -> str:
 @param.command("set", cls=Ros2Command, context_settings={"ignore_unknown_options": True})
 @report_errors_quietly
 def set_(
-    node: Node,
+    node: NodeOrName,
     pairs: Annotated[list[str], argument("Names and values: p_gain 12.5.", "NAME VALUE...", completion.parameters)],
     atomic: Annotated[bool, Option("--atomic", help="Set all parameters or none.")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> int:
-    """Set parameters; exit code 2 if a value is rejected."""
+    """Set parameters; exit code 2 if a value is rejected. `rosparam set /background_r 150` works, too."""
+    if len(pairs) == 1:
+        with connect_to_simulation(sim) as client:
+            parameters, name = GlobalParameters(client), absolute_name(node)
+            if name not in parameters.nodes:
+                return _report_global([(name, plain_yaml(pairs[0]))], parameters, json_)
     if len(pairs) % 2:
         text = f"found {len(pairs)} words; expected pairs: name value [name value ...]"
         raise InputError("SK-CLI-031", f"the parameters: {text}")
@@ -132,10 +163,26 @@ def _set_values(client: Client, node: str, values: list[tuple[str, JsonObject]],
     return 0 if all(r.successful for r in results) else 2
 
 
+def _report_global(values: list[tuple[str, JsonValue]], parameters: GlobalParameters, json_: bool) -> int:
+    """Set values by their global names, and print which were rejected; return the exit code."""
+    reasons = [(name, parameters.set(name, value)) for name, value in values]
+    if json_:
+        print_json([{"name": name, "successful": not reason, "reason": reason} for name, reason in reasons])
+    for name, reason in () if json_ else reasons:
+        head = f"{name}: " if len(values) > 1 else ""
+        if reason:
+            print_note(f"{head}Setting parameter failed: {reason}")
+        else:
+            print_line(f"{head}Set parameter successful")
+    return 2 if any(reason for _, reason in reasons) else 0
+
+
 @live_command(param)
-def delete(node: Node, name: Name, sim: options.Sim = None, json_: options.Json = False) -> int:
-    """Delete a parameter; no node of simkit allows this."""
+def delete(node: NodeOrName, name: OptionalName = None, sim: options.Sim = None, json_: options.Json = False) -> int:
+    """Delete a parameter of the server of ROS 1 by its global name; no node of simkit lets its own be deleted."""
     with connect_to_simulation(sim) as client:
+        if name is None:
+            return _delete_global(GlobalParameters(client), absolute_name(node), connection_name(client))
         full = _resolve_node(client, node)
         _existing_values(client, full, [name])
     text = f"Deleting parameter failed: {name} is declared by {full}, which needs it"
@@ -144,6 +191,17 @@ def delete(node: Node, name: Name, sim: options.Sim = None, json_: options.Json 
     else:
         print_note(text)
     return 2
+
+
+def _delete_global(parameters: GlobalParameters, name: str, where: str) -> int:
+    place = parameters.place_of(name)
+    if place is not None:
+        print_note(f"Deleting parameter failed: {place[1]} is declared by {place[0]}, which needs it")
+        return 2
+    if not parameters.delete(name):
+        raise not_found_error("parameter", name, parameters.names(), "SK-CLI-034", where)
+    print_line("Deleted parameter successfully")
+    return 0
 
 
 @live_command(param)
@@ -198,13 +256,17 @@ def dump(node: Node, sim: options.Sim = None, json_: options.Json = False) -> No
 
 @live_command(param)
 def load(
-    node: Node,
-    file: Annotated[Path, argument("Parameter file.", "FILE.yaml")],
+    node: Annotated[
+        str, argument("Name of the node; or the file, as in `rosparam load FILE`.", "NODE", completion.nodes)
+    ],
+    file: Annotated[Path | None, argument("Parameter file; or a namespace after a file.", "[FILE.yaml]")] = None,
     no_wildcard: Annotated[bool, Option("--no-use-wildcard", help="Ignore the values for all nodes (/**).")] = False,
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> int:
     """Set the parameters of a node from a parameter file; exit code 2 if a value is rejected."""
+    if file is None or (Path(node).is_file() and not file.is_file()):
+        return _load_tree(Path(node), "" if file is None else file.as_posix(), sim, json_)
     with connect_to_simulation(sim) as client:
         full = _resolve_node(client, node)
         values = read_parameter_file(file, full, wildcard=not no_wildcard)
@@ -217,6 +279,14 @@ def load(
         text = f"Set parameter {name} {'successful' if successful else 'failed'}{': ' + reason if reason else ''}"
         (print_line if successful else print_note)(text)
     return 0 if all(successful for _, successful, _ in rows) else 2
+
+
+def _load_tree(file: Path, namespace: str, sim: str | None, json_: bool) -> int:
+    """Set the parameters of a file of `rosparam dump` below a namespace."""
+    prefix = absolute_name(namespace.strip("/")).rstrip("/") if namespace.strip("/") else ""
+    values = [(f"{prefix}{name}", value) for name, value in read_parameter_tree(file)]
+    with connect_to_simulation(sim) as client:
+        return _report_global(values, GlobalParameters(client), json_)
 
 
 def _resolve_node(client: Client, name: str) -> str:

@@ -20,17 +20,18 @@ from simkit_terminal.cli.terminal.message_arguments import (
     check_type,
     is_same_type,
     make_message,
-    parse_fields,
-    split_type_and_values,
+    split_type_and_words,
 )
 from simkit_terminal.cli.terminal.name_lists import print_names, print_names_and_types
-from simkit_terminal.cli.terminal.named_endpoints import interface_type
+from simkit_terminal.cli.terminal.named_endpoints import interface_type, node_endpoints
+from simkit_terminal.cli.terminal.positional_values import read_fields
 
 if TYPE_CHECKING:
     from simkit.live import Client
 
 LISTED_AFTER = "topic"
 
+_VALUES_HELP = "Request as YAML: '{data: true}', or one value for each field, as in `rosservice call`."
 service = typer.Typer(help="List and call the services of a running simulation.", no_args_is_help=True)
 Name = Annotated[str, argument("Name of the service.", "SERVICE", completion.services)]
 Count = Annotated[bool, Option("--count-services", "--count", "-c", help="Print only the number of services.")]
@@ -41,12 +42,16 @@ def list_(
     show_types: options.ShowTypes = False,
     count: Count = False,
     hidden: Annotated[bool, Option("--include-hidden-services", "-a", "--all", help="Include hidden names.")] = False,
+    node: Annotated[str | None, option("List only those of this node.", "NODE", complete=completion.nodes)] = None,
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> None:
     """List the services."""
     with connect_to_simulation(sim) as client:
         type_by_service = {n: t for n, t in sorted(client.services().items()) if hidden or not is_hidden(n)}
+        if node is not None:
+            offered = node_endpoints(client, node)["services"]
+            type_by_service = {n: t for n, t in type_by_service.items() if n in offered}
     print_names_and_types(type_by_service, show_types=show_types, count=count, json_=json_)
 
 
@@ -63,10 +68,28 @@ def info(service: Name, sim: options.Sim = None, json_: options.Json = False) ->
     """Print type, clients and servers of a service."""
     with connect_to_simulation(sim) as client:
         known_type = interface_type(client, "service", client.services(), service)
+        nodes = client.ask("nodes")
+    name = absolute_name(service)
+    clients = sum(name in has["service_clients"] for has in nodes.values())
     if json_:
-        print_json({"name": absolute_name(service), "types": [known_type], "clients": 0, "services": 1})
+        print_json({"name": name, "types": [known_type], "clients": clients, "services": 1})
     else:
-        print_line(f"Type: {known_type}\nClients count: 0\nServices count: 1")
+        print_line(f"Type: {known_type}\nClients count: {clients}\nServices count: 1")
+
+
+@live_command(service)
+def args(service: Name, sim: options.Sim = None, json_: options.Json = False) -> None:
+    """Print the names of the fields of a service's request, as `rosservice args`."""
+    from simkit.msgs.interface_definitions import prototype
+
+    with connect_to_simulation(sim) as client:
+        known_type = interface_type(client, "service", client.services(), service)
+        client.interfaces()  # the type may be one that only the simulation knows
+    names = list(prototype(known_type))
+    if json_:
+        print_json(names)
+    else:
+        print_line(" ".join(names))
 
 
 @live_command(service)
@@ -88,9 +111,7 @@ def call(
     service_type: Annotated[
         str | None, argument("Type of the service (optional).", "[TYPE]", completion.service_types)
     ] = None,
-    values: Annotated[
-        str | None, argument("Request as YAML: '{data: true}'.", "[VALUES]", completion.service_values)
-    ] = None,
+    values: Annotated[list[str] | None, argument(_VALUES_HELP, "[VALUES]...", completion.service_values)] = None,
     stdin: Annotated[bool, Option("--stdin", help="Read the request from standard input.")] = False,
     rate: Annotated[
         float | None, option("Repeat the call N times a second (wall time).", "N", "--rate", "-r", min=1e-3)
@@ -99,12 +120,14 @@ def call(
     json_: options.Json = False,
 ) -> None:
     """Call a service and print the response."""
-    service_type, values = split_type_and_values(service_type, values)
-    fields = parse_fields(sys.stdin.read() if stdin else values or "{}", "the request")
+    service_type, words = split_type_and_words(service_type, values)
+    if stdin:
+        words = [sys.stdin.read()]
     with connect_to_simulation(sim) as client:
         name = absolute_name(service)
         known_type = interface_type(client, "service", client.services(), service)
         check_type(service_type, [known_type], name)
+        fields = read_fields(f"{known_type}_Request", words, "the request")
         request = make_message(f"{known_type}_Request", fields)
         while True:
             begun = time.monotonic()

@@ -31,7 +31,14 @@ _PIXELS: Final = 500  # side of the window
 _SCALE: Final = 45.0  # [px/m]
 _SIZE: Final = (_PIXELS - 1) / _SCALE  # [m]
 _MIDDLE: Final = 5.544445  # [m], x and y of the first turtle
-_BACKGROUND: Final = {"r": 69, "g": 86, "b": 255}
+_BACKGROUND: Final = {"r": ("red", 69), "g": ("green", 86), "b": ("blue", 255)}
+_ARROWS: Final = {
+    "up": ("velocity", 2.0, 0.0),
+    "down": ("velocity", -2.0, 0.0),
+    "left": ("velocity", 0.0, 2.0),
+    "right": ("velocity", 0.0, -2.0),
+}
+"""Commands of the arrow keys [m/s, rad/s], each for 1 s."""
 _PEN: Final = (0xB3, 0xB8, 0xFF)
 _TURTLE_COLOUR: Final = (90, 160, 60)
 _SHAPE: Final = np.array([(18.0, 0.0), (-14.0, 12.0), (-8.0, 0.0), (-14.0, -12.0)])  # [px] of a turtle in the image
@@ -131,8 +138,15 @@ class TurtleSim(Plugin):
             self._origin = self.sim.model(self.scoped).pose
             self._prefix = "" if self.scoped == _TYPES else f"{self.scoped}_"
         self._background = [
-            self.declare(f"background_{channel}", value, minimum=0, maximum=255, description="background after /clear")
-            for channel, value in _BACKGROUND.items()
+            self.declare(
+                f"background_{channel}",
+                value,
+                minimum=0,
+                maximum=255,
+                description=f"{name} channel of the background color",
+                on_change=lambda _: self._repaint(),
+            )
+            for channel, (name, value) in _BACKGROUND.items()
         ]
         self._holonomic = self.declare("holonomic", False, description="turtles follow linear.y, too")
         self._endpoints = _Endpoints()
@@ -150,10 +164,30 @@ class TurtleSim(Plugin):
         self._image = self.advertise("~/image", "sensor_msgs/msg/Image")
         publish_while_subscribed(self, self._image, _IMAGE_RATE, "publish_image")
 
+    # ------------------------------------------------------------------ keys of --teleop
+
+    key_help = "arrows: 2 m/s or 2 rad/s for 1 s   g b v c d e r t: turn to a heading   f cancel   q quit"
+
+    def key_commands(self, topic: str) -> Mapping[str, tuple[object, ...]]:
+        """Return the effects of the keys of `turtle_teleop_key` for the turtle with a command topic.
+
+        The keys around `f` have the headings in which they lie from it, in steps of 45 degrees.
+        """
+        action = topic.removesuffix("cmd_vel") + "rotate_absolute"
+        headings = {key: math.remainder(number * math.pi / 4, math.tau) for number, key in enumerate("gtredcvb")}
+        goals = {key: ("goal", action, {"theta": heading}) for key, heading in headings.items()}
+        return {**_ARROWS, **goals, "f": ("cancel",), "q": ("end",)}
+
     # ------------------------------------------------------------------ services
 
     def _clear(self) -> None:
-        self._canvas: Image = np.full((_PIXELS, _PIXELS, 3), [c.value for c in self._background], np.uint8)
+        self._canvas: Image = np.zeros((_PIXELS, _PIXELS, 3), np.uint8)
+        self._trails: Image = np.zeros((_PIXELS, _PIXELS), np.uint8)  # 1 where a pen has drawn
+        self._repaint()
+
+    def _repaint(self) -> None:
+        """Fill all pixels without a trail with the background, as `paintEvent` of turtlesim's window does."""
+        self._canvas[self._trails == 0] = [channel.value for channel in self._background]
 
     def _start_again(self) -> None:
         self.log.info("Resetting turtlesim.")
@@ -343,7 +377,9 @@ class TurtleSim(Plugin):
         if turtle.is_pen_down and before != (turtle.x, turtle.y) and turtle.width:
             import cv2
 
-            cv2.line(self._canvas, _pixel(*before), _pixel(turtle.x, turtle.y), turtle.pen, turtle.width)
+            ends = _pixel(*before), _pixel(turtle.x, turtle.y)
+            cv2.line(self._canvas, *ends, turtle.pen, turtle.width)
+            cv2.line(self._trails, *ends, 1, turtle.width)
 
     def _place_model(self, name: str, turtle: Turtle) -> None:
         """Move the model of a turtle, which is spawned first if it does not exist."""

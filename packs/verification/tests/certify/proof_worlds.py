@@ -118,7 +118,7 @@ NAVIGATION = (
     )
     + "".join(
         plugin(f"libsimkit_{name}.so", tags(robot_base_frame="base"), name)
-        for name in ("planner_server", "controller_server", "behavior_server")
+        for name in ("planner_server", "smoother_server", "controller_server", "behavior_server")
     )
 )
 AIR = gz("wind-effects", tags(force_approximation_scaling_factor=0.5), "WindEffects")

@@ -17,6 +17,10 @@ from simkit_navigation.plugins.navigation.footprint import Footprint, read_footp
 from simkit_navigation.plugins.navigation.nodes import ControllerNode
 from simkit_navigation.plugins.navigation.planar_pose import Floats, PlanarPose, look_up, poses_of_path
 from simkit_navigation.plugins.navigation.pure_pursuit import PurePursuit, PurePursuitOptions, Speeds
+from simkit_navigation.plugins.navigation.tutorial_pure_pursuit import (
+    PurePursuitController,
+    PurePursuitControllerOptions,
+)
 from simkit_navigation.plugins.navigation.user_classes import ServerPlugin
 from simkit_navigation.plugins.navigation.velocity_command import VelocityCommand
 
@@ -32,6 +36,7 @@ _FAILED_TO_MAKE_PROGRESS: Final = 105
 _NO_VALID_CONTROL: Final = 106
 _CONTROLLERS: Final[dict[str, type[Controller]]] = {
     "nav2_regulated_pure_pursuit_controller::RegulatedPurePursuitController": PurePursuit,
+    "nav2_pure_pursuit_controller::PurePursuitController": PurePursuitController,
 }
 _METHODS: Final = ("compute_velocity_commands", "set_plan")
 _DEFAULT: Final = {"FollowPath": "nav2_regulated_pure_pursuit_controller::RegulatedPurePursuitController"}
@@ -106,7 +111,7 @@ class ControllerServer(CostmapReader, ServerPlugin):
     names = ("simkit::ControllerServer", "nav2_controller::ControllerServer")
     executable = "controller_server"
     options = OptionsOf(ControllerServerOptions)
-    option_types = (PurePursuitOptions,)
+    option_types = (PurePursuitOptions, PurePursuitControllerOptions)
     endpoints = (
         listens("odom", ODOMETRY, named_by=("odom_topic",)),
         listens("local_costmap/costmap_raw", COSTMAP, named_by=("costmap_topic",)),

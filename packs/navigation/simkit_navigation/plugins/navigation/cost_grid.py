@@ -102,14 +102,19 @@ class CostGrid:
 
     # ------------------------------------------------------------------ messages
 
-    def occupancy_message(self, time_ns: int) -> msgs.Message:
-        """Return a `nav_msgs/msg/OccupancyGrid`."""
+    def occupancy_message(self, time_ns: int, z: float = 0.0) -> msgs.Message:
+        """Return a `nav_msgs/msg/OccupancyGrid`.
+
+        Args:
+            time_ns: time [ns].
+            z: height of the cells in the frame [m].
+        """
         rows, columns = self.cells.shape
         info = {"map_load_time": msgs.time(time_ns), "resolution": self.resolution, "width": columns, "height": rows}
         return msgs.make(
             "nav_msgs/msg/OccupancyGrid",
             header=msgs.header(time_ns, self.frame),
-            info={**info, "origin": pose_message(self.origin)},
+            info={**info, "origin": pose_message(self.origin, z)},
             data=_OCCUPANCY[self.cells].reshape(-1),
         )
 
@@ -126,23 +131,80 @@ class CostGrid:
         )
 
 
+def changed_area(before: CostGrid, now: CostGrid) -> tuple[int, int, int, int] | None:
+    """Return first row, last row + 1, first column and last column + 1 of the cells that differ.
+
+    The result is all zeros if no cell differs, and None if size or place of the grids differ.
+    """
+    places = [(grid.cells.shape, grid.origin, grid.resolution, grid.frame) for grid in (before, now)]
+    if places[0] != places[1]:
+        return None
+    differs = before.cells != now.cells
+    rows, columns = (np.flatnonzero(differs.any(axis=axis)) for axis in (1, 0))
+    if not len(rows):
+        return 0, 0, 0, 0
+    return int(rows[0]), int(rows[-1]) + 1, int(columns[0]), int(columns[-1]) + 1
+
+
+def update_messages(grid: CostGrid, area: tuple[int, int, int, int], time_ns: int) -> tuple[msgs.Message, msgs.Message]:
+    """Return the costs of an area as `map_msgs/msg/OccupancyGridUpdate` and as `nav2_msgs/msg/CostmapUpdate`."""
+    top, bottom, left, right = area
+    cells = grid.cells[top:bottom, left:right]
+    header, place = msgs.header(time_ns, grid.frame), {"x": left, "y": top}
+    shown = _OCCUPANCY[cells].reshape(-1)
+    occupancy = {**place, "width": right - left, "height": bottom - top, "data": shown}
+    raw = {**place, "size_x": right - left, "size_y": bottom - top, "data": cells.reshape(-1).copy()}
+    return (
+        msgs.make("map_msgs/msg/OccupancyGridUpdate", header=header, **occupancy),
+        msgs.make("nav2_msgs/msg/CostmapUpdate", header=header, **raw),
+    )
+
+
+def updated_grid(grid: CostGrid, message: msgs.CostmapUpdate) -> CostGrid | None:
+    """Return a grid with the costs of a `nav2_msgs/msg/CostmapUpdate`; None if they do not fit into the grid."""
+    rows, columns = slice(message.y, message.y + message.size_y), slice(message.x, message.x + message.size_x)
+    data = np.asarray(message.data, np.uint8)
+    if (
+        rows.stop > grid.cells.shape[0]
+        or columns.stop > grid.cells.shape[1]
+        or data.size != message.size_x * message.size_y
+    ):
+        return None
+    cells = grid.cells.copy()
+    cells[rows, columns] = data.reshape(message.size_y, message.size_x)
+    return replace(grid, cells=cells)
+
+
 def grid_of_message(message: msgs.Costmap) -> CostGrid | None:
     """Return the grid of a `nav2_msgs/msg/Costmap`; None if the message is not valid."""
     info, data = message.metadata, np.asarray(message.data, np.uint8)
     return _grid(data, info.size_y, info.size_x, info, message.header.frame_id)
 
 
-def grid_of_map(message: msgs.OccupancyGrid, lethal_threshold: int, unknown: int) -> CostGrid | None:
+def grid_of_map(message: msgs.OccupancyGrid, table: Cells) -> CostGrid | None:
     """Return the grid of a `nav_msgs/msg/OccupancyGrid`; None if the message is not valid.
 
     Args:
         message: map.
-        lethal_threshold: smallest occupancy of an obstacle, 0 to 100.
-        unknown: cost of unknown cells.
+        table: cost by occupancy as an unsigned byte, shape (256,); see `cost_table`.
     """
     info, data = message.info, np.asarray(message.data, np.int8)
-    costs = np.where(data >= lethal_threshold, LETHAL, np.where(data < 0, unknown, FREE)).astype(np.uint8)
-    return _grid(costs, info.height, info.width, info, message.header.frame_id)
+    return _grid(table[data.view(np.uint8)], info.height, info.width, info, message.header.frame_id)
+
+
+def cost_table(lethal_threshold: int, unknown: int, unknown_value: int = 255, is_trinary: bool = True) -> Cells:
+    """Return the cost by occupancy as an unsigned byte, as Nav2's `StaticLayer::interpretValue`, shape (256,).
+
+    Args:
+        lethal_threshold: smallest occupancy of an obstacle, 1 to 100.
+        unknown: cost of unknown cells.
+        unknown_value: occupancy of unknown cells as an unsigned byte; 255 is -1.
+        is_trinary: True if an occupancy below the threshold is free; else it is scaled to the cost of an obstacle.
+    """
+    occupancy = np.arange(256, dtype=np.int64)
+    below = np.zeros(256, np.int64) if is_trinary else occupancy * LETHAL // lethal_threshold
+    costs = np.where(occupancy >= lethal_threshold, LETHAL, below)
+    return np.where(occupancy == unknown_value, unknown, costs).astype(np.uint8)
 
 
 def _grid(

@@ -1,9 +1,7 @@
-"""Layers of a costmap: the static map, obstacles that a lidar sees, and the inflation around both."""
+"""Layers of a costmap: the static map, and the inflation around obstacles; and the table of all layers."""
 
 from __future__ import annotations
 
-import math
-from functools import partial
 from typing import TYPE_CHECKING, Final, Protocol
 
 import numpy as np
@@ -18,17 +16,22 @@ from simkit_navigation.plugins.navigation.cost_grid import (
     UNKNOWN,
     Cells,
     CostGrid,
-    Indices,
+    Mask,
     grid_of_map,
 )
-from simkit_navigation.plugins.navigation.planar_pose import Floats, PlanarPose, look_up
+from simkit_navigation.plugins.navigation.costmap_filters import BinaryFilter, KeepoutFilter, SpeedFilter
+from simkit_navigation.plugins.navigation.denoise_layer import DenoiseLayer
+from simkit_navigation.plugins.navigation.footprint import cells_within
+from simkit_navigation.plugins.navigation.obstacle_layer import ObstacleLayer
+from simkit_navigation.plugins.navigation.planar_pose import PlanarPose, look_up
+from simkit_navigation.plugins.navigation.range_sensor_layer import RangeSensorLayer
+from simkit_navigation.plugins.navigation.voxel_layer import VoxelLayer
 
 if TYPE_CHECKING:
     from simkit_navigation.plugins.navigation.nodes import CostmapNode
 
 _MAP: Final = "nav_msgs/msg/OccupancyGrid"
-_SCAN: Final = "sensor_msgs/msg/LaserScan"
-_HALF_CELL: Final = 0.5
+_UPDATE: Final = "map_msgs/msg/OccupancyGridUpdate"
 _OVERLAP: Final = 1e-6  # [m]; a radius of 0.2 contains a cell at the distance of 4 cells of 0.05
 
 
@@ -60,6 +63,10 @@ class StaticLayerOptions(Options):
 
     map_topic: str = text("/map")
     enabled: bool = boolean(True)
+    map_subscribe_transient_local: bool = boolean(True)
+    subscribe_to_updates: bool = boolean(False)
+    transform_tolerance: float = number(0.0, "s", minimum=0)
+    footprint_clearing_enabled: bool = boolean(False)
 
 
 class StaticLayer:
@@ -69,11 +76,18 @@ class StaticLayer:
         self._options, self._node = StaticLayerOptions(params).read_all(), node
         self.map: CostGrid | None = None
         self._has_reported = False
+        self._is_subscribing = self._options.enabled
         if self._options.enabled:
-            node.receive(self._options.map_topic, _MAP, "map_topic", self._on_map)
+            topic = self._options.map_topic
+            node.receive(topic, _MAP, "map_topic", self._on_map)
+            if self._options.subscribe_to_updates:
+                node.receive(f"{topic}_updates", _UPDATE, "map_topic", self._on_update)
+        self._is_subscribing = False
 
     def _on_map(self, message: msgs.OccupancyGrid) -> None:
-        grid = grid_of_map(message, self._node.lethal_cost_threshold, self._node.default_cost)
+        if self._is_subscribing and not self._options.map_subscribe_transient_local:
+            return  # a volatile subscription of ROS does not receive what was published before it
+        grid = grid_of_map(message, self._node.map_costs)
         if grid is None:
             if not self._has_reported:
                 text = "the map on %s is empty, or its size, resolution or origin is not valid"
@@ -82,141 +96,48 @@ class StaticLayer:
             return
         self.map = grid
 
+    def _on_update(self, message: msgs.OccupancyGridUpdate) -> None:
+        """Replace a rectangle of the map."""
+        grid, data = self.map, np.asarray(message.data, np.int8)
+        if grid is None:
+            return
+        rows, columns = grid.cells.shape
+        fits = 0 <= message.y <= rows - message.height and 0 <= message.x <= columns - message.width
+        if not fits or data.size != message.width * message.height or message.header.frame_id != grid.frame:
+            text = "an update of the map on %s is ignored: it is outside of the map, or has another frame or size"
+            self._node.report_once("map update", text % self._options.map_topic)
+            return
+        costs = self._node.map_costs[data.view(np.uint8)].reshape(message.height, message.width)
+        grid.cells[message.y : message.y + message.height, message.x : message.x + message.width] = costs
+
     def update_costs(self, grid: CostGrid, robot: PlanarPose) -> None:
         """Write the costs of the map."""
         if self.map is None:
             return
+        if self._options.footprint_clearing_enabled:
+            placed = look_up(self._node.sim, self.map.frame, grid.frame)
+            if placed is not None:
+                self.map.cells[cells_within(self.map, self._node.footprint, placed.compose(robot))] = FREE
         if grid.frame == self.map.frame and grid.origin == self.map.origin and grid.cells.shape == self.map.cells.shape:
-            grid.cells[:] = self.map.cells
+            self._write(grid, self.map.cells, np.True_)
             return
         placed = look_up(self._node.sim, grid.frame, self.map.frame)
         if placed is not None:
             rows, columns = np.indices(grid.cells.shape).reshape(2, -1)
-            costs = self.map.seen_from(grid.frame, placed).costs(grid.centres(rows, columns))
-            grid.cells[:] = costs.reshape(grid.cells.shape)
+            moved = self.map.seen_from(grid.frame, placed)
+            at_row, at_column, inside = moved.indices(grid.centres(rows, columns))
+            costs = np.full(len(rows), UNKNOWN, np.uint8)
+            costs[inside] = moved.cells[at_row[inside], at_column[inside]]
+            self._write(grid, costs.reshape(grid.cells.shape), inside.reshape(grid.cells.shape))
+
+    def _write(self, grid: CostGrid, costs: Cells, inside: Mask | np.bool_) -> None:
+        """Write the costs inside of the map; with `<use_maximum>`, only those above the present ones."""
+        if self._node.uses_maximum:
+            inside = inside & (costs != UNKNOWN) & ((grid.cells == UNKNOWN) | (grid.cells < costs))
+        np.copyto(grid.cells, costs, where=inside)
 
     def reset(self) -> None:
         """Keep the map, as Nav2 does."""
-
-
-class ObstacleLayerOptions(Options):
-    """Options of `ObstacleLayer`."""
-
-    enabled: bool = boolean(True)
-    observation_sources: str = text("scan")
-    footprint_clearing_enabled: bool = boolean(True)
-
-
-class SourceOptions(Options):
-    """Options of a source of `ObstacleLayer`."""
-
-    topic: str = text("scan")
-    marking: bool = boolean(True)
-    clearing: bool = boolean(True)
-    inf_is_valid: bool = boolean(False)
-    obstacle_max_range: float = number(2.5, "m", minimum=0)
-    obstacle_min_range: float = number(0.0, "m", minimum=0)
-    raytrace_max_range: float = number(3.0, "m", minimum=0)
-
-
-class ObstacleLayer:
-    """Obstacles in laser scans (`nav2_costmap_2d::ObstacleLayer`).
-
-    A beam marks the cell at its end, and clears the cells before its end.
-    """
-
-    def on_initialize(self, node: CostmapNode, params: Params) -> None:
-        self._options, self._node = ObstacleLayerOptions(params).read_all(), node
-        names = self._options.observation_sources.split() if self._options.enabled else []
-        self._sources = {name: SourceOptions(params.block(name)).read_all() for name in names}
-        self._scans: dict[str, msgs.LaserScan] = {}  # newest scan of each source
-        for name, source in self._sources.items():
-            node.receive(source.topic, _SCAN, f"{name}.topic", partial(self._on_scan, name))
-        self._seen: Cells = np.zeros((0, 0), np.uint8)
-        self._origin = PlanarPose(0.0, 0.0, 0.0)
-
-    def _on_scan(self, source: str, message: msgs.LaserScan) -> None:
-        if math.isfinite(message.angle_min + message.angle_increment):
-            self._scans[source] = message
-
-    def update_costs(self, grid: CostGrid, robot: PlanarPose) -> None:
-        """Update the obstacles by the newest scans, and write them."""
-        self._match(grid)
-        seen = CostGrid(self._seen, grid.resolution, grid.origin, grid.frame)
-        for name, scan in self._scans.items():
-            self._add_scan(seen, scan, self._sources[name])
-        if self._options.footprint_clearing_enabled:
-            radius = min(self._node.inscribed_radius, seen.diagonal)
-            reach = np.arange(-radius, radius + grid.resolution, grid.resolution / 2)
-            around = np.stack(np.meshgrid(reach, reach), axis=-1).reshape(-1, 2)
-            rows, columns, inside = seen.indices(around[np.hypot(*around.T) <= radius] + (robot.x, robot.y))
-            self._seen[rows[inside], columns[inside]] = FREE
-        grid.cells[self._seen == LETHAL] = LETHAL
-        grid.cells[(self._seen == FREE) & (grid.cells == UNKNOWN)] = FREE
-
-    def _match(self, grid: CostGrid) -> None:
-        """Give the layer's cells the size and the place of the costmap; cells that stay inside keep their value."""
-        if self._seen.shape != grid.cells.shape:
-            self._seen = np.full(grid.cells.shape, UNKNOWN, np.uint8)
-        elif grid.origin != self._origin:
-            right = round((grid.origin.x - self._origin.x) / grid.resolution)
-            up = round((grid.origin.y - self._origin.y) / grid.resolution)
-            self._seen = shifted(self._seen, up, right)
-        self._origin = grid.origin
-
-    def _add_scan(self, grid: CostGrid, scan: msgs.LaserScan, options: SourceOptions) -> None:
-        sensor = look_up(self._node.sim, grid.frame, scan.header.frame_id, scan.header.stamp)
-        if sensor is None:  # the newest transform is older than the scan
-            sensor = look_up(self._node.sim, grid.frame, scan.header.frame_id)
-        if sensor is None:
-            return
-        ranges = np.asarray(scan.ranges, np.float64)
-        angles = np.asarray(scan.angle_min + scan.angle_increment * np.arange(len(ranges)), np.float64)
-        hits = np.isfinite(ranges) & (ranges >= scan.range_min) & (ranges <= scan.range_max)
-        if options.clearing:
-            reach = np.where(hits, ranges, 0.0)
-            if options.inf_is_valid:
-                reach = np.where(ranges == math.inf, options.raytrace_max_range, reach)
-            longest = min(
-                options.raytrace_max_range, grid.diagonal + grid.distance(sensor.x, sensor.y) + 2 * grid.resolution
-            )
-            rows, columns = _cells_before(grid, sensor, np.minimum(reach, longest), angles)
-            grid.cells[rows, columns] = FREE
-        if options.marking:
-            is_near = hits & (ranges >= options.obstacle_min_range) & (ranges <= options.obstacle_max_range)
-            rows, columns, inside = grid.indices(_ends(sensor, ranges[is_near], angles[is_near]))
-            grid.cells[rows[inside], columns[inside]] = LETHAL
-
-    def reset(self) -> None:
-        """Forget all obstacles."""
-        self._seen[:] = UNKNOWN
-        self._scans.clear()
-
-
-def _ends(sensor: PlanarPose, ranges: Floats, angles: Floats) -> Floats:
-    """Return the ends of beams [m], shape (n, 2)."""
-    return sensor.transform(np.column_stack((ranges * np.cos(angles), ranges * np.sin(angles))))
-
-
-def _cells_before(grid: CostGrid, sensor: PlanarPose, reach: Floats, angles: Floats) -> tuple[Indices, Indices]:
-    """Return rows and columns of the cells that beams cross before their ends."""
-    step = grid.resolution * _HALF_CELL
-    along = np.arange(0.0, max(float(reach.max(initial=0.0)), 0.0), step)
-    distances, directions = np.broadcast_arrays(along[:, None], angles)
-    is_before = distances < reach - grid.resolution
-    rows, columns, inside = grid.indices(_ends(sensor, distances[is_before], directions[is_before]))
-    return rows[inside], columns[inside]
-
-
-def shifted(cells: Cells, up: int, right: int) -> Cells:
-    """Return cells of a window that has moved by some cells; new cells are unknown."""
-    moved = np.full(cells.shape, UNKNOWN, np.uint8)
-    (rows, columns), (y, x) = cells.shape, (up, right)
-    if abs(y) < rows and abs(x) < columns:
-        moved[max(-y, 0) : rows - max(y, 0), max(-x, 0) : columns - max(x, 0)] = cells[
-            max(y, 0) : rows - max(-y, 0), max(x, 0) : columns - max(-x, 0)
-        ]
-    return moved
 
 
 class InflationLayerOptions(Options):
@@ -226,6 +147,7 @@ class InflationLayerOptions(Options):
     inflation_radius: float = number(0.55, "m", minimum=0)
     cost_scaling_factor: float = number(10.0, "1/m", minimum=0)
     inflate_unknown: bool = boolean(False)
+    inflate_around_unknown: bool = boolean(False)
 
 
 class InflationLayer:
@@ -242,6 +164,8 @@ class InflationLayer:
         """Write the costs around the obstacles."""
         options, inscribed = self._options, self._node.inscribed_radius
         is_lethal = grid.cells == LETHAL
+        if options.inflate_around_unknown:
+            is_lethal |= grid.cells == UNKNOWN
         if not options.enabled or not is_lethal.any():
             return
         import cv2
@@ -264,7 +188,13 @@ class InflationLayer:
 LAYERS: Final[dict[str, type[CostmapLayer]]] = {
     "nav2_costmap_2d::StaticLayer": StaticLayer,
     "nav2_costmap_2d::ObstacleLayer": ObstacleLayer,
+    "nav2_costmap_2d::VoxelLayer": VoxelLayer,
+    "nav2_costmap_2d::RangeSensorLayer": RangeSensorLayer,
+    "nav2_costmap_2d::DenoiseLayer": DenoiseLayer,
     "nav2_costmap_2d::InflationLayer": InflationLayer,
+    "nav2_costmap_2d::KeepoutFilter": KeepoutFilter,
+    "nav2_costmap_2d::SpeedFilter": SpeedFilter,
+    "nav2_costmap_2d::BinaryFilter": BinaryFilter,
 }
 DEFAULT_LAYERS: Final = {
     "static_layer": "nav2_costmap_2d::StaticLayer",

@@ -11,7 +11,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.extend import SharedByCopies
-from simkit_navigation.plugins.navigation.cost_grid import INSCRIBED, LETHAL, UNKNOWN, CostGrid
+from simkit_navigation.plugins.navigation.cost_grid import INSCRIBED, LETHAL, UNKNOWN, CostGrid, Indices
 from simkit_navigation.plugins.navigation.planar_pose import Floats, PlanarPose
 
 if TYPE_CHECKING:
@@ -89,6 +89,49 @@ def round_footprint(radius: float) -> Footprint:
     return Footprint(radius * np.column_stack((np.cos(angles), np.sin(angles))), True, radius, radius)
 
 
+def cells_within(grid: CostGrid, outline: Footprint, robot: PlanarPose) -> tuple[Indices, Indices]:
+    """Return rows and columns of the cells that a robot covers: a disc, or the polygon with the cells of its edges."""
+    if outline.is_round:
+        radius = min(outline.inscribed_radius, grid.diagonal)
+        reach = np.arange(-radius, radius + grid.resolution, grid.resolution / 2)
+        around = np.stack(np.meshgrid(reach, reach), axis=-1).reshape(-1, 2)
+        rows, columns, inside = grid.indices(around[np.hypot(*around.T) <= radius] + (robot.x, robot.y))
+        return rows[inside], columns[inside]
+    corners = robot.transform(outline.corners)
+    rows, columns, inside = grid.indices(_edge_points(corners, grid.resolution / 2))
+    mask = np.zeros(grid.cells.shape, np.bool_)
+    mask[rows[inside], columns[inside]] = True
+    low = [max(int(axis.min()), 0) for axis in (rows, columns)]
+    high = [min(int(axis.max()) + 1, count) for axis, count in zip((rows, columns), grid.cells.shape, strict=True)]
+    if low[0] < high[0] and low[1] < high[1]:
+        row_at, column_at = (axis.ravel() for axis in np.mgrid[low[0] : high[0], low[1] : high[1]])
+        x, y = grid.centres(row_at, column_at).T
+        is_inside = np.zeros(len(x), np.bool_)
+        for (x1, y1), (x2, y2) in zip(corners, np.roll(corners, 1, axis=0), strict=True):
+            if y1 != y2:  # an edge is crossed by the ray to the right
+                is_inside ^= ((y1 > y) != (y2 > y)) & (x < (x2 - x1) * (y - y1) / (y2 - y1) + x1)
+        mask[row_at[is_inside], column_at[is_inside]] = True
+    found_rows, found_columns = np.nonzero(mask)
+    return found_rows, found_columns
+
+
+def _edge_points(corners: Floats, step: float) -> Floats:
+    """Return points on the edges of a polygon whose distance is at most a step [m]."""
+    ends = np.roll(corners, -1, axis=0)
+    count = max(2, math.ceil(float(np.hypot(*(ends - corners).T).max()) / step) + 1)
+    parts = np.linspace(0.0, 1.0, count)[:, None, None]
+    points: Floats = (corners + parts * (ends - corners)).reshape(-1, 2)
+    return points
+
+
+def padded(outline: Footprint, padding: float) -> Footprint:
+    """Return an outline whose corners are moved outward along x and y by a distance [m], as Nav2's `padFootprint`."""
+    if padding <= 0:
+        return outline
+    corners = outline.corners + np.sign(np.where(np.abs(outline.corners) < 1e-9, 0.0, outline.corners)) * padding
+    return _polygon(corners, outline.is_round)
+
+
 def read_footprint(node: Plugin, text: str, radius: float) -> Footprint:
     """Return the outline of Nav2's parameters `footprint` and `robot_radius`; an invalid polygon is an error.
 
@@ -108,8 +151,12 @@ def read_footprint(node: Plugin, text: str, radius: float) -> Footprint:
             "SK-PARAM-002", f"footprint: found {text!r:.80}; expected [[x, y], …] with 3 corners or more [m]"
         )
         return round_footprint(radius)
+    return _polygon(corners, False)
+
+
+def _polygon(corners: Floats, is_round: bool) -> Footprint:
     edges = np.roll(corners, -1, axis=0) - corners
     squares = np.maximum((edges**2).sum(axis=1), 1e-12)
     parts = np.clip(-(corners * edges).sum(axis=1) / squares, 0.0, 1.0)
     nearest = np.hypot(*(corners + parts[:, None] * edges).T)
-    return Footprint(corners, False, float(nearest.min()), float(np.hypot(*corners.T).max()))
+    return Footprint(corners, is_round, float(nearest.min()), float(np.hypot(*corners.T).max()))

@@ -69,10 +69,10 @@ def stamped_pose(pose: PlanarPose, header: msgs.Header) -> msgs.PoseStamped:
     return msgs.PoseStamped(header, pose_message(pose))
 
 
-def pose_message(pose: PlanarPose) -> msgs.Pose:
-    """Return a `geometry_msgs/msg/Pose`."""
+def pose_message(pose: PlanarPose, z: float = 0.0) -> msgs.Pose:
+    """Return a `geometry_msgs/msg/Pose` at a height [m]."""
     turn = msgs.Quaternion(0.0, 0.0, math.sin(pose.yaw / 2), math.cos(pose.yaw / 2))
-    return msgs.Pose(msgs.Point(pose.x, pose.y, 0.0), turn)
+    return msgs.Pose(msgs.Point(pose.x, pose.y, z), turn)
 
 
 def path_message(poses: Floats, header: msgs.Header) -> msgs.Path:

@@ -72,15 +72,20 @@ def ping(
     count: Annotated[int, Option("--count", "-c", help="Number of pings.", min=1)] = 1,
     sim: options.Sim = None,
 ) -> None:
-    """Measure how long a program in its own process needs to respond."""
+    """Measure how long a program in its own process, or the simulation of another node, needs to respond."""
     from simkit_nodes.live_host import PING
 
     with connect_to_simulation(sim) as client:
-        name = _program_node(client, node)
+        name = _known_node(client, node)
+        is_process = f"{name}/{PING}" in client.services()
         for _ in range(count):
             begun = time.perf_counter()
-            process = client.call(f"{name}/{PING}").message
-            print_line(f"{name}: process {process}, {(time.perf_counter() - begun) * 1e3:.1f} ms")
+            if is_process:
+                place = f"process {client.call(f'{name}/{PING}').message}"
+            else:
+                client.flush()
+                place = "part of the simulation"
+            print_line(f"{name}: {place}, {(time.perf_counter() - begun) * 1e3:.1f} ms")
 
 
 @node.command()
@@ -106,11 +111,21 @@ def _program_node(client: Client, node: str) -> str:
     """
     from simkit_nodes.live_host import PING
 
+    name = _known_node(client, node)
+    if f"{name}/{PING}" not in client.services():
+        text = f"node {name!r} runs in the process of the simulation, or in one that simkit did not start"
+        raise InputError(_PROCESS, text, help="only nodes of `simkit node run` can be ended")
+    return name
+
+
+def _known_node(client: Client, node: str) -> str:
+    """Return the full name of a node.
+
+    Raises:
+        InputError: there is no such node.
+    """
     name = absolute_name(node)
     names = list(client.ask("nodes"))
     if name not in names:
         raise not_found_error("node", name, names, "SK-CLI-034", connection_name(client))
-    if f"{name}/{PING}" not in client.services():
-        text = f"node {name!r} runs in the process of the simulation, or in one that simkit did not start"
-        raise InputError(_PROCESS, text, help="only nodes of `simkit node run` can be pinged and ended")
     return name

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Final
 
 from simkit.cli.terminal.output import JsonObject
@@ -42,6 +42,13 @@ def split_type_and_values(type_name: str | None, values: str | None) -> tuple[st
     if type_name is not None and values is None and not _TYPE_FORM.fullmatch(type_name):
         return None, type_name
     return type_name, values
+
+
+def split_type_and_words(type_name: str | None, words: Sequence[str] | None) -> tuple[str | None, list[str]]:
+    """Return the type and the words after it; if the first word is not a type, it belongs to the words."""
+    if type_name is not None and not _TYPE_FORM.fullmatch(type_name):
+        return None, [type_name, *(words or ())]
+    return type_name, list(words or ())
 
 
 def is_same_type(short_or_full: str, type_name: str) -> bool:

@@ -6,7 +6,7 @@ import time
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
-from simkit.cli.terminal.output import absolute_name, not_found_error, print_note
+from simkit.cli.terminal.output import JsonObject, absolute_name, not_found_error, print_note
 from simkit.cli.terminal.topic_sources import connection_name
 from simkit.msgs.topic_names import is_hidden
 
@@ -74,6 +74,20 @@ def find_topic(source: Source, name: str) -> TopicEntry:
         visible = [t for t in topics if not is_hidden(t)]
         raise not_found_error("topic", full_name, visible, "SK-CLI-030", source.where)
     return topics[full_name]
+
+
+def node_endpoints(client: Client, name: str) -> JsonObject:
+    """Return the publishers, subscribers, services, actions and clients of a node, each by name.
+
+    Raises:
+        InputError: SK-CLI-034 the node does not exist; the message suggests the closest name.
+    """
+    nodes: dict[str, JsonObject] = client.ask("nodes")
+    full_name = absolute_name(name)
+    if full_name not in nodes:
+        known = [node for node in nodes if not is_hidden(node)]
+        raise not_found_error("node", full_name, known, "SK-CLI-034", connection_name(client))
+    return nodes[full_name]
 
 
 def node_names(client: Client, *, hidden: bool = False) -> list[str]:

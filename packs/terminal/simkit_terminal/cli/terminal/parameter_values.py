@@ -38,12 +38,16 @@ def plain_value(parameter: ParameterValue) -> JsonValue:
 
 def parse_parameter_value(text: str) -> JsonObject:
     """Parse a text on the command line to a ParameterValue; YAML determines the type, and invalid YAML is a string."""
-    try:
-        parsed = read_yaml(text)
-    except NotYaml:
-        parsed = text
-    value = parameter_value(parsed)
+    value = parameter_value(plain_yaml(text))
     return value if value is not None else {"type": 4, "string_value": text}
+
+
+def plain_yaml(text: str) -> JsonValue:
+    """Return the value of a YAML text; invalid YAML is a string."""
+    try:
+        return read_yaml(text)
+    except NotYaml:
+        return text
 
 
 def parameter_value(plain: JsonValue) -> JsonObject | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 TRUNCATE = 128
 MessageFilter = Callable[[Message], bool]
 _SEPARATOR = "---"
+_CLEAR = "\x1b[2J\x1b[;H"  # ECMA-48: erase the display, then move to the first line
 
 
 def echo(
@@ -50,6 +52,7 @@ def echo(
     filter_: Annotated[str | None, option("Python condition on the message m: m.data > 2.", "EXPR", "--filter")] = None,
     info: Annotated[bool, Option("--include-message-info", help="Print the time of each message.")] = False,
     no_lost: Annotated[bool, Option("--no-lost-messages", help="Do not report lost messages.")] = False,
+    clear: Annotated[bool, Option("--clear", "-c", help="Clear the terminal before each message.")] = False,
     timeout: Annotated[float | None, option("Exit after this wall time.", "S", "--timeout", min=0)] = None,
     sim: options.Sim = None,
     bag: options.Bag = None,
@@ -63,7 +66,7 @@ def echo(
     with open_source(sim, bag) as source:
         entry = find_topic(source, topic) if message_type is None else wait_for_topic(source, topic, until)
         check_type(message_type, entry.types, entry.name)
-        show = _MessagePrinter(source, style, field, csv, raw, json_, info, compile_filter(filter_))
+        show = _MessagePrinter(source, style, field, csv, raw, json_, info, compile_filter(filter_), clear)
         source.prepare(entry)
         _echo_field(source.feed([entry.name]), show, once=once, until=until, reports_lost=not no_lost)
 
@@ -116,11 +119,13 @@ class _MessagePrinter:
     json: bool
     info: bool
     message_filter: MessageFilter | None
+    clears: bool = False
 
     def __call__(self, received: ReceivedMessage) -> bool:
         from simkit.msgs.message_text import field_at_path
 
         if self.raw:
+            self._clear()
             if self.json:
                 print_json(list(received.data))
             else:
@@ -136,8 +141,14 @@ class _MessagePrinter:
                 raise InputError("SK-CLI-033", f"--field: {error}") from None
         if self.message_filter is not None and not self.message_filter(message):
             return False
+        self._clear()
         self._print(received, message, node, store)
         return True
+
+    def _clear(self) -> None:
+        """Clear the terminal, as `rostopic echo -c`; a file or a pipe stays as it is."""
+        if self.clears and sys.stdout.isatty():
+            sys.stdout.write(_CLEAR)
 
     def _print(
         self, received: ReceivedMessage, message: FieldValue, node: FieldNode | None, store: Typestore | None

@@ -15,20 +15,24 @@ from simkit.cli.terminal.topic_sources import LONGEST_WAIT, LiveSource, SimClock
 from simkit.errors import InputError, MessageError
 from simkit.extend import argument, option
 from simkit_terminal.cli.terminal import completion
-from simkit_terminal.cli.terminal.message_arguments import make_message, parse_fields, split_type_and_values
+from simkit_terminal.cli.terminal.message_arguments import make_message, split_type_and_words
 from simkit_terminal.cli.terminal.named_endpoints import find_topic
+from simkit_terminal.cli.terminal.positional_values import read_fields
 
 if TYPE_CHECKING:
     from simkit.live import Client
 
 
 _TYPE_HELP = "Type such as geometry_msgs/msg/Twist; default: the topic's type."
-_VALUES_HELP = "Message as YAML: '{linear: {x: 0.2}}'; `header: auto` and `stamp: now` insert the present time."
+_VALUES_HELP = (
+    "Message as YAML: '{linear: {x: 0.2}}', or one value for each field, as in `rostopic pub`; "
+    "`header: auto` and `stamp: now` insert the present time."
+)
 _WAIT_HELP = "Number of subscribers to wait for; default: 1 with --once and --times, else 0."
 _WAIT_NAMES = ("--wait-matching-subscriptions", "-w")
 
 MessageType = Annotated[str | None, argument(_TYPE_HELP, "[TYPE]", completion.topic_types)]
-Values = Annotated[str | None, argument(_VALUES_HELP, "[VALUES]", completion.message_values)]
+Values = Annotated[list[str] | None, argument(_VALUES_HELP, "[VALUES]...", completion.message_values)]
 MatchingSubscribers = Annotated[int | None, option(_WAIT_HELP, "N", *_WAIT_NAMES, min=0, show_default=False)]
 
 
@@ -50,15 +54,15 @@ def pub(
     """Publish a message repeatedly until Ctrl-C."""
     from simkit.live import LiveClosed
 
-    message_type, values = split_type_and_values(message_type, values)
-    text = sys.stdin.read() if stdin else values or "{}"
-    fields = parse_fields(text, "the message")
+    message_type, words = split_type_and_words(message_type, values)
+    if stdin:
+        words = [sys.stdin.read()]
     number = 1 if once else times or 0
     if once and times is not None:
         raise InputError("SK-CLI-018", "--once and --times: found both; expected one of them")
     with connect_to_simulation(sim) as client:
         publisher = client.advertise(topic, _full_type_name(client, topic, message_type))
-        make = _message_factory(publisher.type_name, fields)
+        make = _message_factory(publisher.type_name, read_fields(publisher.type_name, words, "the message"))
         make(0)  # report an invalid message before any waiting
         _wait_matching(
             client, topic, (1 if number else 0) if wait is None else wait, print_note if json_ else print_line
