@@ -12,10 +12,10 @@ from simkit import msgs
 from simkit.extend import Diagnostics
 from simkit.msgs.goal_status import GoalStatus
 from simkit_navigation.behavior_trees import default_trees
+from simkit_navigation.behavior_trees.blackboard import Blackboard
 from simkit_navigation.behavior_trees.known_nodes import NODES
 from simkit_navigation.behavior_trees.scripts import Script, ScriptError
-from simkit_navigation.behavior_trees.tree import Tree
-from simkit_navigation.behavior_trees.tree_node import Blackboard, TreeError
+from simkit_navigation.behavior_trees.tree_node import Tree, TreeError
 from simkit_navigation.behavior_trees.tree_reader import build_tree, read_tree_file
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose, path_message, stamped_pose
 

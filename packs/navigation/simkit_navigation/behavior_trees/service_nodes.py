@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import Any, ClassVar, Final
 
+from simkit_navigation.behavior_trees.navigator import PendingCall
 from simkit_navigation.behavior_trees.tree_node import FAILURE, RUNNING, SUCCESS, Ports, TreeNode
-
-if TYPE_CHECKING:
-    from simkit.runtime.communication.service_server import ServiceCall
 
 _SERVICE: Final = ("service_name", "server_timeout")
 
@@ -23,7 +21,7 @@ class ServiceNode(TreeNode):
     """Name of the service, unless the port `service_name` has another one."""
 
     def prepare(self) -> None:
-        self.call: ServiceCall | None = None
+        self.call: PendingCall | None = None
 
     def request(self) -> dict[str, object]:
         """Return the request."""

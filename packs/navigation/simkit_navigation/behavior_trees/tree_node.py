@@ -1,4 +1,4 @@
-"""Nodes of a behaviour tree, their status, their ports and the blackboard.
+"""Behaviour tree and its nodes with their status and their ports.
 
 The rules of `execute`, `halt` and of the status are those of BehaviorTree.CPP 4 (`src/tree_node.cpp`,
 `src/control_node.cpp`, `src/decorator_node.cpp`). The state of a tree consists of plain attributes, so that a snapshot
@@ -9,13 +9,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final, NamedTuple
 
+from simkit import msgs
+from simkit_navigation.behavior_trees.blackboard import Blackboard
+from simkit_navigation.behavior_trees.navigator import Navigator, PendingCall
 from simkit_navigation.behavior_trees.scripts import Script, ScriptError
+from simkit_navigation.plugins.navigation.planar_pose import PlanarPose, pose_of_message
 
 if TYPE_CHECKING:
-    from simkit_navigation.behavior_trees.tree import Tree
+    from simkit.extend import GoalHandle
 
 IDLE: Final = "IDLE"
 RUNNING: Final = "RUNNING"
@@ -34,55 +37,14 @@ class TreeError(Exception):
     """Error of a node that ends the tree, such as a port without a value."""
 
 
-@dataclass(eq=False)
-class Blackboard:
-    """Values by name, which the nodes of a tree share.
+class StatusChange(NamedTuple):
+    """Change of the status of a node."""
 
-    Attributes:
-        values: values by name.
-        parent: blackboard of the tree that contains this one as a subtree.
-        remapped: names of this blackboard whose values are in the parent, with their name there.
-        remaps_all: True if the parent has each name that this blackboard does not have.
-    """
-
-    values: dict[str, Any] = field(default_factory=dict)
-    parent: Blackboard | None = None
-    remapped: dict[str, str] = field(default_factory=dict)
-    remaps_all: bool = False
-
-    def _owner(self, name: str) -> tuple[Blackboard, str]:
-        """Return the blackboard with the value of a name, and its name there."""
-        board: Blackboard = self
-        while (outer := board.parent) is not None:
-            if name.startswith("@"):
-                board = outer
-            elif name in board.remapped:
-                board, name = outer, board.remapped[name]
-            elif board.remaps_all and name not in board.values and not name.startswith("_"):
-                board = outer
-            else:
-                break
-        return board, name.removeprefix("@")
-
-    def has(self, name: str) -> bool:
-        """Check whether there is a value."""
-        board, key = self._owner(name)
-        return key in board.values
-
-    def get(self, name: str, default: Any = None) -> Any:
-        """Return a value."""
-        board, key = self._owner(name)
-        return board.values.get(key, default)
-
-    def set(self, name: str, value: object) -> None:
-        """Store a value."""
-        board, key = self._owner(name)
-        board.values[key] = value
-
-    def unset(self, name: str) -> None:
-        """Remove a value."""
-        board, key = self._owner(name)
-        board.values.pop(key, None)
+    time_ns: int
+    name: str
+    uid: int
+    before: str
+    after: str
 
 
 class TreeNode:
@@ -273,3 +235,162 @@ class DecoratorNode(TreeNode):
         if child.status in COMPLETED:
             child.set_status(IDLE)
         return status
+
+
+class Tree:
+    """Behaviour tree with its nodes and its blackboard.
+
+    Args:
+        navigator: plugin that executes the tree.
+        file: file of the tree, for messages.
+
+    Attributes:
+        nodes: all nodes in the order of the file.
+        board: blackboard of the main tree.
+        ticks: number of ticks so far.
+        changes: changes of the status of nodes since the last tick, if `is_logged`.
+        goal_number: number of goals so far; a goal that replaces another one counts.
+        planned_number: number of the goal for which there is a path; None if the tree has planned no path.
+        failure: error code and text of the server that failed last.
+    """
+
+    root: TreeNode
+
+    def __init__(self, navigator: Navigator, file: str) -> None:
+        self.navigator, self.file = navigator, file
+        self.nodes: list[TreeNode] = []
+        self.board = Blackboard()
+        self.ticks = 0
+        self.is_logged = False
+        self.changes: list[StatusChange] = []
+        self.goal_number = 0
+        self.planned_number: int | None = None
+        self.failure: tuple[int, str] = (0, "")
+        self.odometry_topic = ""
+
+    # ------------------------------------------------------------------ execution
+
+    def tick(self) -> str:
+        """Tick the tree and return the status of its root."""
+        self.ticks += 1
+        return self.root.execute()
+
+    def halt(self) -> None:
+        """Stop all nodes."""
+        self.root.halt()
+        for node in self.nodes:
+            if node.status != IDLE:
+                node.halt()
+
+    @property
+    def is_path_outdated(self) -> bool:
+        """True if there is no path yet to a goal that replaced another one."""
+        return self.planned_number is not None and self.planned_number < self.goal_number
+
+    def log_change(self, node: TreeNode, status: str) -> None:
+        """Note the change of a node's status."""
+        if self.is_logged:
+            self.changes.append(StatusChange(self.time_ns, node.name, node.uid, node.status, status))
+
+    # ------------------------------------------------------------------ for the nodes
+
+    @property
+    def time_ns(self) -> int:
+        """Time of the simulation [ns]."""
+        return self.navigator.time_ns
+
+    def option(self, name: str, default: object) -> Any:
+        """Return an option of the navigator."""
+        return self.navigator.tree_option(name, default)
+
+    @property
+    def goal(self) -> msgs.PoseStamped | None:
+        """Goal on the blackboard."""
+        goal: msgs.PoseStamped | None = self.board.get(str(self.option("goal_blackboard_id", "goal")))
+        return goal
+
+    def look_up(self, target: str, source: str) -> PlanarPose | None:
+        """Return the pose of the frame `source` in the frame `target`; None if it is not known."""
+        return self.navigator.look_up(target, source)
+
+    def pose_of(self, node: TreeNode, frame: str = "") -> PlanarPose | None:
+        """Return the pose of the robot in a frame, or in that of the node's port `global_frame`."""
+        target = frame or node.text("global_frame") or str(self.option("global_frame", "map"))
+        base = node.text("robot_base_frame") or node.text("robot_frame")
+        return self.look_up(target, base or str(self.option("robot_base_frame", "base_link")))
+
+    def in_frame(self, stamped: msgs.PoseStamped, frame: str) -> PlanarPose | None:
+        """Return a pose in a frame; None if it is not known."""
+        pose = pose_of_message(stamped.pose)
+        if stamped.header.frame_id == frame or pose is None:
+            return pose
+        placed = self.look_up(frame, stamped.header.frame_id)
+        return None if placed is None else placed.compose(pose)
+
+    def open_topic(self, topic: str, type_name: str) -> None:
+        """Keep the newest messages of a topic from now on."""
+        self.navigator.open_topic(topic, type_name)
+
+    def latest(self, topic: str) -> Any:
+        """Return the newest message of a topic; None before the first one."""
+        return self.navigator.newest(topic)[1]
+
+    def use_odometry(self) -> None:
+        """Keep the newest odometry from now on."""
+        self.odometry_topic = str(self.option("odom_topic", "odom"))
+        self.open_topic(self.odometry_topic, "nav_msgs/msg/Odometry")
+
+    @property
+    def odometry(self) -> tuple[Any, Any]:
+        """The two newest messages of the odometry; None for those that are missing."""
+        return self.navigator.newest(self.odometry_topic)
+
+    @property
+    def speed(self) -> float:
+        """Speed of the newest odometry [m/s]."""
+        message = self.odometry[1]
+        return 0.0 if message is None else math.hypot(message.twist.twist.linear.x, message.twist.twist.linear.y)
+
+    def send_goal(self, action: str, request: Mapping[str, object], *, is_needed: bool) -> GoalHandle | None:
+        """Send a goal; return None, after a warning, if there is no such action.
+
+        Raises:
+            TreeError: the action is needed, and there is none.
+        """
+        try:
+            return self.navigator.send_goal(action, request)
+        except TreeError as error:
+            if is_needed:
+                raise
+            self.navigator.warn_once(action, f"{error}; its node in the tree fails")
+            return None
+
+    def call_service(self, service: str, request: Mapping[str, object]) -> PendingCall | None:
+        """Call a service; return None, after a warning, if there is no such service."""
+        try:
+            return self.navigator.call_service(service, request)
+        except TreeError as error:
+            self.navigator.warn_once(service, f"{error}; its node in the tree fails")
+            return None
+
+    def cancel_goals(self, action: str) -> bool:
+        """Cancel the goals that nodes have sent to an action."""
+        suffix = "/" + action.lstrip("/")
+        for node in self.nodes:
+            handle = getattr(node, "handle", None)
+            if handle is not None and not handle.is_done and handle.action.name.endswith(suffix):
+                handle.cancel()
+        return True
+
+    def count_recovery(self) -> None:
+        """Count a recovery."""
+        self.board.set("number_recoveries", self.recoveries + 1)
+
+    @property
+    def recoveries(self) -> int:
+        """Number of recoveries since the goal began."""
+        return int(self.board.get("number_recoveries", 0))
+
+    def note_failure(self, code: int, text: str) -> None:
+        """Note why a server failed."""
+        self.failure = (code, text)

@@ -11,13 +11,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
+from simkit import Params
 from simkit.extend import Diagnostics, Document, did_you_mean
 from simkit.loaders.resources.xml_reader import parse_file
-from simkit.params import Params
+from simkit_navigation.behavior_trees.blackboard import Blackboard
 from simkit_navigation.behavior_trees.known_nodes import LEFT_OUT, NODES, SUBTREES
+from simkit_navigation.behavior_trees.navigator import Navigator
 from simkit_navigation.behavior_trees.scripts import Script, ScriptError
-from simkit_navigation.behavior_trees.tree import Navigator, Tree
-from simkit_navigation.behavior_trees.tree_node import Blackboard, TreeError, TreeNode
+from simkit_navigation.behavior_trees.tree_node import Tree, TreeError, TreeNode
 
 _KINDS: Final = ("Action", "Condition", "Decorator", "Control")
 """Elements of the long form, `<Action ID="Spin"/>`."""

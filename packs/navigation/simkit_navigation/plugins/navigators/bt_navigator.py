@@ -28,7 +28,7 @@ from simkit.extend import (
 )
 from simkit_navigation.behavior_trees import default_trees
 from simkit_navigation.behavior_trees.path_geometry import nearest_index, path_length
-from simkit_navigation.behavior_trees.tree_node import RUNNING, SUCCESS, TreeError
+from simkit_navigation.behavior_trees.tree_node import RUNNING, SUCCESS, Tree, TreeError
 from simkit_navigation.behavior_trees.tree_reader import build_tree, read_tree_file
 from simkit_navigation.plugins.lifecycle_state import GET_STATE, answer_active
 from simkit_navigation.plugins.navigation.node_parameters import NodeParameters
@@ -43,8 +43,7 @@ from simkit_navigation.plugins.navigation.planar_pose import (
 if TYPE_CHECKING:
     from simkit import Model, Simulation
     from simkit.extend import GoalHandle
-    from simkit.runtime.communication.service_server import ServiceCall
-    from simkit_navigation.behavior_trees.tree import Tree
+    from simkit_navigation.behavior_trees.navigator import PendingCall
 
 _POSE: Final = "geometry_msgs/msg/PoseStamped"
 _LOG: Final = "nav2_msgs/msg/BehaviorTreeLog"
@@ -241,7 +240,7 @@ class BtNavigator(NodeParameters):
         except InputError as error:
             raise TreeError(str(error).partition("\n")[0]) from None
 
-    def call_service(self, service: str, request: Mapping[str, object]) -> ServiceCall:
+    def call_service(self, service: str, request: Mapping[str, object]) -> PendingCall:
         """Call a service; raise TreeError if there is no such service."""
         try:
             return self.sim.communication.services.request(self.ros.topic(service), request)

@@ -14,7 +14,7 @@ from simkit_navigation.plugins.lifecycle_state import GET_STATE, answer_active
 if TYPE_CHECKING:
     from simkit import Model, Simulation
     from simkit.extend import GoalHandle
-    from simkit.runtime.communication.service_server import ServiceCall
+    from simkit_navigation.behavior_trees.navigator import PendingCall
 
 _WAIT, _INPUT, _PHOTO = "WaitAtWaypoint", "InputAtWaypoint", "PhotoAtWaypoint"
 _TASK_FAILED: Final = 601  # TASK_EXECUTOR_FAILED
@@ -51,7 +51,7 @@ class _Walk:
     poses: list[msgs.PoseStamped]
     index: int
     loop: int = 0
-    calls: list[ServiceCall] = field(default_factory=list)
+    calls: list[PendingCall] = field(default_factory=list)
     missed: list[dict[str, object]] = field(default_factory=list)
     drive: GoalHandle | None = None
     task_end_ns: int | None = None
@@ -107,7 +107,7 @@ class WaypointFollower(Plugin):
         self._begin(goal, list(goal.request.poses), [])
 
     def _on_gps_poses(self, goal: GoalHandle) -> None:
-        calls: list[ServiceCall] = []
+        calls: list[PendingCall] = []
         try:
             for pose in goal.request.gps_poses:
                 position = pose.position
@@ -121,7 +121,7 @@ class WaypointFollower(Plugin):
             return
         self._begin(goal, [], calls)
 
-    def _begin(self, goal: GoalHandle, poses: list[msgs.PoseStamped], calls: list[ServiceCall]) -> None:
+    def _begin(self, goal: GoalHandle, poses: list[msgs.PoseStamped], calls: list[PendingCall]) -> None:
         count = max(len(poses), len(calls))
         self.log.info("Received follow waypoint request with %d waypoints.", count)
         if not count or goal.request.goal_index >= count:
