@@ -55,8 +55,22 @@ _MOTION_MODELS: Final = {
 }
 _SPEEDS: Final = ("desired_linear_vel", "max_vel_x", "vx_max", "max_linear_vel")
 _TURNING_RATES: Final = ("rotate_to_heading_angular_vel", "max_vel_theta", "wz_max", "max_angular_vel")
-_OF_ALL_NODES: Final = frozenset(("use_sim_time", "qos_overrides", "bond_heartbeat_period"))
+_OF_ALL_NODES: Final = frozenset(
+    (
+        *("use_sim_time", "qos_overrides", "bond_heartbeat_period", "use_realtime_priority"),
+        *(
+            "introspection_mode",
+            "service_introspection_mode",
+            "allow_parameter_qos_overrides",
+            "action_server_result_timeout",
+        ),
+        *("enable_groot_monitoring", "groot_zmq_publisher_port", "groot_zmq_server_port"),
+    )
+)
 """Parameters of nodes that change nothing here and need no warning."""
+_OF_OTHER_MODELS: Final = ("z_max", "z_short", "lambda_short", "save_pose_rate", "always_reset_initial_pose")
+"""Parameters of AMCL's beam model, and of a file for the next start of the node."""
+_OF_BEAM_SKIPPING: Final = ("do_beamskip", "beam_skip_distance", "beam_skip_threshold", "beam_skip_error_threshold")
 
 
 @dataclass
@@ -236,6 +250,13 @@ def _amcl(values: Values, _: Values) -> list[PluginOfNode]:
     if values.get("laser_model_type") == "beam":
         plugin.values["laser_model_type"] = "likelihood_field"
         plugin.told.append("the laser model 'beam' is not available; 'likelihood_field' is used")
+    if values.get("do_beamskip"):
+        plugin.told.append("no beams are skipped (do_beamskip)")
+    for name in (*_OF_OTHER_MODELS, *_OF_BEAM_SKIPPING):
+        plugin.values.pop(name, None)
+    pose = plugin.values.get("initial_pose")
+    if isinstance(pose, dict):
+        plugin.values["initial_pose"] = {name: value for name, value in pose.items() if name != "z"}
     return [plugin]
 
 

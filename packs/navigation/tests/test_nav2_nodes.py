@@ -59,7 +59,7 @@ def test_each_replaced_class_and_each_parameter_without_effect_is_told_once(fold
         assert "voxel_layer" not in told
         assert "RegulatedPurePursuitController replaces dwb_core::DWBLocalPlanner" in told
         assert "GridBased" not in told
-        assert warnings(sim, "SK-NAV-002") == ["/amcl: no effect here: beam_skip_distance, initial_pose.z"]
+        assert warnings(sim, "SK-NAV-002") == ["/amcl: no effect here: max_speed"]
         assert not [item for item in sim.diagnostics if item.code in ("SK-PARAM-003", "SK-SERVICE-004")]
 
 

@@ -1,4 +1,4 @@
-"""What a behaviour tree needs of the plugin that executes it."""
+"""Interface of a plugin that executes behaviour trees."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ amcl:
     max_beams: 30
     update_min_d: 0.1
     update_min_a: 0.1
-    beam_skip_distance: 0.5
+    max_speed: 0.5
     set_initial_pose: true
     initial_pose: {{x: 1.0, y: 1.0, z: 0.0, yaw: 0.5}}
 bt_navigator:
