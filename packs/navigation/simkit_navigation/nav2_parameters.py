@@ -20,6 +20,7 @@ from simkit.plugins.unread_parameters import names_read
 from simkit_navigation.plugins.localisation.amcl import Amcl
 from simkit_navigation.plugins.localisation.robot_localization import EkfNode
 from simkit_navigation.plugins.navigation.behavior_server import BehaviorServer
+from simkit_navigation.plugins.navigation.controller_parameters import controller_parameters
 from simkit_navigation.plugins.navigation.controller_server import ControllerServer
 from simkit_navigation.plugins.navigation.costmap_2d import Costmap2D
 from simkit_navigation.plugins.navigation.costmap_parameters import costmap_parameters
@@ -38,8 +39,6 @@ _EKF_INPUT: Final = re.compile(
     r"(odom|pose|twist|imu)\d+(_config|_differential|_relative|_queue_size|_nodelay|_remove_gravitational_acceleration"
     r"|(_pose|_twist|_linear_acceleration)?_rejection_threshold)?"
 )
-_PURSUIT: Final = "nav2_regulated_pure_pursuit_controller::RegulatedPurePursuitController"
-_SHIM: Final = "nav2_rotation_shim_controller::RotationShimController"
 _TUTORIAL_CLASSES: Final = frozenset(
     (
         "nav2_gradient_costmap_plugin::GradientLayer",
@@ -53,8 +52,6 @@ _MOTION_MODELS: Final = {
     "differential": "nav2_amcl::DifferentialMotionModel",
     "omnidirectional": "nav2_amcl::OmniMotionModel",
 }
-_SPEEDS: Final = ("desired_linear_vel", "max_vel_x", "vx_max", "max_linear_vel")
-_TURNING_RATES: Final = ("rotate_to_heading_angular_vel", "max_vel_theta", "wz_max", "max_angular_vel")
 _OF_ALL_NODES: Final = frozenset(
     (
         *("use_sim_time", "qos_overrides", "bond_heartbeat_period", "use_realtime_priority"),
@@ -282,40 +279,9 @@ def _smoother(values: Values, _: Values) -> list[PluginOfNode]:
 
 
 def _controller(values: Values, costmap: Values) -> list[PluginOfNode]:
-    outline = _outline_of(costmap)
-    plugin = PluginOfNode(ControllerServer, "controller_server", {**_frame_of(costmap), **outline, **values})
-    for name in _names(values.get("controller_plugins")):
-        plugin.blocks.append(name)
-        settings = _block(plugin.values, name)
-        kind = str(settings.get("plugin", "")).replace("/", "::")
-        if kind == _SHIM:
-            kind = str(settings.get("primary_controller", "")).replace("/", "::")
-            settings["plugin"] = kind
-        if not kind or kind == _PURSUIT or is_class_of_user(kind):
-            continue
-        plugin.told.append(f"{name}: the controller {_PURSUIT} replaces {kind}")
-        plugin.values[name] = _pursuit_settings(settings)
-    for wanted, element in (("goal_checker", "general_goal_checker"), ("progress_checker", "progress_checker")):
-        checkers = _names(values.get(f"{wanted}_plugins")) or _names(values.get(f"{wanted}_plugin")) or [wanted]
-        settings = _block(plugin.values, checkers[0])
-        plugin.values.pop(checkers[0], None)
-        if settings:
-            plugin.values[element] = {key: value for key, value in settings.items() if key != "plugin"}
-        for name in (f"{wanted}_plugins", f"{wanted}_plugin"):
-            plugin.values.pop(name, None)
+    found = controller_parameters(values, costmap, is_class_of_user)
+    plugin = PluginOfNode(ControllerServer, "controller_server", found.values, found.blocks, found.told)
     return [_costmap("local_costmap", costmap), plugin]
-
-
-def _pursuit_settings(settings: Values) -> Values:
-    """Return the settings of pure pursuit with the speeds of another controller."""
-    speed = next((settings[name] for name in _SPEEDS if name in settings), None)
-    rate = next((settings[name] for name in _TURNING_RATES if name in settings), None)
-    found: Values = {"plugin": _PURSUIT}
-    if isinstance(speed, (int, float)) and speed > 0:
-        found["desired_linear_vel"] = speed
-    if isinstance(rate, (int, float)) and rate > 0:
-        found["rotate_to_heading_angular_vel"] = rate
-    return found
 
 
 def _behaviors(values: Values, costmap: Values) -> list[PluginOfNode]:
