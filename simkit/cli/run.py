@@ -112,6 +112,8 @@ def execute(spec: RunSpec, parts: Sequence[RunPart], *, verbose: bool, quiet: bo
         from simkit.cli.run_verdict import RunVerdict
         from simkit.testing.scenarios.scenario_run import add_nodes
 
+    for part in parts:
+        spec = part.extended(spec)
     if spec.recording is not None:
         from simkit.recording.bags import writer  # 3 ms: the formats of bags
 

@@ -86,6 +86,14 @@ class RunPart:
         """True if somebody watches the run, which then has at most the speed of real time."""
         return False
 
+    def extended(self, spec: RunSpec) -> RunSpec:
+        """Return the run with what the part adds to it: nodes, models, files; called before `around_run`.
+
+        Raises:
+            InputError: the run cannot do what the options request.
+        """
+        return spec
+
     def around_run(self, spec: RunSpec, verdict: RunVerdict) -> AbstractContextManager[object]:
         """Return a context manager around loading and running; its start checks what the run will need.
 

@@ -39,7 +39,7 @@ def grid(message: Any) -> list[list[int]]:
     [
         ("", [[100, 0, -1, 0], [100, 0, 0, -1]]),  # brightness 60 of 255 is occupied to 0.76; row 0 is the lowest one
         ("negate: 1\n", [[0, 100, -1, 100], [0, 100, 100, -1]]),
-        ("mode: scale\n", [[100, 0, 63, 0], [100, 0, 0, 98]]),
+        ("mode: scale\n", [[100, 0, 63, 0], [100, 0, 0, 99]]),
         ("mode: raw\n", [[60, -1, -1, -1], [0, -1, -1, 90]]),
     ],
 )

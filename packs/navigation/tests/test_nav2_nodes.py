@@ -57,9 +57,9 @@ def test_each_replaced_class_and_each_parameter_without_effect_is_told_once(fold
         sim.run(0.5)
         told = "\n".join(warnings(sim, "SK-NAV-001"))
         assert "voxel_layer" not in told
-        assert "RegulatedPurePursuitController replaces dwb_core::DWBLocalPlanner" in told
-        assert "NavfnPlanner replaces nav2_smac_planner::SmacPlanner2D" in told
-        assert warnings(sim, "SK-NAV-002") == ["/amcl: no effect here: beam_skip_distance, initial_pose.z"]
+        assert "RegulatedPurePursuitController replaces teb_local_planner::TebLocalPlannerROS" in told
+        assert "GridBased" not in told
+        assert warnings(sim, "SK-NAV-002") == ["/amcl: no effect here: max_speed"]
         assert not [item for item in sim.diagnostics if item.code in ("SK-PARAM-003", "SK-SERVICE-004")]
 
 
@@ -101,19 +101,19 @@ def test_the_map_is_published_with_the_activation_and_can_be_replaced(folder: Pa
 
 def test_the_manager_goes_on_without_a_node_that_does_not_exist(folder: Path) -> None:
     with simkit.load(rooms()) as sim:
-        sim.add_node("nav2_smoother/smoother_server")
-        params = {"autostart": True, "node_names": ["ghost", "smoother_server"]}
+        sim.add_node("nav2_route/route_server")
+        params = {"autostart": True, "node_names": ["ghost", "route_server"]}
         sim.add_node("nav2_lifecycle_manager/lifecycle_manager", params=params)
         sim.run(6.0)
         assert warnings(sim, "SK-NAV-003") == [
             "/lifecycle_manager: no node 'ghost' after 5 s; the others are managed without it"
         ]
-        assert "paths are not smoothed" in warnings(sim, "SK-NAV-004")[0]
-        assert sim.call("/smoother_server/get_state").current_state.label == "active"
+        assert "there are no routes on a graph" in warnings(sim, "SK-NAV-004")[0]
+        assert sim.call("/route_server/get_state").current_state.label == "active"
         assert sim.call("/lifecycle_manager/is_active").success
         sim.call("/lifecycle_manager/manage_nodes", {"command": 1}, on_done=lambda _: None)  # PAUSE
         sim.run(0.2)
-        assert sim.call("/smoother_server/get_state").current_state.label == "inactive"
+        assert sim.call("/route_server/get_state").current_state.label == "inactive"
 
 
 def test_a_parameter_that_is_not_valid_ends_the_activation_with_the_reason(folder: Path) -> None:
@@ -210,11 +210,12 @@ def test_the_map_saver_writes_the_map_of_slam_while_the_robot_moves(folder: Path
         }
         sim.add_node("slam_toolbox/async_slam_toolbox_node", params=params)
         sim.tf.open()
-        sim.run(0.5)  # the map begins at the pose of the first scan
-        start = sim.model("robot").pose
+        sim.run(0.5)
         drive(sim, 6.0, 0.05, 0.6)
-        known = sim.tf.lookup("map", "base_footprint")
-        true = start.inverse() @ sim.model("robot").pose
+        known, true = (
+            sim.tf.lookup("map", "base_footprint"),
+            sim.model("robot").pose,
+        )  # the odometry begins at the world
         assert math.hypot(*(known.position - true.position)[:2]) < 0.03
         assert abs(math.degrees(known.rpy[2] - true.rpy[2])) < 2.5  # the odometry is up to 0.05 s old
         saver = sim.add_node("nav2_map_server/map_saver_cli", args=("-f", "found"))

@@ -37,9 +37,10 @@ class GazeboWorldOdometry(ModelPlugin):
 
     As in Gazebo, `<frame_name>` (`world`) sets only the frame of the message, and it names the link if there is no
     `<body_name>`. The linear velocity is in the world's axes, and the angular velocity in the link's axes.
-    `<update_rate>` is 1000 Hz by default. Files for ROS 1 write `<bodyName>`, `<topicName>` and so on. The live parameters `x_offset`, `y_offset` [m] and `yaw_offset` [rad] shift
-    the published pose. `gaussian_noise` adds a random walk: the standard deviation of each step of x and y [m] and of
-    the yaw [rad].
+    `<update_rate>` is 1000 Hz by default. Files for ROS 1 write `<bodyName>`, `<topicName>` and so on.
+
+    The live parameters `x_offset`, `y_offset` [m] and `yaw_offset` [rad] shift the published pose. `gaussian_noise`
+    adds a random walk: the standard deviation of each step of x and y [m] and of the yaw [rad].
     """
 
     endpoints = (publishes("ft_data", ODOMETRY, named_by=("topic_name", "topicName")),)

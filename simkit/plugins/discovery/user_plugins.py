@@ -73,6 +73,32 @@ def find_user_class(named: ScenePlugin, paths: Sequence[Path], diagnostics: Diag
     return None
 
 
+def find_user_class_by_name(named: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics) -> type | None:
+    """Return a class whose attribute `names` has a name of C++; None if no module in the allowed folders has one.
+
+    Such a class need not be a plugin. Only modules whose text contains the name are imported; subfolders are not
+    searched.
+
+    Args:
+        named: description whose `filename` is a name such as `my_package::MyPlanner` or `my_package/MyPlanner`.
+        paths: folders whose modules the user allows.
+        diagnostics: collector of the problems.
+    """
+    name = named.filename.replace("/", "::")
+    spellings = {name, "/".join(name.rsplit("::", 1))}
+    for folder in paths:
+        for file in sorted(folder.glob("*.py")):
+            if not is_inside(file, folder) or not spellings & _plain_literals(file):
+                continue
+            module = _import_file(file.stem, file, named, diagnostics)
+            for cls in _own_classes(module) if module else ():
+                names = getattr(cls, "names", ())
+                names = (names,) if isinstance(names, str) else tuple(names)
+                if name in (str(one).replace("/", "::") for one in names):
+                    return cls
+    return None
+
+
 def _allowed_module(
     name: str, plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics
 ) -> tuple[ModuleType | None, Path]:
@@ -151,12 +177,17 @@ def _load_entry_point(point: EntryPoint, plugin: ScenePlugin, diagnostics: Diagn
 
 def _string_literals(file: Path) -> set[str]:
     """Return all text literals of a Python file as normalised plugin names; the file is parsed, not executed."""
+    return set(map(normalise, _plain_literals(file)))
+
+
+def _plain_literals(file: Path) -> set[str]:
+    """Return the short text literals of a Python file."""
     try:
         tree = ast.parse(read_input(file, TEXT_LIMIT), str(file))
     except (OSError, SyntaxError, ValueError):
         return set()
     texts = (node.value for node in ast.walk(tree) if isinstance(node, ast.Constant))
-    return {normalise(text) for text in texts if isinstance(text, str) and len(text) < 200}
+    return {text for text in texts if isinstance(text, str) and len(text) < 200}
 
 
 def _import_file(name: str, file: Path, plugin: ScenePlugin, diagnostics: Diagnostics) -> ModuleType | None:

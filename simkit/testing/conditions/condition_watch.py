@@ -27,8 +27,9 @@ class Watch:
         checks: Checks.
         until: Expression that ends the run when it is true; empty for none.
         timeout: Time by which `until` must be true [s].
-        absent: Behaviour for a topic without a publisher. "error" raises an error. "wait" waits for a publisher, and
-            the check fails if there is none until the end of the run.
+        absent: Behaviour for a topic without a publisher. "error" raises an error, unless the run has nodes, which
+            open their publishers later. "wait" waits for a publisher, and the check fails if there is none until the
+            end of the run.
 
     Raises:
         InputError: Expressions have syntax errors or unknown names; the message lists all errors.
@@ -44,7 +45,7 @@ class Watch:
         absent: Literal["error", "wait"] = "error",
     ) -> None:
         self._sim = sim
-        self._view = WorldView(sim, absent)
+        self._view = WorldView(sim, "wait" if sim.nodes else absent)
         self._checks = CheckList(self._view, checks, until=until, timeout=timeout)
         self._is_active = False
         self._end: Callable[[], None] = lambda: None

@@ -8,7 +8,6 @@ from node_support import run, warn
 from rclpy.lifecycle import LifecycleNode
 
 MISSING = {
-    "smoother_server": "paths are not smoothed by an action smooth_path; the planner smooths its own paths",
     "docking_server": "robots do not dock: there is no action dock_robot",
     "opennav_docking": "robots do not dock: there is no action dock_robot",
     "opennav_following": "robots do not follow objects: there is no action follow_object",

@@ -19,7 +19,7 @@ def main():
     try:
         if not Path(words[0]).is_file():
             sys.exit(f"map_server could not open {words[0]}.")
-        found = read_map(Path(words[0]))
+        found = read_map(Path(words[0]), is_ros_1=True)
     except MapFileError as error:
         sys.exit(str(error))
     message, (rows, columns) = OccupancyGrid(), found.cells.shape

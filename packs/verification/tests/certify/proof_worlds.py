@@ -118,7 +118,7 @@ NAVIGATION = (
     )
     + "".join(
         plugin(f"libsimkit_{name}.so", tags(robot_base_frame="base"), name)
-        for name in ("planner_server", "controller_server", "behavior_server")
+        for name in ("planner_server", "smoother_server", "controller_server", "behavior_server")
     )
 )
 AIR = gz("wind-effects", tags(force_approximation_scaling_factor=0.5), "WindEffects")
@@ -711,10 +711,13 @@ WORLDS: dict[str, str] = {
     "MapSaver": lab(world=plugin("libsimkit_map_server.so", tags(height=0.05)) + plugin("libsimkit_map_saver.so")),
     "Amcl": rooms("<set_initial_pose>true</set_initial_pose><initial_pose><x>1</x><y>1</y></initial_pose>"),
     **dict.fromkeys(
-        ("BehaviorServer", "ControllerServer", "Costmap2D", "FakeLocalization", "PlannerServer"),
+        ("BehaviorServer", "ControllerServer", "Costmap2D", "FakeLocalization", "PlannerServer", "SmootherServer"),
         lab(world=NAVIGATION, model=ODOMETRY),
     ),
     "BtNavigator": lab(world=NAVIGATION + NAVIGATOR, model=ODOMETRY),
+    "WaypointFollower": lab(
+        world=NAVIGATION + NAVIGATOR + plugin("libsimkit_waypoint_follower.so", "", "waypoint_follower"), model=ODOMETRY
+    ),
     "TurtleSim": lab(world=plugin("libsimkit_turtlesim.so")),
     "TurtleMimic": lab(
         world=plugin("libsimkit_turtlesim.so")

@@ -37,6 +37,7 @@ class Group:
         self.texts: list[list[object]] = []
         self.meshes: list[tuple[str, list[float]]] = []
         self.grids: list[tuple[JsonObject, npt.NDArray[np.uint8]]] = []
+        self.handles: list[JsonObject] = []
 
 
 class Drawing:
@@ -113,6 +114,10 @@ class Drawing:
         head = {"rows": cells.shape[0], "columns": cells.shape[1], "resolution": resolution, "colours": colours}
         self._group(at).grids.append(({**head, "pose": pose.as_list()}, cells))
 
+    def handle(self, at: Placement, content: JsonObject) -> None:
+        """Add a handle at a placement, by which a page moves or turns something."""
+        self._group(at).handles.append({**content, "pose": at.pose.as_list()})
+
     # ------------------------------------------------------------------ limits
 
     def _usable(self, rows: Floats, numbers: Floats) -> Floats:
@@ -185,6 +190,7 @@ def _pack(group: Group, prefix: str, meshes: list[str], arrays: Arrays) -> JsonO
         "texts": group.texts,
         "meshes": [[meshes.index(name), row] for name, row in group.meshes],
         "grids": [values for values, _ in group.grids],
+        "handles": group.handles,
     }
     for number, (_, cells) in enumerate(group.grids):
         arrays[f"{prefix}.grid{number}"] = cells

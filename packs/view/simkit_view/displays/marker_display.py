@@ -99,10 +99,11 @@ class MarkerDisplay(Display):
             if marker.at is None:
                 drawing.tell(unknown_frame(str(marker.message.header.frame_id)))
                 continue
-            _draw_marker(drawing, marker.message, marker.at, f"{ns}/{number}", self.tools)
+            draw_marker(drawing, marker.message, marker.at, f"{ns}/{number}", self.tools)
 
 
-def _draw_marker(drawing: Drawing, message: Message, at: Placement, name: str, tools: DisplayTools) -> None:
+def draw_marker(drawing: Drawing, message: Message, at: Placement, name: str, tools: DisplayTools) -> None:
+    """Draw a `visualization_msgs/msg/Marker` in a frame; what cannot be drawn is told with its name."""
     pose = pose_of(message.pose, drawing)
     if pose is None:
         return

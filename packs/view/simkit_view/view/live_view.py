@@ -17,6 +17,7 @@ from simkit.errors import InputError, PluginError, SimulationDiverged, Subscribe
 from simkit.recording.travel import Travel
 from simkit_view.view import scene_packet
 from simkit_view.view.driving import Driving
+from simkit_view.view.marker_feedback import MarkerFeedback
 from simkit_view.view.packet import Stream, make_packet
 from simkit_view.view.page_calls import PageCalls
 from simkit_view.view.page_requests import execute_request
@@ -73,6 +74,7 @@ class LiveView:
         self.sim, self._host, self._token = sim, host, token or secrets.token_urlsafe(16)
         self.revision, self.is_held = 0, False
         self.travel, self.driving, self.calls = Travel(sim), Driving(sim), PageCalls(sim)
+        self.marker_feedback = MarkerFeedback(sim)
         try:
             self.server = PageServer(host, port, self._token)
         except OSError as error:

@@ -13,8 +13,11 @@ from simkit.bridges.live.request_fields import RequestRefused, checked_value, fi
 from simkit.bridges.live.requests import make_steps, set_pace, set_parameter
 from simkit.compiler.standing_models import TOLERANCE, standing_lift
 from simkit.msgs import absolute_name
+from simkit_view.displays.interactive_marker_display import InteractiveMarkerDisplay
+from simkit_view.view.camera_pointing import point_camera
 from simkit_view.view.message_form import describe_form
 from simkit_view.view.page_calls import shown_message
+from simkit_view.view.topic_display import TopicDisplay
 from simkit_view.view.topic_streams import LogEntries
 from simkit_view.web.json_messages import message_from_json, message_to_json
 
@@ -23,6 +26,7 @@ if TYPE_CHECKING:
     from simkit.bridges.teleop import Teleop
     from simkit.recording.travel import Travel
     from simkit_view.view.driving import Driving
+    from simkit_view.view.marker_feedback import MarkerFeedback
     from simkit_view.view.packet import Stream
     from simkit_view.view.page_calls import PageCalls
     from simkit_view.view.page_server import PageRequest
@@ -40,6 +44,7 @@ class ViewHost(Protocol):
         travel: paths that the models have driven.
         driving: robots that the pages drive.
         calls: calls of services and goals of actions that pages have sent.
+        marker_feedback: feedback of pages to servers of interactive markers.
         is_held: True after a page has requested a pause, until a page resumes.
     """
 
@@ -47,6 +52,7 @@ class ViewHost(Protocol):
     travel: Travel
     driving: Driving
     calls: PageCalls
+    marker_feedback: MarkerFeedback
     is_held: bool
 
     def stream(self, name: str) -> Stream | None:
@@ -263,6 +269,29 @@ def _goal(call: Call) -> object:
     return {"id": call.view.calls.add(call.sim.send_goal(action.name, goal))}
 
 
+def _look(call: Call) -> object:
+    """Turn the head with a `camera` to a place in its picture: `x` from the left, `y` from the top, 0 to 1."""
+    _check_room(call)
+    goal = point_camera(call.sim, call.text("camera"), call.number("x"), call.number("y"))
+    return {"id": call.view.calls.add(goal), "action": goal.action.name}
+
+
+def _marker(call: Call) -> object:
+    """Publish an event of an interactive marker: `topic` of its updates, `name`, `event`, `pose`, optionally `entry`.
+
+    The pose has position [m] and quaternion (w, x, y, z) in the world.
+    """
+    topic = call.text("topic")
+    stream = call.view.stream(f"display:{topic}")
+    display = stream.display if isinstance(stream, TopicDisplay) else None
+    if not isinstance(display, InteractiveMarkerDisplay):
+        raise RequestRefused(f"the page does not show interactive markers of {topic!r:.80}")
+    numbers = call.numbers("pose", 7)
+    pose = Pose(numbers[:3], numbers[3:])
+    feedback = call.view.marker_feedback
+    return feedback.send(display, call.text("name"), call.text("event"), pose, int(call.number("entry", 0.0)))
+
+
 def _check_room(call: Call) -> None:
     if call.view.calls.is_full:
         raise RequestRefused("too many goals and calls wait; cancel some of them")
@@ -308,6 +337,8 @@ REQUESTS: Final[Mapping[str, Callable[[Call], object]]] = MappingProxyType(
         "describe": _describe,
         "call": _call,
         "goal": _goal,
+        "look": _look,
+        "marker": _marker,
         "cancel": _cancel,
         "set_parameter": set_parameter,
         "log": _log,

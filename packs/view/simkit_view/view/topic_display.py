@@ -7,20 +7,24 @@ from collections import deque
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
+from simkit import msgs
 from simkit.msgs import Message
 from simkit.runtime.communication.transform_buffer import TransformBuffer
 from simkit_view.displays.display import Display
 from simkit_view.displays.drawing import Drawing
 from simkit_view.displays.frame_poses import FramePoses
 from simkit_view.displays.grid_displays import UPDATES, GridDisplay
+from simkit_view.displays.interactive_marker_display import InteractiveMarkerDisplay
 from simkit_view.displays.kinds import DISPLAYS, SimulationTools
 from simkit_view.view.packet import make_packet
 
 if TYPE_CHECKING:
     from simkit import Simulation
+    from simkit.runtime.communication.service_server import ServiceCall
     from simkit.runtime.communication.subscription import Subscription
 
 _PERIOD: Final = 0.1  # [s] of wall time between two drawings of a topic
+_INITIAL: Final = "visualization_msgs/srv/GetInteractiveMarkers_Request"
 _MOST_WAITING: Final = 500  # messages between two looks; of more, the newest are drawn
 
 
@@ -64,6 +68,12 @@ class TopicDisplay:
         self._waiting: deque[tuple[Message, int]] = deque(maxlen=_MOST_WAITING)
         self._drawn_at, self._revision = 0.0, -1
         self._model: object = sim.mj_model
+        self._initial: ServiceCall | None = None
+
+    @property
+    def display(self) -> Display | None:
+        """Display of the topic; None until the topic exists."""
+        return self._display
 
     def packet(self, options: Sequence[object]) -> bytes | None:
         """Return the drawing, if it has changed."""
@@ -71,6 +81,8 @@ class TopicDisplay:
             return None
         display, now_ns = self._display, self._sim.time_ns
         assert display is not None
+        if isinstance(display, InteractiveMarkerDisplay):
+            self._ask_initial(display)
         while self._waiting:
             message, stamp = self._waiting.popleft()
             display.take(message, stamp)
@@ -96,6 +108,16 @@ class TopicDisplay:
         topics = [self._topic, *([self._topic + UPDATES] if isinstance(self._display, GridDisplay) else [])]
         self._taps = [bus.tap(topic, self._receive) for topic in topics]
         return True
+
+    def _ask_initial(self, display: InteractiveMarkerDisplay) -> None:
+        """Ask the server for its markers, once, and pass them to the display when it has answered."""
+        services = self._sim.communication.services
+        if self._initial is None:
+            if display.initial_service in services.names():
+                self._initial = services.begin(display.initial_service, msgs.type_of(_INITIAL)())
+        elif self._initial.is_done and self._initial.response is not None:
+            display.take_initial(self._initial.response)
+            self._initial.response = None
 
     def _receive(self, message: Message) -> None:
         self._waiting.append((message, self._sim.time_ns))

@@ -277,8 +277,11 @@ def test_the_panels_of_tiago_are_drawn(session: Callable[..., Session]) -> None:
     found.until("document.querySelectorAll('[data-target]').length > 8")
     page.locator("[data-target=torso_lift_joint]").evaluate("e => e.closest('details').open = true")
     page.locator("[data-target=torso_lift_joint]").fill("0.2")
+    page.locator("[data-scale='/torso_controller/follow_joint_trajectory']").fill("0.5")
     page.locator("[data-move='/torso_controller/follow_joint_trajectory']").click()
     page.locator(".call.executing").wait_for(timeout=TIMEOUT)
+    goal = found.do(lambda: found.view.calls.goal(1).request.trajectory.points[0].time_from_start)
+    assert goal.sec == 4  # 2 s at half speed
     found.picture("view_motions")
     page.locator(".call.succeeded").wait_for(timeout=4 * TIMEOUT)
     height = found.do(lambda: found.sim.joint("tiago::torso_lift_joint").position)
@@ -288,6 +291,20 @@ def test_the_panels_of_tiago_are_drawn(session: Callable[..., Session]) -> None:
         page.wait_for_timeout(1500)
         found.picture(f"view_{tab}")
     assert found.errors == [] and found.outside == []
+
+
+def test_a_click_in_the_picture_of_a_camera_turns_the_head_there(session: Callable[..., Session]) -> None:
+    found = session("tiago_table", size=(1400, 860))
+    page, joint = found.page, found.sim.joint("tiago::head_1_joint")
+    found.until("app.stage.draws > 1 && document.querySelector('#picture').style.cursor === 'crosshair'")
+    area = page.locator("#picture").bounding_box()
+    found.picture("look_before")
+    page.mouse.click(area["x"] + 0.25 * area["width"], area["y"] + 0.5 * area["height"])
+    page.locator("#camera-panel", has_text="/head_controller/point_head_action").wait_for(timeout=TIMEOUT)
+    found.until_here(lambda: joint.position > 0.15)  # the left quarter of the picture is at the robot's left
+    page.wait_for_timeout(2000)
+    found.picture("look_after")
+    assert found.errors == []
 
 
 @pytest.mark.parametrize("theme", ["dark", "light"])

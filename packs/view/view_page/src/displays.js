@@ -45,12 +45,17 @@ export class Displays {
     return this.shown.get(topic)?.problems ?? [];
   }
 
+  handles(topic) {
+    return this.shown.get(topic)?.handles ?? [];
+  }
+
   show(packet) {
     const topic = packet.kind.slice('display:'.length);
     if (!this.wanted.has(topic)) return;
     this.remove(topic);
     const root = new T.Group();
-    this.shown.set(topic, { root, problems: packet.error ? [packet.error] : packet.problems });
+    const handles = (packet.groups ?? []).flatMap(group => (group.handles ?? []).map(handle => ({ ...handle, topic, body: group.body, offset: group.pose })));
+    this.shown.set(topic, { root, handles, problems: packet.error ? [packet.error] : packet.problems });
     (packet.groups ?? []).forEach((group, number) => root.add(this.makeGroup(packet, group, `g${number}`)));
     this.app.stage.helpers.add(root);
     this.app.emit('displays');

@@ -19,6 +19,7 @@ from simkit_navigation.plugins.lifecycle_state import GET_STATE, answer_active
 from simkit_navigation.plugins.localisation.likelihood_field import Hits, LikelihoodMap, Poses
 from simkit_navigation.plugins.localisation.motion_models import MOTION_MODELS, wrapped_angles
 from simkit_navigation.plugins.localisation.particle_filter import Adaptation, Estimate, ParticleFilter
+from simkit_navigation.plugins.navigation.robot_link import links_of_frame
 
 if TYPE_CHECKING:
     from simkit import Model, Simulation
@@ -119,6 +120,12 @@ class Amcl(Plugin):
             self.declare("initial_pose.x", 0.0, description="first position [m]"),
             self.declare("initial_pose.y", 0.0, description="first position [m]"),
             self.declare("initial_pose.yaw", 0.0, description="first heading [rad]"),
+            self.declare("first_map_only", False, description="keep the first map"),
+            self.declare(
+                "begin_at_true_pose",
+                False,
+                description="begin at the true pose of the robot in the world, as the pose in the map",
+            ),
             self.declare("alpha1", 0.2, minimum=0, description="variance of turns by turns [rad²/rad²]"),
             self.declare("alpha2", 0.2, minimum=0, description="variance of turns by travel [rad²/m²]"),
             self.declare("alpha3", 0.2, minimum=0, description="variance of travel by travel [m²/m²]"),
@@ -148,6 +155,16 @@ class Amcl(Plugin):
         poses = pose + matmul(normal * np.sqrt(np.maximum(values, 0.0)), axes.T)
         poses[:, 2] = wrapped_angles(poses[:, 2])
         self._restart(poses)
+
+    def _begin_at_true_pose(self, base: str) -> None:
+        """Spread the particles around the true pose of the robot's frame."""
+        links = links_of_frame(self.sim, base)
+        if len(links) == 1:
+            pose = links[0].pose
+            self._begin(np.array([*pose.position[:2], pose.rpy[2]]), _FIRST_COVARIANCE)
+        else:
+            text = f"{len(links)} models have a link {base!r}, so there is no true pose to begin at"
+            self._once.warn(_CODE, "true pose", text, "set base_frame_id to LINK, or to MODEL/LINK")
 
     def _restart(self, poses: Poses) -> None:
         if self._filter is None:
@@ -194,6 +211,8 @@ class Amcl(Plugin):
     def _on_map(self, message: msgs.OccupancyGrid) -> None:
         if not self._once.has_type(message, _GRID, "map_topic", _CODE):
             return
+        if self._map is not None and self._value("first_map_only"):
+            return
         new_map = LikelihoodMap.from_message(message)
         if new_map is None:
             text = "a map is ignored that is empty, or whose size, resolution or origin is not valid"
@@ -235,6 +254,8 @@ class Amcl(Plugin):
                 self._once.warn(_CODE, "tf", f"scans are not used: {error}", "check the names of the frames")
             return
         self._pending = None
+        if self._filter is None and self._value("begin_at_true_pose"):
+            self._begin_at_true_pose(base)
         if self._filter is None:
             if not (self._is_everywhere or self._has_reminded):
                 self._has_reminded = True

@@ -156,8 +156,12 @@ class MapServer(Plugin):
         return {"map": self._map.message, "result": 0}
 
 
-def read_map(path: Path) -> OccupancyMap:
+def read_map(path: Path, is_ros_1: bool = False) -> OccupancyMap:
     """Return the map of a YAML file of map_server.
+
+    Args:
+        path: file.
+        is_ros_1: True for the mode `scale` of ROS 1.
 
     Raises:
         MapFileError: the file or its image cannot be read, or a value is not valid.
@@ -196,7 +200,7 @@ def read_map(path: Path) -> OccupancyMap:
     if image is None or not TrustedFolders([folder, path.resolve().parent]).allows(image):
         raise MapFileError(f"{path}: the image {name!r:.100} is outside of the map's folder", _BAD_YAML)
     shade, alpha = _read_image(image)
-    cells = _cells(shade, shade if negate else 1.0 - shade, alpha, mode, (occupied, free))
+    cells = _cells(shade, shade if negate else 1.0 - shade, alpha, mode, (occupied, free), is_ros_1)
     x, y, yaw = (value or 0.0 for value in place)
     return OccupancyMap(np.ascontiguousarray(cells[::-1]), resolution, Pose.from_rpy(x, y, 0.0, 0.0, 0.0, yaw))
 
@@ -234,15 +238,20 @@ def _cells(
     transparent: npt.NDArray[np.bool_] | None,
     mode: str,
     limits: tuple[float, float],
+    is_ros_1: bool,
 ) -> Cells:
-    """Return the cells of an image as `map_server` defines them for each mode; row 0 is at the top."""
+    """Return the cells of an image as `map_server` defines them for each mode; row 0 is at the top.
+
+    Between the thresholds, the mode `scale` gives 0 to 100 (Nav2's `map_io.cpp`), and 1 to 99 in ROS 1.
+    """
     occupied, free = limits
     if mode == "raw":
         values = np.round(shade * 255.0)
         return np.where(values <= 100, values, -1).astype(np.int8)
     between = np.full(occupancy.shape, -1.0)
     if mode == "scale":
-        between = np.rint((occupancy - free) / (occupied - free) * 98.0 + 1.0)
+        share = (occupancy - free) / (occupied - free)
+        between = np.rint(share * 98.0 + 1.0 if is_ros_1 else share * 100.0)
     cells = np.where(occupancy > occupied, 100.0, np.where(occupancy < free, 0.0, between))
     if transparent is not None and mode == "scale":
         cells[transparent] = -1.0

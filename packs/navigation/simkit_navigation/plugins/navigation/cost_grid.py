@@ -164,7 +164,11 @@ def updated_grid(grid: CostGrid, message: msgs.CostmapUpdate) -> CostGrid | None
     """Return a grid with the costs of a `nav2_msgs/msg/CostmapUpdate`; None if they do not fit into the grid."""
     rows, columns = slice(message.y, message.y + message.size_y), slice(message.x, message.x + message.size_x)
     data = np.asarray(message.data, np.uint8)
-    if rows.stop > grid.cells.shape[0] or columns.stop > grid.cells.shape[1] or data.size != message.size_x * message.size_y:
+    if (
+        rows.stop > grid.cells.shape[0]
+        or columns.stop > grid.cells.shape[1]
+        or data.size != message.size_x * message.size_y
+    ):
         return None
     cells = grid.cells.copy()
     cells[rows, columns] = data.reshape(message.size_y, message.size_x)

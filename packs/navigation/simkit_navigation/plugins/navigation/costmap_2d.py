@@ -34,10 +34,17 @@ from simkit_navigation.plugins.navigation.costmap_layers import (
 )
 from simkit_navigation.plugins.navigation.denoise_layer import DenoiseLayerOptions
 from simkit_navigation.plugins.navigation.footprint import Footprint, padded, read_footprint
+from simkit_navigation.plugins.navigation.gradient_layer import GradientLayer, GradientLayerOptions
 from simkit_navigation.plugins.navigation.observation_buffer import SourceOptions
 from simkit_navigation.plugins.navigation.obstacle_layer import ObstacleLayerOptions
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose, look_up, pose_of_message
 from simkit_navigation.plugins.navigation.range_sensor_layer import RangeSensorLayerOptions
+from simkit_navigation.plugins.navigation.update_window import (
+    apply_layer,
+    enabled_layers,
+    keep_outside,
+    window_of_layers,
+)
 from simkit_navigation.plugins.navigation.user_classes import ServerPlugin
 from simkit_navigation.plugins.navigation.voxel_layer import VoxelLayerOptions
 
@@ -83,11 +90,12 @@ class CostmapOptions(Options):
 
 
 class Costmap2D(ServerPlugin):
-    """Combines the costs of layers in a grid: the static map, obstacles that sensors see, and the inflation around both.
+    """Combines the costs of layers in a grid: the static map, obstacles that sensors see, and inflation around both.
 
     Each name in `<plugins>` is a layer, with a block of parameters of the same name. Its `<plugin>` is a class of Nav2,
-    or `file.py:Class`. The names in `<filters>` are layers that come after all others. Without `<rolling_window>`, the costmap has the size of the map as soon as there is one. The
-    costs are published on `~/costmap` (`nav_msgs/msg/OccupancyGrid`) and `~/costmap_raw` (`nav2_msgs/msg/Costmap`).
+    or `file.py:Class`. The names in `<filters>` are layers that come after all others. Without `<rolling_window>`, the
+    costmap has the size of the map as soon as there is one. The costs are published on `~/costmap`
+    (`nav_msgs/msg/OccupancyGrid`) and `~/costmap_raw` (`nav2_msgs/msg/Costmap`).
     """
 
     filenames = ("libsimkit_costmap_2d.so",)
@@ -105,6 +113,7 @@ class Costmap2D(ServerPlugin):
         KeepoutFilterOptions,
         SpeedFilterOptions,
         BinaryFilterOptions,
+        GradientLayerOptions,
     )
     endpoints = (
         publishes("~/costmap", "nav_msgs/msg/OccupancyGrid"),
@@ -136,7 +145,10 @@ class Costmap2D(ServerPlugin):
         self.footprint: Footprint = padded(outline, options.footprint_padding)
         self.inscribed_radius = self.footprint.inscribed_radius
         layers = options.plugins or tuple(DEFAULT_LAYERS)
-        self.make_parts((*layers, *options.filters), DEFAULT_LAYERS, LAYERS, ("update_costs",), "on_initialize")
+        known = {**LAYERS, "nav2_gradient_costmap_plugin::GradientLayer": GradientLayer}
+        self.make_parts((*layers, *options.filters), DEFAULT_LAYERS, known, ("update_costs",), "on_initialize")
+        own = [name for name, layer in self.parts.items() if type(layer) not in LAYERS.values()]
+        self._disabled = [name for name in own if not params.block(name).boolean("enabled", True)]
         size = options.width * options.height / options.resolution**2
         if size > _MOST_CELLS:
             params.error("SK-PARAM-002", f"the costmap has {size:.3g} cells; at most {_MOST_CELLS:.0e} are possible")
@@ -197,12 +209,11 @@ class Costmap2D(ServerPlugin):
             x = (math.floor(robot.x / side) - columns // 2) * side
             y = (math.floor(robot.y / side) - rows // 2) * side
             grid.origin = PlanarPose(x, y, 0.0)
-        shape = grid.cells.shape
-        for name, layer in self.parts.items():
-            layer.update_costs(grid, robot)
-            cells = grid.cells
-            if not isinstance(cells, np.ndarray) or cells.dtype != np.uint8 or cells.shape != shape:
-                raise ValueError(f"{name}: grid.cells must remain an array of uint8 with {shape[0]} × {shape[1]} cells")
+        layers = enabled_layers(self.parts, self._disabled)
+        window = window_of_layers(layers.values(), grid, robot)
+        keep_outside(grid, self.grid, window)
+        for name, layer in layers.items():
+            apply_layer(name, layer, grid, robot, window)
         self.grid, self._robot = grid, robot
 
     def _report_missing_transform(self, frame: str) -> None:
@@ -238,6 +249,7 @@ class Costmap2D(ServerPlugin):
         for layer in self.parts.values():
             if callable(getattr(layer, "reset", None)):
                 layer.reset()
+        self.grid = self._empty_grid()
         return self._update_now()
 
     def _clear_around(self, request: msgs.Message) -> dict[str, object]:
@@ -251,7 +263,9 @@ class Costmap2D(ServerPlugin):
         pose = pose_of_message(request.pose.pose)
         placed = look_up(self.sim, self.grid.frame, request.pose.header.frame_id)
         if pose is None or placed is None:
-            text = "a request to clear around a pose is ignored: its frame %r has no transform, or a number is not finite"
+            text = (
+                "a request to clear around a pose is ignored: its frame %r has no transform, or a number is not finite"
+            )
             self.log.error(text, request.pose.header.frame_id)
             return {}
         pose = placed.compose(pose)

@@ -73,7 +73,8 @@ class CostmapFilter:
     def on_info(self, message: msgs.Message) -> None:
         """Use the mask of a topic."""
         if message.type not in self.kinds:
-            text = f"a filter info of the type {message.type} is ignored; {self._name} expects {' or '.join(map(str, self.kinds))}"
+            expected = " or ".join(map(str, self.kinds))
+            text = f"a filter info of the type {message.type} is ignored; {self._name} expects {expected}"
             self._node.report_once(f"type of {self._name}", text)
             return
         self._info = message
@@ -90,7 +91,9 @@ class CostmapFilter:
         """Store a mask."""
         grid = grid_of_map(message, _BYTES.astype(np.uint8))
         if grid is None:
-            self._node.report_once(f"mask {topic}", f"the mask on {topic} is empty, or its size, resolution or origin is not valid")
+            self._node.report_once(
+                f"mask {topic}", f"the mask on {topic} is empty, or its size, resolution or origin is not valid"
+            )
         else:
             self._masks[topic] = grid
 
@@ -108,6 +111,9 @@ class CostmapFilter:
 
     def _apply(self, mask: CostGrid, grid: CostGrid, robot: PlanarPose) -> None:
         """Apply a mask to the costs, or react to the pose of the robot in it."""
+
+    def reset(self) -> None:
+        """Keep the mask, which does not come from what the robot sees."""
 
     def _occupancy(self, mask: CostGrid, grid: CostGrid, robot: PlanarPose) -> tuple[int | None, bool]:
         """Return the occupancy of the mask at the robot, -1 if unknown, and whether a transform is known.
@@ -211,8 +217,8 @@ class SpeedFilter(CostmapFilter):
         if occupancy > 0:
             limit = float(occupancy * info.multiplier + info.base)
             if not 0.0 <= limit <= (100.0 if is_percentage else math.inf):
-                text = f"SpeedFilter: the speed limit {limit:g} {'%' if is_percentage else 'm/s'} is out of range; there is no limit"
-                self._node.report_once("range of speed", text)
+                text = f"the speed limit {limit:g} {'%' if is_percentage else 'm/s'} is out of range; there is no limit"
+                self._node.report_once("range of speed", f"SpeedFilter: {text}")
                 limit = _NO_LIMIT
         if limit != self._limit:
             self._limit = limit

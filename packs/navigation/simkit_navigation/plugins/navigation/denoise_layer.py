@@ -54,3 +54,6 @@ class DenoiseLayer:
         is_small = sizes < options.minimal_group_size
         is_small[0] = False  # the cells without an obstacle
         grid.cells[is_small[labels]] = FREE
+
+    def reset(self) -> None:
+        """Keep nothing, because the layer has no memory."""

@@ -8,6 +8,7 @@ from simkit import Params, Plugin, msgs
 from simkit.errors import ArgumentValueError, InputError, TransformError
 from simkit.extend import Options, OptionsOf, number, text
 from simkit.plugins.drives.odometry_messages import TRANSFORMS, transforms
+from simkit_navigation.plugins.navigation.robot_link import links_of_frame
 
 if TYPE_CHECKING:
     from simkit import Link, Model, Simulation
@@ -47,9 +48,7 @@ class FakeLocalization(Plugin):
         models = tuple(self.sim.models)
         if models == self._models:
             return self._link  # a search takes longer than all the rest
-        robot, _, name = self.options.base_frame_id.rpartition("/")
-        candidates = [model for model in self.sim.models.values() if robot in ("", model.name)]
-        links = [model.links[name] for model in candidates if name in model.links]
+        links = links_of_frame(self.sim, self.options.base_frame_id)
         self._models, self._link = models, links[0] if len(links) == 1 else None
         if self._link is None:
             message = f"{len(links)} models have a link {self.options.base_frame_id!r}, so there is no true pose"

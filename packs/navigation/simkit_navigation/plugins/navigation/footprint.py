@@ -102,7 +102,7 @@ def cells_within(grid: CostGrid, outline: Footprint, robot: PlanarPose) -> tuple
     mask = np.zeros(grid.cells.shape, np.bool_)
     mask[rows[inside], columns[inside]] = True
     low = [max(int(axis.min()), 0) for axis in (rows, columns)]
-    high = [min(int(axis.max()) + 1, size) for axis, size in zip((rows, columns), mask.shape, strict=True)]
+    high = [min(int(axis.max()) + 1, count) for axis, count in zip((rows, columns), grid.cells.shape, strict=True)]
     if low[0] < high[0] and low[1] < high[1]:
         row_at, column_at = (axis.ravel() for axis in np.mgrid[low[0] : high[0], low[1] : high[1]])
         x, y = grid.centres(row_at, column_at).T

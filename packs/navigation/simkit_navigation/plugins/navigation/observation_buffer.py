@@ -96,10 +96,10 @@ class ObservationBuffer:
         if self.options.observation_persistence <= 0:
             return
         oldest = self._node.sim.time_ns - round(self.options.observation_persistence * 1e9)
-        for number, message in enumerate(self.messages):
+        for index, message in enumerate(self.messages):
             stamp = message.header.stamp
             if stamp.sec * 1_000_000_000 + stamp.nanosec < oldest:
-                del self.messages[number:], self._observations[number:]
+                del self.messages[index:], self._observations[index:]
                 return
 
     def current_messages(self) -> list[msgs.Message]:
@@ -120,8 +120,8 @@ class ObservationBuffer:
             frame: frame of the costmap.
         """
         found = []
-        for number, message in enumerate(self.current_messages()):
-            stored = self._observations[number]
+        for index, message in enumerate(self.current_messages()):
+            stored = self._observations[index]
             if stored is not None and stored[0] == frame:
                 found.append(stored[1])
                 continue
@@ -133,7 +133,7 @@ class ObservationBuffer:
             if seen is not None:
                 found.append(seen)
                 if is_exact:
-                    self._observations[number] = (frame, seen)
+                    self._observations[index] = (frame, seen)
         return found
 
 
@@ -188,13 +188,13 @@ def points_of_scan(scan: msgs.LaserScan, inf_is_valid: bool) -> Points | None:
     """
     if not math.isfinite(scan.angle_min + scan.angle_increment):
         return None
-    ranges = np.asarray(scan.ranges, np.float64)
+    ranges: Floats = np.asarray(scan.ranges, np.float64)
     if inf_is_valid:
         ranges = np.where(ranges == math.inf, scan.range_max - _INF_MARGIN, ranges)
-    angles: Floats = scan.angle_min + scan.angle_increment * np.arange(len(ranges))
+    angles: Floats = np.asarray(scan.angle_min + scan.angle_increment * np.arange(len(ranges)), np.float64)
     is_valid = (ranges >= scan.range_min) & (ranges < scan.range_max) & np.isfinite(ranges)
-    ranges, angles = ranges[is_valid], angles[is_valid]
-    x, y = (ranges * np.cos(angles)).astype(np.float32), (ranges * np.sin(angles)).astype(np.float32)
+    reach, at = ranges[is_valid], angles[is_valid]
+    x, y = (reach * np.cos(at)).astype(np.float32), (reach * np.sin(at)).astype(np.float32)
     return x, y, np.zeros(len(x), np.float32)
 
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit import Params, msgs
 from simkit.extend import Options, boolean, integer, number, text
@@ -21,10 +22,12 @@ from simkit_navigation.plugins.navigation.observation_buffer import (
     find_pose,
 )
 from simkit_navigation.plugins.navigation.planar_pose import Floats, PlanarPose, planar_of
-from simkit_navigation.plugins.navigation.ray_cells import traced_cells
+from simkit_navigation.plugins.navigation.ray_cells import AT_ONCE, RayTracer
 
 if TYPE_CHECKING:
     from simkit_navigation.plugins.navigation.nodes import CostmapNode
+
+Number = TypeVar("Number", bound=np.generic)
 
 _HALF_CELL: Final = 0.5
 _BORDER: Final = 1e-3  # [m] inside of the upper border of the map, where Nav2 ends rays that leave the map
@@ -155,31 +158,25 @@ class ObstacleLayer:
 
     def _clear_points(self, grid: CostGrid, seen: Observation, options: SourceOptions) -> None:
         """Clear the cells on the lines to points, as Nav2's `ObstacleLayer::raytraceFreespace`."""
-        start, (x, y) = in_grid(grid, seen)
         rows, columns = grid.cells.shape
-        width, height, side = columns * grid.resolution, rows * grid.resolution, grid.resolution
-        if not (0 <= start[0] < width and 0 <= start[1] < height):
+        side = grid.resolution
+        start, _ = in_grid(grid, seen, slice(0))
+        if not (0 <= start[0] < columns * side and 0 <= start[1] < rows * side):
             self._report_outside(options)
             return
-        ends, ways = [x, y], [x - start[0], y - start[1]]
-        for border in (0.0, math.inf):  # a ray that leaves the map ends at its border
-            for axis, size in enumerate((width, height)):
-                is_out = ends[axis] > size if border else ends[axis] < 0
-                share = ((size if border else 0.0) - start[axis]) / np.where(is_out, ways[axis], 1.0)
-                crossing = start[1 - axis] + ways[1 - axis] * share
-                ends[1 - axis] = np.where(is_out, crossing, ends[1 - axis])
-                ends[axis] = np.where(is_out, size - _BORDER if border else 0.0, ends[axis])
-        x, y = ends
-        inside = (x >= 0) & (x < width) & (y >= 0) & (y < height)
-        cells = [np.floor(x[inside] / side), np.floor(y[inside] / side)]
-        touched = traced_cells(
+        tracer = RayTracer(
             (math.floor(start[0] / side), math.floor(start[1] / side), 0.0),
-            (*cells, np.zeros(len(cells[0]))),
             (rows, columns, 1),
             cells_of(options.raytrace_max_range, side),
             cells_of(options.raytrace_min_range, side),
         )
-        grid.cells[touched[:, :, 0]] = FREE
+        for begin in range(0, len(seen.points[0]), AT_ONCE):
+            points = in_grid(grid, seen, slice(begin, begin + AT_ONCE))[1]
+            column, row = (np.floor(end / side) for end in _ends_in_map(start, points, (columns * side, rows * side)))
+            inside = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
+            column, row = column[inside], row[inside]
+            tracer.add((column, row, np.zeros(len(column))))
+        grid.cells[tracer.cells()[:, :, 0]] = FREE
 
     def _mark_points(self, grid: CostGrid, seen: Observation, options: SourceOptions) -> None:
         """Mark the cells of points within the range of the source and the heights of the layer."""
@@ -187,7 +184,9 @@ class ObstacleLayer:
         squares = (x - start[0]) ** 2 + (y - start[1]) ** 2
         keep = (squares <= options.obstacle_max_range**2) & (squares >= options.obstacle_min_range**2)
         z = seen.points[2]
-        keep &= (z >= np.float32(self._options.min_obstacle_height)) & (z <= np.float32(self._options.max_obstacle_height))
+        keep &= (z >= np.float32(self._options.min_obstacle_height)) & (
+            z <= np.float32(self._options.max_obstacle_height)
+        )
         columns, rows = (np.floor(axis[keep] / grid.resolution).astype(np.int64) for axis in (x, y))
         inside = (rows >= 0) & (rows < grid.cells.shape[0]) & (columns >= 0) & (columns < grid.cells.shape[1])
         grid.cells[rows[inside], columns[inside]] = LETHAL
@@ -215,10 +214,18 @@ def buffer_callback(layer: ObstacleLayer, source: str) -> partial[None]:
     return partial(layer.add_message, source)
 
 
-def in_grid(grid: CostGrid, seen: Observation) -> tuple[tuple[float, float], tuple[Floats, Floats]]:
-    """Return the place of the sensor, and x and y of the points, from the corner of the grid along its axes [m]."""
+def in_grid(
+    grid: CostGrid, seen: Observation, part: slice = slice(None)
+) -> tuple[tuple[float, float], tuple[Floats, Floats]]:
+    """Return the place of the sensor, and x and y of points, from the corner of the grid along its axes [m].
+
+    Args:
+        grid: grid.
+        seen: observation.
+        part: points of the observation that are returned.
+    """
     cos, sin = math.cos(grid.origin.yaw), math.sin(grid.origin.yaw)
-    x, y = (axis.astype(np.float64) for axis in seen.points[:2])
+    x, y = (axis[part].astype(np.float64) for axis in seen.points[:2])
     x -= grid.origin.x
     y -= grid.origin.y
     at_x, at_y = seen.origin[0] - grid.origin.x, seen.origin[1] - grid.origin.y
@@ -226,6 +233,20 @@ def in_grid(grid: CostGrid, seen: Observation) -> tuple[tuple[float, float], tup
         x, y = cos * x + sin * y, cos * y - sin * x
         at_x, at_y = cos * at_x + sin * at_y, cos * at_y - sin * at_x
     return (at_x, at_y), (x, y)
+
+
+def _ends_in_map(start: tuple[float, float], points: tuple[Floats, Floats], sizes: tuple[float, float]) -> list[Floats]:
+    """Return the ends of rays to points [m]; a ray that leaves the map ends at its border."""
+    ends, ways = list(points), [point - at for point, at in zip(points, start, strict=True)]
+    for is_upper in (False, True):
+        for axis, size in enumerate(sizes):
+            is_out = ends[axis] > size if is_upper else ends[axis] < 0
+            if not is_out.any():
+                continue
+            share = ((size if is_upper else 0.0) - start[axis]) / np.where(is_out, ways[axis], 1.0)
+            ends[1 - axis] = np.where(is_out, start[1 - axis] + ways[1 - axis] * share, ends[1 - axis])
+            ends[axis] = np.where(is_out, size - _BORDER if is_upper else 0.0, ends[axis])
+    return ends
 
 
 def cells_of(distance: float, resolution: float) -> int:
@@ -276,7 +297,7 @@ def shifted(cells: Cells, up: int, right: int) -> Cells:
     return moved
 
 
-def move_window(cells: Cells, moved: Cells, up: int, right: int) -> None:
+def move_window(cells: npt.NDArray[Number], moved: npt.NDArray[Number], up: int, right: int) -> None:
     """Copy the cells of a window to the array of the same window after it has moved by some cells."""
     (rows, columns), (y, x) = cells.shape, (up, right)
     if abs(y) < rows and abs(x) < columns:

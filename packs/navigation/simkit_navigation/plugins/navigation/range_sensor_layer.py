@@ -115,7 +115,9 @@ class RangeSensorLayer:
         half = reading.field_of_view / 2
         axis, reach = math.atan2(end_y - at_y, end_x - at_x), math.hypot(end_x - at_x, end_y - at_y) * _REACH
         corners = [(at_x, at_y)]
-        corners += [(at_x + math.cos(axis + turn) * reach, at_y + math.sin(axis + turn) * reach) for turn in (-half, half)]
+        corners += [
+            (at_x + math.cos(axis + turn) * reach, at_y + math.sin(axis + turn) * reach) for turn in (-half, half)
+        ]
         cells = [(math.floor(x / side), math.floor(y / side)) for x, y in corners]
         low_x, high_x = (max(min(x for x, _ in cells), 0), min(max(x for x, _ in cells), columns - 1))
         low_y, high_y = (max(min(y for _, y in cells), 0), min(max(y for _, y in cells), rows - 1))

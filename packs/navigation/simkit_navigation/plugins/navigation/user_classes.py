@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from simkit import Params, Plugin
 from simkit.extend import SharedByCopies
 from simkit.msgs import Message
 from simkit.plugins.attribute_state import copy_attributes, restore_attributes
-from simkit.plugins.discovery.user_plugins import find_user_class
+from simkit.plugins.discovery.user_plugins import find_user_class, find_user_class_by_name
 from simkit.scene import ScenePlugin
 from simkit_navigation.plugins.navigation.node_parameters import NodeParameters
 
@@ -41,11 +42,14 @@ class ServerPlugin(NodeParameters):
         known: Mapping[str, type[object]],
         methods: tuple[str, ...],
         begin: str,
+        replaced: Mapping[str, tuple[str, str]] = MappingProxyType({}),
     ) -> None:
         """Create an object for each name of a list of Nav2, such as `<planner_plugins>`.
 
-        The block of parameters with the name contains `<plugin>`: a class of Nav2 that simkit has, or `file.py:Class`.
-        A class that is not found, or that lacks one of the methods, is reported as an error.
+        The block of parameters with the name contains `<plugin>`: `file.py:Class`, or a name of C++ such as
+        `my_package::MyPlanner`. A class in a file under the plugin paths, whose attribute `names` has the name of C++,
+        comes before a class of simkit. A class that is not found, or that lacks one of the methods, is reported as an
+        error.
 
         Args:
             names: elements with the names of the list; empty for those of `defaults`.
@@ -53,12 +57,14 @@ class ServerPlugin(NodeParameters):
             known: classes of simkit by their name in Nav2.
             methods: methods that the class must have.
             begin: method that receives the plugin and the block of parameters, if the class has it.
+            replaced: names of classes of Nav2 that simkit does not have; for each one the name of the class that
+                replaces it, and what the replacement changes.
         """
         self._parts = _Parts()
         for name in _split(names) or defaults:
             block = self.params.block(name)
             wanted = block.text("plugin", "") or defaults.get(name, "")
-            cls = known.get(wanted.replace("/", "::")) or _user_class(self, name, wanted, known, block)
+            cls = _class(self, ScenePlugin(name, wanted, self.scoped, block, block.where), known, replaced)
             if cls is None:
                 continue
             missing = [method for method in methods if not callable(getattr(cls, method, None))]
@@ -68,6 +74,19 @@ class ServerPlugin(NodeParameters):
             part = self._parts.by_name[name] = cls()
             if callable(getattr(part, begin, None)):
                 getattr(part, begin)(self, block)
+
+    def find_class(
+        self, name: str, wanted: str, block: Params, known: Mapping[str, type[object]]
+    ) -> type[object] | None:
+        """Return a class of a user or of simkit, by the rules of `make_parts`; None after an error.
+
+        Args:
+            name: name of the block of parameters.
+            wanted: name of the class.
+            block: block of parameters.
+            known: classes of simkit by their name in Nav2.
+        """
+        return _class(self, ScenePlugin(name, wanted, self.scoped, block, block.where), known, {})
 
     def receive(self, topic: str, type_name: str, parameter: str, callback: Callable[[Message], None]) -> Subscription:
         """Call a function with each message of a type; messages of another type are ignored after a warning.
@@ -106,17 +125,28 @@ def _split(texts: tuple[str, ...]) -> list[str]:
     return [name for text in texts for name in text.replace(",", " ").split()]
 
 
-def _user_class(
-    node: Plugin, name: str, wanted: str, known: Mapping[str, type[object]], block: Params
+def _class(
+    node: Plugin,
+    named: ScenePlugin,
+    known: Mapping[str, type[object]],
+    replaced: Mapping[str, tuple[str, str]],
 ) -> type[object] | None:
-    allowed = f"file.py:Class, or one of {', '.join(known)}"
-    if ":" not in wanted.replace("::", ""):
-        node.params.diagnostics.error(
+    """Return a class of a user or of simkit; None after an error."""
+    wanted, diagnostics = named.filename.replace("/", "::"), node.params.diagnostics
+    if ":" in named.filename.replace("::", ""):
+        return find_user_class(named, node.plugin_paths, diagnostics)
+    found = find_user_class_by_name(named, node.plugin_paths, diagnostics) or known.get(wanted)
+    if found is None and wanted in replaced:
+        other, change = replaced[wanted]
+        text = f"{node.name}: {named.name}: {other} replaces {wanted}; {change}"
+        diagnostics.warning("SK-NAV-001", text, named.where)
+        return known[other]
+    if found is None:
+        diagnostics.error(
             "SK-PLUGIN-008",
-            f"plugin {node.name!r}: <{name}><plugin>: found {wanted!r}",
-            block.where,
-            f"write {allowed}",
+            f"plugin {node.name!r}: <{named.name}><plugin>: found {named.filename!r}",
+            named.where,
+            f"write file.py:Class, or one of {', '.join(known)}; or give a class in a file under a plugin path the "
+            f'attribute names = ("{wanted}",)',
         )
-        return None
-    named = ScenePlugin(name, wanted, node.scoped, block, block.where)
-    return find_user_class(named, node.plugin_paths, node.params.diagnostics)
+    return found

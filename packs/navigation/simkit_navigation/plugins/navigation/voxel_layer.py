@@ -18,8 +18,8 @@ from simkit_navigation.plugins.navigation.obstacle_layer import (
     in_grid,
     move_window,
 )
-from simkit_navigation.plugins.navigation.planar_pose import PlanarPose
-from simkit_navigation.plugins.navigation.ray_cells import traced_cells
+from simkit_navigation.plugins.navigation.planar_pose import Floats, PlanarPose
+from simkit_navigation.plugins.navigation.ray_cells import AT_ONCE, RayTracer
 
 if TYPE_CHECKING:
     from simkit_navigation.plugins.navigation.nodes import CostmapNode
@@ -79,7 +79,7 @@ class VoxelLayer(ObstacleLayer):
 
     def _shift(self, up: int, right: int) -> None:
         super()._shift(up, right)
-        moved = np.full(self._columns.shape, _LOW, np.uint32)
+        moved: Columns = np.full(self._columns.shape, _LOW, np.uint32)
         move_window(self._columns, moved, up, right)
         self._columns = moved
 
@@ -100,44 +100,28 @@ class VoxelLayer(ObstacleLayer):
         """Free the voxels on the lines to points, as Nav2's `VoxelLayer::raytraceFreespace`."""
         own, side = self._options, grid.resolution
         rows, columns = grid.cells.shape
-        (at_x, at_y), (x, y) = in_grid(grid, seen)
-        at = (at_x, at_y, seen.origin[2] - own.origin_z)
-        z = seen.points[2].astype(np.float64) - own.origin_z
-        sizes = (columns * side, rows * side, own.z_voxels * own.z_resolution)
-        if not all(0 <= place < size for place, size in zip(at, sizes, strict=True)):
+        sides, counts = (side, side, own.z_resolution), (columns, rows, own.z_voxels)
+        start, _ = in_grid(grid, seen, slice(0))
+        at = (*start, seen.origin[2] - own.origin_z)
+        if not all(0 <= place < one * count for place, one, count in zip(at, sides, counts, strict=True)):
             self._report_outside(options)
             return
-        ways = [x - at[0], y - at[1], z - at[2]]
-        distance = np.sqrt(ways[0] * ways[0] + ways[1] * ways[1] + ways[2] * ways[2])
-        # a ray ends two cells before its point, so that it does not clear the obstacle itself
-        share = np.maximum((distance - 2 * side) / np.where(distance > 0, distance, 1.0), 0.0)
-        ways = [way * share for way in ways]
-        # Nav2's end of the map is half a cell inside of the border (`Costmap2D::getSizeInMetersX`)
-        borders = ((columns - 0.5) * side, (rows - 0.5) * side, (own.z_voxels - 0.5) * own.z_resolution)
-        part = np.ones(len(x))
-        is_out = np.zeros(len(x), np.bool_)
-        for axis, (way, border) in enumerate(zip(ways, borders, strict=True)):
-            margin = _TOP_MARGIN if axis == 2 else 0.0
-            for beyond, limit in ((at[axis] + way > border, border - margin), (at[axis] + way < 0, 0.0)):
-                reach = np.maximum((limit - at[axis]) / np.where(beyond, way, 1.0), 0.0 if axis == 2 else -np.inf)
-                part = np.where(beyond, np.minimum(part, reach), part)
-                is_out |= beyond
-        part = np.where(is_out, part - np.sign(part) * _SHORTER, part)
-        ends = [place + way * part for place, way in zip(at, ways, strict=True)]
-        sides = (side, side, own.z_resolution)
-        counts = (columns, rows, own.z_voxels)
-        cells = [end / one for end, one in zip(ends, sides, strict=True)]
-        inside = np.ones(len(x), np.bool_)
-        for cell, count in zip(cells, counts, strict=True):
-            inside &= (cell >= 0) & (cell < count)
-        touched = traced_cells(
+        tracer = RayTracer(
             [place / one for place, one in zip(at, sides, strict=True)],
-            [cell[inside] for cell in cells],
             (rows, columns, own.z_voxels),
             cells_of(options.raytrace_max_range, side),
             cells_of(options.raytrace_min_range, side),
         )
-        word = _words(touched)
+        for begin in range(0, len(seen.points[0]), AT_ONCE):
+            part = slice(begin, begin + AT_ONCE)
+            z = seen.points[2][part].astype(np.float64) - own.origin_z
+            ends = _ray_ends(at, (*in_grid(grid, seen, part)[1], z), sides, counts)
+            cells = [end / one for end, one in zip(ends, sides, strict=True)]
+            inside = np.ones(len(z), np.bool_)
+            for cell, count in zip(cells, counts, strict=True):
+                inside &= (cell >= 0) & (cell < count)
+            tracer.add(cells if inside.all() else [cell[inside] for cell in cells])
+        word = _words(tracer.cells())
         self._columns &= ~(word | (word << np.uint32(_VOXELS)))
         marked, unknown = self._columns >> np.uint32(_VOXELS), (self._columns >> np.uint32(_VOXELS)) ^ self._columns
         # the bits above the highest voxel are unknown for ever, so Nav2 adds their number to the threshold
@@ -193,11 +177,38 @@ class VoxelLayer(ObstacleLayer):
         )
 
 
+def _ray_ends(
+    at: tuple[float, ...], points: tuple[Floats, ...], sides: tuple[float, ...], counts: tuple[int, ...]
+) -> list[Floats]:
+    """Return the ends of the rays to points [m]: two cells before the point, and at the border of the voxels.
+
+    Args:
+        at: position of the sensor from the corner of the voxels [m].
+        points: x, y and z of the points from the corner of the voxels [m].
+        sides: sides of a voxel along x, y and z [m].
+        counts: numbers of voxels along x, y and z.
+    """
+    ways = [point - place for point, place in zip(points, at, strict=True)]
+    distance = np.sqrt(ways[0] * ways[0] + ways[1] * ways[1] + ways[2] * ways[2])
+    share = np.maximum((distance - 2 * sides[0]) / np.where(distance > 0, distance, 1.0), 0.0)
+    ways = [way * share for way in ways]
+    part = np.ones(len(distance))
+    is_out = np.zeros(len(distance), np.bool_)
+    for axis, (way, side, count) in enumerate(zip(ways, sides, counts, strict=True)):
+        border = (count - 0.5) * side  # Nav2's end of a map is half a cell inside of it: Costmap2D::getSizeInMetersX
+        margin, least = (_TOP_MARGIN, 0.0) if axis == 2 else (0.0, -np.inf)
+        for beyond, limit in ((at[axis] + way > border, border - margin), (at[axis] + way < 0, 0.0)):
+            if beyond.any():
+                reach = np.maximum((limit - at[axis]) / np.where(beyond, way, 1.0), least)
+                part = np.where(beyond, np.minimum(part, reach), part)
+                is_out |= beyond
+    part = np.where(is_out, part - np.sign(part) * _SHORTER, part)
+    return [place + way * part for place, way in zip(at, ways, strict=True)]
+
+
 def _words(voxels: npt.NDArray[np.bool_]) -> Columns:
     """Return a word for each column of voxels, whose bit i is that of the level i, shape (rows, columns)."""
     words = np.zeros(voxels.shape[:2], np.uint32)
     for level in range(voxels.shape[2]):
         words |= voxels[:, :, level].astype(np.uint32) << np.uint32(level)
     return words
-
-

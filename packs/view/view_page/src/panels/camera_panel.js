@@ -4,15 +4,30 @@ import { checkbox, element, panel } from '../dom.js';
 import { isCamera } from '../sensors.js';
 
 const WIDTH = 290;
+const POINT_HEAD = 'control_msgs/action/PointHead';
 
 export function makeCameraPanel(app) {
   const choice = element('select', { id: 'camera', title: 'Camera', onchange: () => change() });
-  const canvas = element('canvas', { id: 'picture', width: WIDTH, height: 180 }), context = canvas.getContext('2d');
+  const canvas = element('canvas', { id: 'picture', width: WIDTH, height: 180, onclick: event => look(event) }), context = canvas.getContext('2d');
   const note = element('div', { class: 'dim' });
   const own = checkbox('own-picture', 'as the sensor sees it', false, () => change());
   const box = panel('camera-panel', 'Camera', choice, canvas, note, own);
   const camera = new T.PerspectiveCamera(60, 1.6, 0.02, 300);
   let target = null, pixels = null, cameras = [], drawnAt = -1e4, stream = null, late = null;
+
+  // ---- a click turns the head with the camera
+  let hasHead = false;
+  const findHead = () => app.ask('interfaces').then(({ actions }) => {
+    hasHead = Object.values(actions).includes(POINT_HEAD);
+    canvas.style.cursor = hasHead ? 'crosshair' : '';
+    canvas.title = hasHead ? 'Click: the head looks there' : '';
+  }).catch(() => {});
+  const look = event => {
+    if (!hasHead || !sensor()) return;
+    const area = canvas.getBoundingClientRect();
+    app.ask('look', { camera: sensor().name, x: (event.clientX - area.left) / area.width, y: (event.clientY - area.top) / area.height })
+      .then(({ action }) => { note.textContent = action; }).catch(error => app.report(error.message));
+  };
 
   const sensor = () => cameras[choice.selectedIndex];
   const isOwn = () => !own.hidden && own.querySelector('input').checked;
@@ -68,8 +83,10 @@ export function makeCameraPanel(app) {
     own.hidden = !!scene.recording; // a recording has no sensor that could be asked
     choice.replaceChildren(...cameras.map(found => element('option', {}, found.name)));
     choice.selectedIndex = Math.max(0, cameras.findIndex(found => found.name === before));
+    if (!scene.recording) findHead();
     change();
   });
+  app.on('link', isUp => { if (isUp && !app.player) findHead(); });
   box.addEventListener('toggle', change);
   app.stage.after.push(draw);
   box.hidden = true;

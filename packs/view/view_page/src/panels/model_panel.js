@@ -64,6 +64,7 @@ export function makeModelPanel(app) {
       readPose(await app.ask('model_pose', { name: wanted }), 0, proxy.matrix);
     } catch (error) { app.report(error.message); return; }
     proxy.matrix.decompose(proxy.position, proxy.quaternion, proxy.scale);
+    app.markerHandles?.end();
     edited = wanted;
     gizmo.setMode(mode);
     gizmo.attach(proxy);
@@ -112,7 +113,7 @@ export function makeModelPanel(app) {
       choice.replaceChildren(...Object.keys(found).map(key => element('option', {}, key)));
     }).catch(() => {});
   });
-  app.modelEditor = { gizmo, proxy, get edited() { return edited; } };
+  app.modelEditor = { gizmo, proxy, end, get edited() { return edited; } };
   box.hidden = true;
   show();
   return box;

@@ -39,12 +39,14 @@ export function makeMotionTab(app) {
       return row;
     });
     const seconds = element('input', { type: 'number', min: 0.1, step: 0.1, value: 2, title: 'Duration [s]' });
+    const scale = element('input', { type: 'range', min: 0.01, max: 1, step: 0.01, value: 1, 'data-scale': action, 'aria-label': 'speed', oninput: () => { percent.textContent = `${Math.round(100 * scale.value)} %`; } });
+    const percent = element('output', { class: 'dim' }, '100 %');
     const move = element('button', { 'data-move': action, onclick: () => {
-      const time = Math.max(0.05, +seconds.value || 2), point = { positions: rows.map(row => +row.slider.value), time_from_start: { sec: Math.floor(time), nanosec: Math.round((time % 1) * 1e9) } };
+      const time = Math.max(0.05, +seconds.value || 2) / scale.value, point = { positions: rows.map(row => +row.slider.value), time_from_start: { sec: Math.floor(time), nanosec: Math.round((time % 1) * 1e9) } };
       app.send('goal', { name: action, values: { trajectory: { joint_names: names, points: [point] } } });
       for (const row of rows) row.isMoved = false;
     } }, 'Move');
-    const box = element('details', { open: isFirst }, element('summary', { title: action }, action.split('/').slice(1, -1).join('/')), element('div', { class: 'joints' }, ...rows.map(row => row.element)), element('div', { class: 'row-left' }, seconds, 's', move));
+    const box = element('details', { open: isFirst }, element('summary', { title: action }, action.split('/').slice(1, -1).join('/')), element('div', { class: 'joints' }, ...rows.map(row => row.element), element('label', { title: 'Speed scaling: the motion takes its duration, divided by this' }, element('span', {}, 'speed'), percent, scale)), element('div', { class: 'row-left' }, seconds, 's', move));
     box.rows = rows;
     return box;
   };

@@ -1,0 +1,1 @@
+"""Options of `simkit run` that the pack adds."""

@@ -1,0 +1,111 @@
+"""Nodes of Nav2 and of slam_toolbox that a run needs to navigate or to make a map: `simkit run WORLD --nav --slam`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Collection, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from simkit.diagnostics import Diagnostics
+from simkit.loaders.resources.bundled_models import bundled_folders
+from simkit.plugins.ros_parameter_files import read_parameter_file
+
+MAP_MODEL: Final = """<sdf version="1.9"><model name="true_map"><static>true</static><link name="link"/>
+<plugin filename="libsimkit_map_server.so" name="map_server"/></model></sdf>"""
+"""Model without a shape that publishes the true map of the world on `/map`."""
+_SERVERS: Final[Mapping[str, str]] = {
+    "controller_server": "nav2_controller",
+    "planner_server": "nav2_planner",
+    "smoother_server": "nav2_smoother",
+    "behavior_server": "nav2_behaviors",
+    "bt_navigator": "nav2_bt_navigator",
+    "waypoint_follower": "nav2_waypoint_follower",
+    "velocity_smoother": "nav2_velocity_smoother",
+}
+"""Packages of the servers by their executables, in the order in which they become active."""
+_MONITOR: Final = "collision_monitor"
+_COMMANDED: Final = ("controller_server", "behavior_server", "velocity_smoother")
+"""Servers whose topic `cmd_vel` is that before the smoother."""
+_LOCALIZATION: Final = ("amcl", "map_server", "slam_toolbox")
+
+
+def navigation_nodes(
+    map_file: str | os.PathLike[str] | None = None,
+    *,
+    navigates: bool = True,
+    makes_map: bool = False,
+    params_files: Sequence[str | os.PathLike[str]] = (),
+) -> list[dict[str, Any]]:
+    """Return the nodes that navigate or make a map, as mappings with the arguments of `Simulation.add_node`.
+
+    The velocity goes from controller and behaviours through the smoother, and through the collision monitor if a
+    parameter file has one, to `/cmd_vel`, as in nav2_bringup.
+
+    Args:
+        map_file: YAML file of a map, on which AMCL localises the robot, from its true pose on; None for a map that
+            another node or plugin publishes on `/map`.
+        navigates: whether the servers of Nav2 are among the nodes.
+        makes_map: whether slam_toolbox makes the map; AMCL is then left out.
+        params_files: parameter files of Nav2 that the run gives to all nodes. Parameters of simkit are used without a
+            file that names one of the servers.
+    """
+    named = _nodes_named_in(params_files)
+    nodes: list[dict[str, Any]] = []
+    if makes_map:
+        nodes.append(_node("slam_toolbox", "async_slam_toolbox_node", params={"begin_at_true_pose": True}))
+    else:
+        servers = ["amcl"]
+        if map_file is not None:
+            nodes.append(
+                _node("nav2_map_server", "map_server", params={"yaml_filename": str(Path(map_file).absolute())})
+            )
+            servers.insert(0, "map_server")
+        nodes += [_node("nav2_amcl", "amcl", params={"begin_at_true_pose": True}), _manager("localization", servers)]
+    if navigates:
+        nodes += _servers(has_monitor=_MONITOR in named)
+    if not named & {*_SERVERS, *_LOCALIZATION}:
+        for node in nodes:
+            node["args"] = ["--ros-args", "--params-file", str(default_parameters())]
+    return nodes
+
+
+def _servers(*, has_monitor: bool) -> list[dict[str, Any]]:
+    """Return the servers of Nav2 and their manager."""
+    nodes = [
+        _node(package, name, remap={"cmd_vel": "cmd_vel_nav"} if name in _COMMANDED else {})
+        for name, package in _SERVERS.items()
+    ]
+    names = list(_SERVERS)
+    if has_monitor:
+        nodes.append(_node("nav2_collision_monitor", _MONITOR))
+        names.append(_MONITOR)
+    else:
+        nodes[-1]["remap"] = {"cmd_vel": "cmd_vel_nav", "cmd_vel_smoothed": "cmd_vel"}
+    return [*nodes, _manager("navigation", names)]
+
+
+def _node(package: str, executable: str, **more: Any) -> dict[str, Any]:
+    return {"program": f"{package}/{executable}", **{key: value for key, value in more.items() if value}}
+
+
+def _manager(part: str, names: Sequence[str]) -> dict[str, Any]:
+    """Return the lifecycle manager that activates nodes."""
+    params = {"autostart": True, "node_names": list(names)}
+    return {
+        "program": "nav2_lifecycle_manager/lifecycle_manager",
+        "name": f"lifecycle_manager_{part}",
+        "params": params,
+    }
+
+
+def _nodes_named_in(files: Sequence[str | os.PathLike[str]]) -> Collection[str]:
+    """Return the plain names of the nodes in parameter files; a file with errors is reported when the run reads it."""
+    read = (read_parameter_file(Path(file), Diagnostics()) for file in files if Path(file).is_file())
+    return {pattern.rpartition("/")[2] for file in read if file is not None for pattern, _ in file.nodes}
+
+
+def default_parameters() -> Path:
+    """Return the parameter file of a round robot with a lidar, such as the TurtleBot3."""
+    files = (folder / "nav2_bringup" / "params" / "nav2_params.yaml" for folder in bundled_folders("packages"))
+    return next(file for file in files if file.is_file())

@@ -1,0 +1,142 @@
+"""`simkit run WORLD --nav --slam`, and parameter files of Nav2 for plugins and nodes of a run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from navigation_worlds import pose, run_until_done
+from rooms import rooms
+from typer.testing import CliRunner, Result
+
+import simkit
+from simkit.cli import app
+from simkit_navigation.navigation_nodes import MAP_MODEL, default_parameters, navigation_nodes
+
+SERVERS = """<plugin filename="libsimkit_costmap_2d.so" name="global_costmap"/>
+<plugin filename="libsimkit_planner_server.so" name="planner_server">{}</plugin>"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Folder with a world, which is the working folder."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "rooms.sdf").write_text(world(), "utf-8")
+    return tmp_path
+
+
+def world(more: str = "") -> str:
+    """Return the rooms with a robot and without a map server and AMCL."""
+    text = rooms()
+    return text[: text.index('<plugin filename="libsimkit_map_server.so"')] + more + "</world></sdf>"
+
+
+def run(*words: str) -> Result:
+    return CliRunner().invoke(app, ["run", *words])
+
+
+def parameters(**blocks: str) -> str:
+    """Return a parameter file."""
+    return "".join(f"{name}:\n  ros__parameters:\n{lines}" for name, lines in blocks.items())
+
+
+@pytest.mark.slow  # a drive
+def test_a_robot_reaches_a_goal_on_the_true_map(folder: Path) -> None:
+    with simkit.load("rooms.sdf", spawn=[{"model": MAP_MODEL}]) as sim:
+        for node in navigation_nodes():
+            sim.add_node(**node)
+        sim.run(1.0)
+        task = sim.send_goal("/navigate_to_pose", {"pose": pose(2.2, 1.2)})
+        run_until_done(sim, task)
+        assert task.status.name == "SUCCEEDED"
+        x, y, _ = sim.model("robot").pose.position
+        assert abs(x - 2.2) < 0.3 and abs(y - 1.2) < 0.3
+        sim.check_nodes()
+
+
+def test_the_option_adds_the_servers_of_nav2_and_localises_the_robot_where_it_is(folder: Path) -> None:
+    found = run("rooms.sdf", "--nav", "--duration", "2", "--assert", "topic('/amcl_pose').pose.pose.position.x > 0.9")
+    assert found.exit_code == 0, found.output
+    assert "node planner_server: running" in found.output and "node velocity_smoother: running" in found.output
+
+
+def test_a_map_that_does_not_exist_is_an_error_before_anything_is_loaded(folder: Path) -> None:
+    found = run("rooms.sdf", "--nav", "lost.yaml", "--duration", "1")
+    assert found.exit_code == 2 and "SK-NAV-020 there is no map lost.yaml" in found.output
+
+
+def test_a_map_and_slam_exclude_each_other(folder: Path) -> None:
+    found = run("rooms.sdf", "--nav", "rooms.yaml", "--slam", "--duration", "1")
+    assert found.exit_code == 2 and "SK-NAV-020 found --nav rooms.yaml and --slam" in found.output
+
+
+def test_a_parameter_file_of_nav2_replaces_that_of_simkit(folder: Path) -> None:
+    (folder / "nav2.yaml").write_text(parameters(planner_server="    planner_plugins: [Mine]\n"), "utf-8")
+    (folder / "arm.yaml").write_text(parameters(arm_controller="    joints: [a]\n"), "utf-8")
+    default = ["--ros-args", "--params-file", str(default_parameters())]
+    assert all(node["args"] == default for node in navigation_nodes(params_files=["arm.yaml"]))
+    assert not any("args" in node for node in navigation_nodes(params_files=["arm.yaml", "nav2.yaml"]))
+
+
+def test_a_collision_monitor_of_the_parameter_file_is_the_last_of_the_velocities(folder: Path) -> None:
+    (folder / "nav2.yaml").write_text(parameters(collision_monitor="    polygons: []\n"), "utf-8")
+    without, with_monitor = navigation_nodes(), navigation_nodes(params_files=["nav2.yaml"])
+    smoothers = [
+        next(node for node in nodes if "velocity_smoother" in node["program"]) for nodes in (without, with_monitor)
+    ]
+    assert smoothers[0]["remap"]["cmd_vel_smoothed"] == "cmd_vel" and "cmd_vel_smoothed" not in smoothers[1]["remap"]
+    assert with_monitor[-1]["params"]["node_names"][-1] == "collision_monitor"
+
+
+def test_plugins_of_navigation_read_the_blocks_of_their_nodes(folder: Path) -> None:
+    lines = (
+        "    planner_plugins: [Mine]\n    Mine:\n      plugin: nav2_navfn_planner/NavfnPlanner\n      tolerance: 0.7\n"
+    )
+    (folder / "nav2.yaml").write_text(parameters(planner_server=lines), "utf-8")
+    with simkit.load(world(SERVERS.format("")), params_files="nav2.yaml") as sim:
+        assert sim.plugins["planner_server"].parts["Mine"]._options.tolerance == 0.7
+        assert not [item for item in sim.diagnostics if item.severity == "warning"]
+
+
+def test_a_file_in_the_ros_block_is_read_after_that_of_the_run(folder: Path) -> None:
+    for name, value in (("run.yaml", 0.7), ("own.yaml", 0.3)):
+        lines = f"    planner_plugins: [GridBased]\n    GridBased:\n      tolerance: {value}\n"
+        (folder / name).write_text(parameters(planner_server=lines), "utf-8")
+    (folder / "w.sdf").write_text(
+        world(SERVERS.format("<ros><argument>--params-file own.yaml</argument></ros>")), "utf-8"
+    )
+    with simkit.load("w.sdf", params_files="run.yaml") as sim:
+        assert sim.plugins["planner_server"].parts["GridBased"]._options.tolerance == 0.3
+
+
+def test_problems_of_a_parameter_file_have_its_lines(folder: Path) -> None:
+    lines = "    wrong: 1\n    planner_plugins: [GridBased]\n    GridBased:\n      tolerance: -1\n"
+    (folder / "nav2.yaml").write_text(parameters(planner_server=lines), "utf-8")
+    (folder / "w.sdf").write_text(world(SERVERS.format("")), "utf-8")
+    found = run("w.sdf", "--params-file", "nav2.yaml", "--duration", "0.1")
+    assert found.exit_code == 2
+    assert "nav2.yaml:6: error SK-PARAM-002: found <tolerance>-1</tolerance>" in found.output
+    assert "nav2.yaml:3: warning SK-NAV-002: plugin 'planner_server': no effect here: wrong" in found.output
+
+
+def test_a_server_with_an_invalid_parameter_does_not_become_active_and_the_log_names_the_line(folder: Path) -> None:
+    lines = "    planner_plugins: [GridBased]\n    GridBased:\n      tolerance: -1\n"
+    (folder / "nav2.yaml").write_text(parameters(planner_server=lines), "utf-8")
+    found = run("rooms.sdf", "--nav", "--params-file", "nav2.yaml", "--duration", "0.5")
+    assert "nav2.yaml:5: " in found.output and "Failed to change state for node: planner_server" in found.output
+
+
+def test_parameter_files_of_a_run_reach_its_nodes_before_their_own_arguments(folder: Path) -> None:
+    (folder / "talker.py").write_text(
+        "import rclpy\n"
+        "rclpy.init()\n"
+        "node = rclpy.create_node('talker')\n"
+        "values = [node.declare_parameter(name, 0.0).value for name in ('speed', 'turn')]\n"
+        "node.get_logger().info(f'values {values}')\n",
+        "utf-8",
+    )
+    (folder / "run.yaml").write_text(parameters(talker="    speed: 0.7\n    turn: 0.1\n"), "utf-8")
+    node = ("--node", "talker.py", "--ros-args", "-p", "turn:=0.4", "--")
+    found = run("empty", *node, "--params-file", "run.yaml", "--duration", "0.1")
+    assert "values [0.7, 0.4]" in found.output and "SK-CONTROL-060" not in found.output
+    assert "SK-CONTROL-060" in run("empty", "--params-file", "run.yaml", "--duration", "0.1").output
