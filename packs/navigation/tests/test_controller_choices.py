@@ -141,7 +141,8 @@ def test_the_parameters_of_humble_keep_controller_critics_and_checkers() -> None
     ]
 
 
-MPPI = """<controller_plugins>FollowPath</controller_plugins><FollowPath><plugin>nav2_mppi_controller/MPPIController</plugin>
+MPPI = """<controller_plugins>FollowPath</controller_plugins>
+<FollowPath><plugin>nav2_mppi_controller/MPPIController</plugin>
 <batch_size>200</batch_size><regenerate_noises>true</regenerate_noises><vx_max>0.26</vx_max><visualize>true</visualize>
 <critics>ConstraintCritic CostCritic GoalCritic GoalAngleCritic PathAlignCritic PathFollowCritic PreferForwardCritic
 </critics></FollowPath>
