@@ -17,7 +17,7 @@ def offer_logger_services(node: RosNode) -> None:
     log = node_log()
 
     def get(request: msgs.Message) -> list[dict[str, str]]:
-        level = next(name for name, number in _LEVELS.items() if number == log.level)
+        level = next((name for name, number in _LEVELS.items() if number >= log.level), "fatal")
         return [{"name": _LOGGER, "level": level}]
 
     def set_level(request: msgs.Message) -> dict[str, object]:
