@@ -715,6 +715,9 @@ WORLDS: dict[str, str] = {
         lab(world=NAVIGATION, model=ODOMETRY),
     ),
     "BtNavigator": lab(world=NAVIGATION + NAVIGATOR, model=ODOMETRY),
+    "WaypointFollower": lab(
+        world=NAVIGATION + NAVIGATOR + plugin("libsimkit_waypoint_follower.so", "", "waypoint_follower"), model=ODOMETRY
+    ),
     "TurtleSim": lab(world=plugin("libsimkit_turtlesim.so")),
     "TurtleMimic": lab(
         world=plugin("libsimkit_turtlesim.so")
