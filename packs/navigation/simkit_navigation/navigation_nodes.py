@@ -57,7 +57,9 @@ def navigation_nodes(
     else:
         servers = ["amcl"]
         if map_file is not None:
-            nodes.append(_node("nav2_map_server", "map_server", params={"yaml_filename": str(Path(map_file).absolute())}))
+            nodes.append(
+                _node("nav2_map_server", "map_server", params={"yaml_filename": str(Path(map_file).absolute())})
+            )
             servers.insert(0, "map_server")
         nodes += [_node("nav2_amcl", "amcl", params={"begin_at_true_pose": True}), _manager("localization", servers)]
     if navigates:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 import pytest
+from point_clouds import place_camera, send
 
 import simkit
 from simkit import Simulation
-from simkit_navigation.plugins.navigation.collision_zones import CollisionZone, allowed_velocity
+from simkit_navigation.plugins.navigation.collision_zones import CollisionZone, VelocityRange, allowed_velocity
 
 SQUARE = np.array([[0.5, 0.3], [0.5, -0.3], [-0.3, -0.3], [-0.3, 0.3]])
 AHEAD = np.array([[0.4, 0.0], [0.4, 0.1], [0.4, -0.1], [0.45, 0.0]])
@@ -47,9 +51,24 @@ def test_approaching_an_obstacle_slows_the_robot_down_by_the_time_to_the_collisi
 
 def test_the_zone_that_allows_the_least_decides() -> None:
     slow, stop = CollisionZone("slow", "slowdown", SQUARE), CollisionZone("stop", "stop", SQUARE)
-    velocity, zone = allowed_velocity([slow, stop], FORWARD, AHEAD)
+    velocity, zone = allowed_velocity([slow, stop], FORWARD, {"scan": AHEAD})
     assert velocity == (0.0, 0.0, 0.0) and zone is stop
-    assert allowed_velocity([slow, stop], FORWARD, AHEAD + 5.0) == (FORWARD, None)
+    assert allowed_velocity([slow, stop], FORWARD, {"scan": AHEAD + 5.0}) == (FORWARD, None)
+    half = {"left": AHEAD[:2], "right": AHEAD[2:]}
+    assert allowed_velocity([stop], FORWARD, half)[1] is stop
+    assert allowed_velocity([replace(stop, sources=("left",))], FORWARD, half) == (FORWARD, None)
+
+
+def test_a_zone_has_the_polygon_of_the_velocity() -> None:
+    """The first polygon whose ranges contain the velocity is used; a range of directions may contain 180°."""
+    slow = VelocityRange(SQUARE, (0.0, 0.3), (-1.0, 1.0))
+    fast = VelocityRange(SQUARE * 2.0, (0.0, 1.0), (-1.0, 1.0))
+    zone = CollisionZone("z", "stop", None, ranges=(slow, fast))
+    assert zone.at_velocity((0.2, 0.0, 0.0)).corners is slow.corners
+    assert zone.at_velocity((0.5, 0.0, 0.0)).corners is fast.corners
+    assert zone.at_velocity((0.5, 0.0, 2.0)) is zone
+    backward = VelocityRange(SQUARE, (0.0, 1.0), (-1.0, 1.0), (2.5, -2.5))
+    assert backward.contains((-0.5, 0.0, 0.0)) and not backward.contains((0.5, 0.0, 0.0))
 
 
 PARAMETERS = {
@@ -110,3 +129,84 @@ def test_the_robot_stops_without_scans() -> None:
         sim.publish("/cmd_vel_smoothed", {"linear": {"x": 0.4}})
         sim.run(0.05)
         assert sent.latest.linear.x == 0.0
+
+
+def send_source(sim: Simulation, kind: str, reach: float) -> None:
+    """Publish an obstacle ahead of the robot as a message of a kind of source."""
+    header = {"frame_id": "base_footprint", "stamp": simkit.msgs.time(sim.time_ns)}
+    if kind == "pointcloud":
+        place_camera(sim)
+        send(sim, [[reach, 0.02 * number, height] for number in range(5) for height in (-0.3, 1.0)])
+    elif kind == "range":
+        values = {"field_of_view": 0.2, "min_range": 0.05, "max_range": 5.0, "range": reach}
+        sim.advertise("/points", "sensor_msgs/msg/Range").publish({"header": header, **values})
+    else:
+        corners = [{"x": reach, "y": -0.2}, {"x": reach, "y": 0.2}, {"x": reach + 1.0, "y": 0.0}]
+        polygon = {"id": 7, "polygon": {"points": corners}}
+        publisher = sim.advertise("/points", "geometry_msgs/msg/PolygonInstanceStamped")
+        publisher.publish({"header": header, "polygon": polygon})
+
+
+def monitor(sim: Simulation, executable: str, params: dict[str, Any]) -> None:
+    """Add a node with a zone of a circle of 0.6 m, and activate it."""
+    zone = {"Circle": {"type": "circle", "radius": 0.6, "min_points": 4, "action_type": "none", "visualize": True}}
+    zone["Circle"].update(params.pop("Circle", {}))
+    params = {"base_frame_id": "base_footprint", "polygons": ["Circle"], **zone, **params}
+    sim.add_node(f"nav2_collision_monitor/{executable}", params=params)
+    manager = {"autostart": True, "node_names": [executable]}
+    sim.add_node("nav2_lifecycle_manager/lifecycle_manager", params=manager)
+    sim.run(0.2)
+
+
+@pytest.mark.parametrize("kind", ["pointcloud", "range", "polygon"])
+def test_each_kind_of_source_stops_the_robot(kind: str) -> None:
+    with simkit.load('<sdf version="1.9"><world name="w"/></sdf>') as sim:
+        source = {"type": kind, "topic": "/points", "min_height": 0.1, "max_height": 0.5}
+        monitor(
+            sim, "collision_monitor", {"Circle": {"action_type": "stop"}, "observation_sources": ["s"], "s": source}
+        )
+        drawn = sim.subscribe("/Circle", keep=1)
+        speeds = []
+        for reach in (1.5, 0.5):
+            send_source(sim, kind, reach)
+            sim.run(0.05)
+            sent = sim.subscribe("/cmd_vel", keep=1)
+            sim.publish("/cmd_vel_smoothed", {"linear": {"x": 0.4}})
+            sim.run(0.05)
+            speeds.append(sent.latest.linear.x)
+        assert speeds == pytest.approx([0.4, 0.0]) and len(drawn.latest.polygon.points) == 16
+        sim.check_nodes()
+
+
+def test_points_above_the_heights_of_a_cloud_do_not_count() -> None:
+    """Of the ten points of the cloud, the five at the height of 0.25 m count."""
+    with simkit.load('<sdf version="1.9"><world name="w"/></sdf>') as sim:
+        source = {"type": "pointcloud", "topic": "/points", "min_height": 0.1, "max_height": 0.5}
+        zones = {"Circle": {"min_points": 6}, "observation_sources": ["s"], "s": source}
+        monitor(sim, "collision_detector", zones)
+        states = sim.subscribe("/collision_detector_state", keep=1)
+        send_source(sim, "pointcloud", 0.4)
+        sim.run(0.25)
+        assert (states.latest.polygons, list(states.latest.detections)) == (["Circle"], [False])
+
+
+def test_the_collision_detector_says_which_zones_are_hit() -> None:
+    with simkit.load('<sdf version="1.9"><world name="w"/></sdf>') as sim:
+        source = {"type": "range", "topic": "/points"}
+        monitor(sim, "collision_detector", {"observation_sources": ["s"], "s": source})
+        states = sim.subscribe("/collision_detector_state", keep=1)
+        for reach, expected in ((1.5, False), (0.5, True)):
+            send_source(sim, "range", reach)
+            sim.run(0.25)
+            assert list(states.latest.detections) == [expected]
+        sim.check_nodes()
+
+
+def test_a_robot_that_stands_gets_no_more_commands_after_the_timeout() -> None:
+    with simkit.load('<sdf version="1.9"><world name="w"/></sdf>') as sim:
+        monitor(sim, "collision_monitor", {"stop_pub_timeout": 0.5})
+        sent = sim.subscribe("/cmd_vel")
+        for _ in range(20):
+            sim.publish("/cmd_vel_smoothed", {"linear": {"x": 0.0}})
+            sim.run(0.1)
+        assert 5 <= len(sent.messages) <= 7

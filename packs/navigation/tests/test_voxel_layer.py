@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 import pytest
-from navigation_worlds import place
+from point_clouds import place_camera, send
 
 import simkit
 from simkit import msgs
-from simkit.sensors.point_cloud_messages import point_cloud
 from simkit_navigation.plugins.navigation.cost_grid import FREE, LETHAL, CostGrid, grid_of_message
 from simkit_navigation.plugins.navigation.ray_cells import RayTracer
 
@@ -31,27 +29,6 @@ def costs(sim: simkit.Simulation) -> CostGrid:
     found = grid_of_message(sim.call("/local_costmap/get_costmap").map)
     assert found is not None
     return found
-
-
-def send(sim: simkit.Simulation, points: Any, frame: str = "camera") -> None:
-    """Publish a point cloud."""
-    points = np.asarray(points, np.float32).reshape(-1, 3)
-    table = np.zeros(len(points), [("x", "<f4"), ("y", "<f4"), ("z", "<f4")])
-    table["x"], table["y"], table["z"] = points.T
-    cloud = point_cloud(msgs.header(sim.time_ns, frame), table, 1, len(points), True)
-    sim.advertise("/points", "sensor_msgs/msg/PointCloud2").publish(cloud)
-
-
-def place_camera(sim: simkit.Simulation, height: float = 0.55) -> None:
-    """Place the robot at the origin, with a camera above it that looks along x."""
-    place(sim)
-    transform = {"translation": {"z": height}, "rotation": {"w": 1.0}}
-    stamped = {
-        "header": msgs.header(sim.time_ns, "base_footprint"),
-        "child_frame_id": "camera",
-        "transform": transform,
-    }
-    sim.advertise("/tf_static", "tf2_msgs/msg/TFMessage", latched=True).publish({"transforms": [stamped]})
 
 
 def bresenham(

@@ -711,10 +711,13 @@ WORLDS: dict[str, str] = {
     "MapSaver": lab(world=plugin("libsimkit_map_server.so", tags(height=0.05)) + plugin("libsimkit_map_saver.so")),
     "Amcl": rooms("<set_initial_pose>true</set_initial_pose><initial_pose><x>1</x><y>1</y></initial_pose>"),
     **dict.fromkeys(
-        ("BehaviorServer", "ControllerServer", "Costmap2D", "FakeLocalization", "PlannerServer"),
+        ("BehaviorServer", "ControllerServer", "Costmap2D", "FakeLocalization", "PlannerServer", "SmootherServer"),
         lab(world=NAVIGATION, model=ODOMETRY),
     ),
     "BtNavigator": lab(world=NAVIGATION + NAVIGATOR, model=ODOMETRY),
+    "WaypointFollower": lab(
+        world=NAVIGATION + NAVIGATOR + plugin("libsimkit_waypoint_follower.so", "", "waypoint_follower"), model=ODOMETRY
+    ),
     "TurtleSim": lab(world=plugin("libsimkit_turtlesim.so")),
     "TurtleMimic": lab(
         world=plugin("libsimkit_turtlesim.so")

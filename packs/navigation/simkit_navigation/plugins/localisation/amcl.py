@@ -120,6 +120,7 @@ class Amcl(Plugin):
             self.declare("initial_pose.x", 0.0, description="first position [m]"),
             self.declare("initial_pose.y", 0.0, description="first position [m]"),
             self.declare("initial_pose.yaw", 0.0, description="first heading [rad]"),
+            self.declare("first_map_only", False, description="keep the first map"),
             self.declare(
                 "begin_at_true_pose",
                 False,
@@ -209,6 +210,8 @@ class Amcl(Plugin):
 
     def _on_map(self, message: msgs.OccupancyGrid) -> None:
         if not self._once.has_type(message, _GRID, "map_topic", _CODE):
+            return
+        if self._map is not None and self._value("first_map_only"):
             return
         new_map = LikelihoodMap.from_message(message)
         if new_map is None:

@@ -50,7 +50,8 @@ def costmap_parameters(values: Mapping[str, object]) -> tuple[Values, list[str],
         if listed:
             result[key] = kept[key]
     for name, block in values.items():  # a block of a layer that is not in a list has no effect in Nav2, either
-        if isinstance(block, dict) and "plugin" in block and names_of(values.get("plugins")) and name not in blocks:
+        is_layer = isinstance(block, dict) and ("plugin" in block or name in DEFAULT_LAYERS)
+        if is_layer and names_of(values.get("plugins")) and name not in blocks:
             result.pop(name, None)
     return result, blocks, told
 

@@ -25,7 +25,6 @@ from simkit_navigation.plugins.navigation.planning_error import PlanningError, R
 from simkit_navigation.plugins.navigation.smac_planner_2d import (
     SmacPlanner2D,
     SmacPlanner2DOptions,
-    SmacSmootherOptions,
 )
 from simkit_navigation.plugins.navigation.straight_line_planner import StraightLine, StraightLineOptions
 from simkit_navigation.plugins.navigation.theta_star_planner import ThetaStarPlanner, ThetaStarPlannerOptions
@@ -109,7 +108,6 @@ class PlannerServer(CostmapReader, ServerPlugin):
     option_types = (
         GridPlannerOptions,
         SmacPlanner2DOptions,
-        SmacSmootherOptions,
         ThetaStarPlannerOptions,
         StraightLineOptions,
     )
