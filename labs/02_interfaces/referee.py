@@ -23,6 +23,11 @@ HASHES = {
     "srv/AddThreeInts": "RIHS01_e731f7cb46225004ac7438e168d0d594b32345480a04ba79887f0d8639650131",
     "action/Countdown": "RIHS01_fbb6cebb1c5fc05702b2b56258f953cf7b48c7f700db33b1fbd4dcde6a239552",
 }
+FIELDS = {  # parts of each interface: type and name of each field
+    "msg/Num": {"": "int64 num"},
+    "srv/AddThreeInts": {"_Request": "int64 a, int64 b, int64 c", "_Response": "int64 sum"},
+    "action/Countdown": {"_Goal": "int32 start", "_Result": "int32[] numbers", "_Feedback": "int32 remaining"},
+}
 TOPICS = {"num": "msg/Num", "add_three_ints": "srv/AddThreeInts", "countdown": "action/Countdown"}
 ANSWERS = ("numbers", "total", "sums", "remaining", "service", "feedback", "result", "cancel")
 LONG = 50  # start of the goal that is cancelled
@@ -73,9 +78,10 @@ class Referee(WorldPlugin):
 
     def verdict(self, name):
         if name in TOPICS:
-            yours = msgs.rihs(f"lab_interfaces/{TOPICS[name]}")
-            true = HASHES[TOPICS[name]]
-            return "right" if yours == true else f"other fields: yours {yours[:12]}…, true {true[:12]}…"
+            interface = TOPICS[name]
+            is_right = msgs.rihs(f"lab_interfaces/{interface}") == HASHES[interface]
+            true = " --- ".join(FIELDS[interface].values())
+            return "right" if is_right else f"yours {fields(interface)}, true {true}"
         return self.wrong[name] or ("right" if self.all[name] else "there was no answer")
 
     def ask_service(self):
@@ -118,3 +124,13 @@ class Referee(WorldPlugin):
 
     def feed(self, feedback):
         self.fed.append(getattr(feedback, "remaining", None))
+
+
+def fields(interface):
+    """Return the fields of an interface of the student in one line."""
+    parts = []
+    for part in FIELDS[interface]:
+        lines = msgs.definition(f"lab_interfaces/{interface}{part}").split("=" * 80)[0].splitlines()
+        texts = [" ".join(line.split("#")[0].split()) for line in lines]
+        parts.append(", ".join(text for text in texts if text) or "nothing")
+    return " --- ".join(parts)
