@@ -158,16 +158,24 @@ def _inflation(values: Values) -> Values:
     return {name: values[name] for name in ("inflation_radius", "cost_scaling_factor") if name in values}
 
 
-_OF_SOURCE: Final = ("topic", "data_type", "marking", "clearing", "inf_is_valid")
+_OF_SOURCE: Final = (
+    *("topic", "data_type", "marking", "clearing", "inf_is_valid", "sensor_frame", "observation_persistence"),
+    *("expected_update_rate", "min_obstacle_height", "max_obstacle_height"),
+)
+_OF_LAYER: Final = (
+    *("origin_z", "z_resolution", "z_voxels", "unknown_threshold", "mark_threshold", "publish_voxel_map"),
+    *("combination_method", "footprint_clearing_enabled", "max_obstacle_height"),
+)
 
 
 def _obstacles(values: Values) -> Values:
     """Return the settings of an obstacle layer: its sources, with the ranges of the layer."""
     sources = str(values.get("observation_sources", "")).split()
-    found: Values = {"observation_sources": sources}
+    found: Values = {"observation_sources": sources, **{key: values[key] for key in _OF_LAYER if key in values}}
     for name in sources:
         source = _block(values, name)
-        settings: Values = {key: source[key] for key in _OF_SOURCE if key in source}
+        settings: Values = {"max_obstacle_height": 2.0}  # default of ROS 1
+        settings |= {key: source[key] for key in _OF_SOURCE if key in source}
         settings["obstacle_max_range"] = source.get("obstacle_range", values.get("obstacle_range", 2.5))
         settings["raytrace_max_range"] = source.get("raytrace_range", values.get("raytrace_range", 3.0))
         found[name] = settings
