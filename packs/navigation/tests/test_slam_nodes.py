@@ -120,11 +120,16 @@ def test_invalid_and_unknown_parameters_and_a_missing_graph_are_told() -> None:
         assert sim.call("/slam_toolbox/dynamic_map").map.info.resolution == pytest.approx(0.05)
 
 
-@pytest.mark.parametrize("executable", ["gmapping/slam_gmapping", "cartographer_ros/cartographer_node"])
-def test_other_mappers_are_replaced(executable: str) -> None:
+@pytest.mark.parametrize(
+    ("executable", "at"),
+    [("gmapping/slam_gmapping", 1.0), ("cartographer_ros/cartographer_node", 0.0)],
+)
+def test_other_mappers_are_replaced_and_begin_where_they_do(executable: str, at: float) -> None:
     with simkit.load(rooms()) as sim:
         sim.add_node(executable, params={"base_frame": "base_footprint", "odom_frame": "odom"})
         maps = sim.subscribe("/map", keep=1)
+        sim.tf.open()
         sim.run(0.5)
+        assert sim.tf.lookup("map", "base_footprint").position[0] == pytest.approx(at, abs=1e-3)
         assert len(maps.latest.data) > 1000
         assert "replaces" in warnings(sim, "SK-NAV-001")[0]
