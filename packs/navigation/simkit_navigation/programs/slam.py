@@ -51,6 +51,8 @@ class Slam(LifecycleNode):
         self._mapper = ScanMapper(settings_of(values))
         self._correction = PlanarPose(0.0, 0.0, 0.0)  # pose of the odometry in the map
         self._start = PlanarPose(*values["map_start_pose"]) if values["map_start_pose"] else None  # of the next scan
+        if self._start is None and executable == "cartographer_node":
+            self._start = PlanarPose(0.0, 0.0, 0.0)  # its map begins at the robot; those of the others at the odometry
         self._is_far = False  # the start is only about right
         self._odometry = None  # pose of the robot in the odometry at the last scan that was used
         self._pending, self._last_ns, self._count = [], None, 0
