@@ -20,13 +20,14 @@ from simkit.plugins.unread_parameters import names_read
 from simkit_navigation.plugins.localisation.amcl import Amcl
 from simkit_navigation.plugins.localisation.robot_localization import EkfNode
 from simkit_navigation.plugins.navigation.behavior_server import BehaviorServer
-from simkit_navigation.plugins.navigation.bt_navigator import BtNavigator
 from simkit_navigation.plugins.navigation.controller_parameters import controller_parameters
 from simkit_navigation.plugins.navigation.controller_server import ControllerServer
 from simkit_navigation.plugins.navigation.costmap_2d import Costmap2D
 from simkit_navigation.plugins.navigation.costmap_parameters import costmap_parameters
 from simkit_navigation.plugins.navigation.planner_server import PlannerServer
 from simkit_navigation.plugins.navigation.smoother_server import SmootherServer
+from simkit_navigation.plugins.navigators.bt_navigator import BtNavigator
+from simkit_navigation.plugins.navigators.waypoint_follower import WaypointFollower
 
 Values = dict[str, object]
 """Values of parameters; blocks are dictionaries."""
@@ -289,7 +290,8 @@ def _behaviors(values: Values, costmap: Values) -> list[PluginOfNode]:
     rest = {name: value for name, value in values.items() if name not in renamed}
     outline = _outline_of(costmap)
     plugin = PluginOfNode(BehaviorServer, "behavior_server", {**outline, **own, **rest})
-    for name in _names(plugin.values.pop("behavior_plugins", None)):
+    listed = [name for key in ("behavior_plugins", "recovery_plugins") for name in _names(plugin.values.pop(key, None))]
+    for name in listed:
         block = plugin.values.pop(name, None)
         kind = str(block.get("plugin", name) if isinstance(block, dict) else name)
         if re.split(r"::|/", kind)[-1].replace("_", "").lower() not in _BEHAVIORS:
@@ -297,20 +299,36 @@ def _behaviors(values: Values, costmap: Values) -> list[PluginOfNode]:
     return [plugin]
 
 
-_BEHAVIORS: Final = frozenset(("spin", "backup", "driveonheading", "wait"))
+_BEHAVIORS: Final = frozenset(("spin", "backup", "driveonheading", "wait", "assistedteleop"))
 
 
 def _navigator(values: Values, _: Values) -> list[PluginOfNode]:
     plugin = PluginOfNode(BtNavigator, "bt_navigator", {"robot_base_frame": "base_link", **values})
     for name in _names(plugin.values.pop("navigators", None)):
-        plugin.values.pop(name, None)
-    for name in ("plugin_lib_names", "error_code_names", "error_code_name_prefixes"):
-        plugin.values.pop(name, None)
-    for name in ("default_bt_xml_filename", "default_nav_to_pose_bt_xml", "default_nav_through_poses_bt_xml"):
-        tree = str(plugin.values.pop(name, ""))
-        if tree and "w_replanning_and_recovery" not in tree:
-            plugin.told.append(f"the tree {tree.rpartition('/')[2]} is not executed; the default behaviour is used")
+        block = plugin.values.pop(name, None)
+        kind = str(block.get("plugin", name) if isinstance(block, dict) else name)
+        if re.split(r"::|/", kind)[-1] not in _NAVIGATORS and name not in _NAVIGATORS:
+            plugin.told.append(f"there is no navigator {name} ({kind})")
+    unknown = [
+        name for name in _names(plugin.values.pop("plugin_lib_names", None)) if not _TREE_LIBRARY.fullmatch(name)
+    ]
+    if unknown:
+        plugin.told.append(f"the nodes of the C++ libraries {', '.join(unknown)} are not available in behaviour trees")
     return [plugin]
+
+
+_NAVIGATORS: Final = (
+    "NavigateToPoseNavigator",
+    "NavigateThroughPosesNavigator",
+    "navigate_to_pose",
+    "navigate_through_poses",
+)
+_TREE_LIBRARY: Final = re.compile(r"nav2_\w+_(bt_node|condition)")
+
+
+def _waypoints(values: Values, _: Values) -> list[PluginOfNode]:
+    task = str(values.get("waypoint_task_executor_plugin", "wait_at_waypoint"))
+    return [PluginOfNode(WaypointFollower, "waypoint_follower", dict(values), [task])]
 
 
 def _ekf(values: Values, _: Values) -> list[PluginOfNode]:
@@ -336,6 +354,7 @@ SERVER_NODES: Final[Mapping[str, ServerNode]] = {
     "behavior_server": ServerNode(_behaviors, "behavior_server", "local_costmap"),
     "recoveries_server": ServerNode(_behaviors, "recoveries_server", "local_costmap"),
     "bt_navigator": ServerNode(_navigator, "bt_navigator"),
+    "waypoint_follower": ServerNode(_waypoints, "waypoint_follower"),
     "ekf_node": ServerNode(_ekf, "ekf_filter_node", is_lifecycle=False),
     "ukf_node": ServerNode(_ukf, "ukf_filter_node", is_lifecycle=False),
 }
