@@ -141,6 +141,14 @@ DRIFT = tags(motionSmallNoise=0.2, motionDriftNoise=0.1, motionDriftNoiseTime=0.
 PANELS = tags(color_1="red", color_2="green", color_3="yellow", visuals=tags(visual="v"))
 ODOMETRY = ros("diff_drive", REAR + tags(robot_base_frame="base", publish_odom_tf="true"))
 NAVIGATOR = plugin("libsimkit_bt_navigator.so", tags(robot_base_frame="base"), "bt_navigator")
+FOLLOWER = plugin(
+    "libsimkit_waypoint_follower.so",
+    tags(
+        waypoint_task_executor_plugin="ask",
+        ask=tags(plugin="nav2_waypoint_follower::InputAtWaypoint", input_topic="go_on"),
+    ),
+    "waypoint_follower",
+)
 # a zoom goes on for the whole part of the run, between the random commands, which end at 1
 ZOOM = plugin(
     "libPublisherPlugin.so",
@@ -715,9 +723,7 @@ WORLDS: dict[str, str] = {
         lab(world=NAVIGATION, model=ODOMETRY),
     ),
     "BtNavigator": lab(world=NAVIGATION + NAVIGATOR, model=ODOMETRY),
-    "WaypointFollower": lab(
-        world=NAVIGATION + NAVIGATOR + plugin("libsimkit_waypoint_follower.so", "", "waypoint_follower"), model=ODOMETRY
-    ),
+    "WaypointFollower": lab(world=NAVIGATION + NAVIGATOR + FOLLOWER, model=ODOMETRY),
     "TurtleSim": lab(world=plugin("libsimkit_turtlesim.so")),
     "TurtleMimic": lab(
         world=plugin("libsimkit_turtlesim.so")
