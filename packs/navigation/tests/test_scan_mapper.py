@@ -129,6 +129,17 @@ def test_two_runs_give_the_same_bits() -> None:
     assert first.occupancy().cells.tobytes() == second.occupancy().cells.tobytes()
 
 
+def test_invalid_rays_are_left_out() -> None:
+    still, measured = PlanarPose(0.0, 0.0, 0.0), ranges(circle(4)[0])
+    measured[:5], measured[5:9], angles = -1.0, np.nan, ANGLES.copy()
+    angles[20:25] = np.nan
+    mapper = ScanMapper(MapperSettings())
+    for _ in range(2):
+        mapper.add_scan(MapScan(measured, angles, math.inf, SENSOR, still, still))
+    assert len(mapper.scans[0].points) == 240 - 14
+    assert math.hypot(*mapper.scans[1].pose[:2]) < 1e-3 and (mapper.occupancy().cells == 100).sum() > 50
+
+
 # ---------------------------------------------------------------------- matching
 
 

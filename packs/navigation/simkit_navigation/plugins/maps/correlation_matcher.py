@@ -28,6 +28,7 @@ Covariance = tuple[float, float, float, float]
 
 _FULL: Final = 100  # value of a cell with a point
 _MOST_POINTS: Final = 600  # of a scan; their sum stays below 2 ** 16
+_MOST_CELLS: Final = 3000  # between the sensor and a point that is matched; 30 m at 1 cm
 _DISTANCE_GAIN: Final = 0.2  # of the penalties, as in Karto
 _ANGLE_GAIN: Final = 0.2
 _VARIANCE_BAND: Final = 0.1  # responses that are lower by less belong to the peak, as in Karto
@@ -85,9 +86,10 @@ class CorrelationMatcher:
         rules, step = self._rules, self._resolution
         if not len(points) or not len(reference):
             return Match(guess, 0.0, (_LARGEST_VARIANCE, 0.0, _LARGEST_VARIANCE, 4 * rules.coarse_angle_resolution**2))
-        points = points[:: -(-len(points) // _MOST_POINTS)]
-        longest = math.sqrt(float((points * points).sum(axis=1).max()))
-        half = math.ceil(longest / step) + 2 * self._reach + 4
+        is_near = np.hypot(points[:, 0], points[:, 1]) <= _MOST_CELLS * step
+        points = points[is_near] if is_near.any() else points[:0]
+        points = points[:: max(-(-len(points) // _MOST_POINTS), 1)]
+        half = math.ceil(float(np.hypot(points[:, 0], points[:, 1]).max(initial=0.0)) / step) + 2 * self._reach + 4
         field = self._field(reference - np.array((guess.x, guess.y)), half)
         offset = rules.coarse_search_angle_offset
         for _ in range(4 if rules.use_response_expansion else 1):
