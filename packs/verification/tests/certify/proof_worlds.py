@@ -105,16 +105,24 @@ FLIGHT = gz(
     + tags(rotorConfiguration=CONFIGURATION, linearVelocityNoiseStdDev="0.1 0.1 0.1"),
     "MulticopterVelocityControl",
 )
+VOXELS = tags(
+    always_send_full_costmap="false",
+    plugins="voxel_layer denoise_layer inflation_layer",
+    voxel_layer=tags(
+        plugin="nav2_costmap_2d::VoxelLayer", observation_sources="scan", scan=tags(observation_persistence=0.1)
+    ),
+    denoise_layer=tags(plugin="nav2_costmap_2d::DenoiseLayer", minimal_group_size=1),
+)
 NAVIGATION = (
     plugin("libsimkit_map_server.so", tags(height=0.5), "map_server")
     + plugin("libsimkit_fake_localization.so", tags(base_frame_id="base", update_rate=100), "fake_localization")
     + "".join(
         plugin(
             "libsimkit_costmap_2d.so",
-            tags(robot_base_frame="base", update_frequency=100, publish_frequency=100, rolling_window=rolls),
+            tags(robot_base_frame="base", update_frequency=100, publish_frequency=100, rolling_window=rolls) + layers,
             name,
         )
-        for name, rolls in (("global_costmap", "false"), ("local_costmap", "true"))
+        for name, rolls, layers in (("global_costmap", "false", ""), ("local_costmap", "true", VOXELS))
     )
     + "".join(
         plugin(f"libsimkit_{name}.so", tags(robot_base_frame="base"), name)
