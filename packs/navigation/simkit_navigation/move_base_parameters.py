@@ -79,6 +79,13 @@ def move_base_plugins(values: Values) -> list[PluginOfNode]:
     planner = str(values.get("base_global_planner", _PLANNERS[0]))
     if planner not in _PLANNERS:
         told.append(f"the planner {_PLANNERS[0]} replaces {planner}")
+    settings = _block(values, planner.rpartition("/")[2])
+    grid_based: Values = {"plugin": "nav2_navfn_planner::NavfnPlanner"}
+    _take(settings, ("default_tolerance",), grid_based, "tolerance")
+    grid_based |= {name: settings[name] for name in ("allow_unknown",) if name in settings}
+    if planner == _PLANNERS[1]:
+        grid_based["use_astar"] = not settings.get("use_dijkstra", True)
+    planners: Values = {"planner_plugins": ["GridBased"], "GridBased": grid_based}
     name = str(values.get("base_local_planner", "base_local_planner/TrajectoryPlannerROS"))
     told.append(f"the controller RegulatedPurePursuitController replaces {name}")
     local = _block(values, name.rpartition("/")[2])
@@ -103,7 +110,7 @@ def move_base_plugins(values: Values) -> list[PluginOfNode]:
     }
     behaviors = {**frames, "global_frame": costmaps["local_costmap"]["global_frame"]}
     plugins = [
-        *server["planner_server"].plugins({}, costmaps["global_costmap"]),
+        *server["planner_server"].plugins(planners, costmaps["global_costmap"]),
         *server["controller_server"].plugins(controller, costmaps["local_costmap"]),
         *server["behavior_server"].plugins(behaviors, costmaps["local_costmap"]),
         *server["bt_navigator"].plugins(frames, {}),

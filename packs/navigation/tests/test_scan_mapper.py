@@ -129,6 +129,17 @@ def test_two_runs_give_the_same_bits() -> None:
     assert first.occupancy().cells.tobytes() == second.occupancy().cells.tobytes()
 
 
+def test_invalid_rays_are_left_out() -> None:
+    still, measured = PlanarPose(0.0, 0.0, 0.0), ranges(circle(4)[0])
+    measured[:5], measured[5:9], angles = -1.0, np.nan, ANGLES.copy()
+    angles[20:25] = np.nan
+    mapper = ScanMapper(MapperSettings())
+    for _ in range(2):
+        mapper.add_scan(MapScan(measured, angles, math.inf, SENSOR, still, still))
+    assert len(mapper.scans[0].points) == 240 - 14
+    assert math.hypot(*mapper.scans[1].pose[:2]) < 1e-3 and (mapper.occupancy().cells == 100).sum() > 50
+
+
 # ---------------------------------------------------------------------- matching
 
 
@@ -203,7 +214,7 @@ def ring() -> tuple[list[PlanarPose], Floats]:
     return poses, np.array(walls, float)
 
 
-@pytest.mark.parametrize("is_closing", [True, False])
+@pytest.mark.parametrize("is_closing", [True, pytest.param(False, marks=pytest.mark.slow)])
 def test_a_loop_is_closed_when_the_robot_comes_back(is_closing: bool) -> None:
     settings = MapperSettings(
         max_laser_range=2.5,

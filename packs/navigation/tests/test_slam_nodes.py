@@ -108,14 +108,22 @@ def test_a_node_that_a_user_moves_is_moved_back_by_the_edges() -> None:
 
 
 def test_invalid_and_unknown_parameters_and_a_missing_graph_are_told() -> None:
-    params = {"resolution": -1.0, "map_start_pose": [1.0], "throttle_scan": 3, "map_file_name": "/no/map"}
+    params = {
+        "resolution": -1.0,
+        "map_start_pose": [1.0],
+        "throttle_scan": 3,
+        "coarse_angle_resolution": 1e-5,
+        "coarse_search_angle_offset": 6,
+        "map_file_name": "/no/map",
+    }
     with simkit.load(rooms()) as sim:
         sim.add_node(ASYNC, params=params | {"solver_plugin": "solver_plugins::CeresSolver"})
         sim.run(0.5)
         assert warnings(sim, "SK-NAV-002") == ["/slam_toolbox: no effect here: throttle_scan"]
         told = warnings(sim, "SK-SLAM-001")
         assert "/slam_toolbox: resolution is -1.0; expected a number above 0; the default 0.05 is used" in told
-        assert any("map_start_pose" in text for text in told) and len(told) == 2
+        assert any("map_start_pose" in text for text in told) and len(told) == 3
+        assert any("coarse_search_angle_offset is 6.0; expected at most 1000 times" in text for text in told)
         assert any("cannot read /no/map.posegraph" in text for text in warnings(sim, "SK-SLAM-002"))
         assert sim.call("/slam_toolbox/dynamic_map").map.info.resolution == pytest.approx(0.05)
 

@@ -75,8 +75,17 @@ ABOVE_ZERO = {
     "tf_buffer_duration",
 }
 """Parameters that must be above zero; other numbers must not be below it."""
-MOST_CELLS = 4000.0
-"""Largest ratio of the side of a search to its resolution."""
+SEARCHES = (
+    ("correlation_search_space_dimension", "correlation_search_space_resolution"),
+    ("loop_search_space_dimension", "loop_search_space_resolution"),
+    ("correlation_search_space_smear_deviation", "correlation_search_space_resolution"),
+    ("loop_search_space_smear_deviation", "loop_search_space_resolution"),
+    ("coarse_search_angle_offset", "coarse_angle_resolution"),
+    ("coarse_angle_resolution", "fine_search_angle_offset"),
+)
+"""Sizes of searches and their steps."""
+MOST_STEPS = 1000.0
+LEAST_RESOLUTION = 0.005  # [m]
 
 OF_GMAPPING = {
     "base_frame": "base_frame",
@@ -124,11 +133,15 @@ def values_of(node, executable):
         if not node.has_parameter(name):
             node.declare_parameter(name, default)
     found = {name: _valid(node, name, default, node.get_parameter(name).value) for name, default in values.items()}
-    for kind in ("correlation", "loop"):
-        side, step = f"{kind}_search_space_dimension", f"{kind}_search_space_resolution"
-        if found[side] > MOST_CELLS * found[step]:
-            _replaced(node, side, found[side], f"at most {MOST_CELLS:g} times {step}", DEFAULTS[side])
-            found[side], found[step] = DEFAULTS[side], DEFAULTS[step]
+    for size, step in SEARCHES:
+        if found[size] > MOST_STEPS * found[step]:
+            _replaced(node, size, found[size], f"at most {MOST_STEPS:g} times {step}", DEFAULTS[size])
+            found[size], found[step] = DEFAULTS[size], DEFAULTS[step]
+    if found["resolution"] < LEAST_RESOLUTION:
+        default = DEFAULTS["resolution"]
+        found["resolution"] = _replaced(
+            node, "resolution", found["resolution"], f"at least {LEAST_RESOLUTION}", default
+        )
     known = set(values) | SILENT | set(OF_GMAPPING if executable.startswith("gmapping/") else ())
     unused = sorted(name for name in given if name.partition(".")[0] not in known)
     if unused:

@@ -86,7 +86,7 @@ def read_pose_graph(name: str) -> tuple[list[MapScan], list[Edge]]:
             raise PoseGraphFault(f"{graph_file}: format {graph['format']!r:.60} is not {_FORMAT!r}")
         rays = np.load(io.BytesIO(data), allow_pickle=False)
         return _scans(graph, rays), _edges(graph)
-    except (ValueError, KeyError, TypeError, AttributeError, IndexError, EOFError) as error:
+    except (ArithmeticError, ValueError, LookupError, TypeError, EOFError, MemoryError, RecursionError) as error:
         raise PoseGraphFault(
             f"{graph_file} or {data_file.name} is damaged, or is not a pose graph of simkit"
         ) from error
@@ -115,8 +115,8 @@ def _scans(graph: dict[str, Any], rays: Any) -> list[MapScan]:
     for entry in graph["scans"]:
         last = first + int(entry["rays"])
         part = np.array(rays[first:last], np.float64)
-        if part.shape != (last - first, 2):
-            raise ValueError("rays are missing")
+        if last < first or part.shape != (last - first, 2) or not np.isfinite(part[:, 1]).all():
+            raise ValueError("rays are missing or invalid")
         pose, odometry, sensor = (_pose(entry[key]) for key in ("pose", "odometry", "sensor"))
         scans.append(MapScan(part[:, 0].copy(), part[:, 1].copy(), float(entry["limit"]), sensor, odometry, pose))
         first = last

@@ -32,6 +32,7 @@ _QUERY_CELL: Final = 0.05  # [m] in which one point of them is enough
 _MOST_REFERENCES: Final = 30  # linked scans with which a scan is matched
 _CLEAR: Final = 0.2  # [m] standard deviation of a loop search above which its covariance counts
 _LARGEST_STRAIN: Final = (0.4, 0.35)  # [m], [rad] by which a closed loop may contradict one edge
+_LONGEST: Final = 200.0  # [m] of a beam in the map
 _STILL: Final = (0.002, 0.0005)  # [m], [rad] by which a scan may move without being drawn anew
 
 
@@ -90,8 +91,10 @@ class MapScan:
 
     def use_ranges(self, least: float, most: float) -> None:
         """Find the points, within a least and a largest range [m]."""
-        self.limit = min(self.limit, most)
-        self.is_hit = np.isfinite(self.ranges) & (self.ranges > max(least, 0.0)) & (self.ranges <= self.limit)
+        self.limit = min(self.limit, most, _LONGEST)
+        is_valid = np.isfinite(self.ranges) & np.isfinite(self.angles)
+        with np.errstate(invalid="ignore"):
+            self.is_hit = is_valid & (self.ranges > max(least, 0.0)) & (self.ranges <= self.limit)
         reach, angles = self.ranges[self.is_hit], self.angles[self.is_hit]
         self.points = np.column_stack((np.cos(angles) * reach, np.sin(angles) * reach))
         count = max(len(reach), 1)
@@ -105,7 +108,7 @@ class MapScan:
     def beams(self) -> tuple[Floats, npt.NDArray[np.bool_]]:
         """Return the ends of all beams in the frame of the sensor, and whether each met something."""
         with np.errstate(invalid="ignore"):
-            is_used = self.is_hit | (self.ranges > self.limit)
+            is_used = self.is_hit | ((self.ranges > self.limit) & np.isfinite(self.angles))
         reach = np.where(self.is_hit, self.ranges, self.limit)[is_used]
         angles = self.angles[is_used]
         return np.column_stack((np.cos(angles) * reach, np.sin(angles) * reach)), self.is_hit[is_used]

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from simkit import Pose, msgs
 from simkit.errors import ArgumentValueError, TransformError
-from simkit.extend import Options, SharedByCopies, boolean, choice, number, text
+from simkit.extend import Options, boolean, choice, number, text
 from simkit_navigation.plugins.navigation.planar_pose import Floats
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ class SourceOptions(Options):
 
 
 @dataclass(frozen=True, eq=False)
-class Observation(SharedByCopies):
+class Observation:
     """Points that a sensor saw at one time.
 
     Attributes:
