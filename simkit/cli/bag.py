@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import heapq
+from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -140,10 +143,13 @@ def video(
 
 @report_errors_quietly
 def play(
-    recording: options.Recording,
+    recordings: Annotated[
+        list[Path], argument("Bags: .mcap or .db3 files, or rosbag2 folders; several share one timeline.", "BAG...")
+    ],
     topics: Annotated[
         list[str], Option("--topics", help="Topic to play; repeatable. Default: all inputs of the world.")
     ] = [],
+    all_: Annotated[bool, Option("--all", "-a", help="Play all topics of the bags.")] = False,
     rate: Annotated[float, option("Playback speed factor.", "N", "--rate", "-r", min=1e-3)] = 1.0,
     start: Annotated[float, option("Start at this offset into the bag.", "S", "--start-offset", min=0)] = 0.0,
     remap: Annotated[list[str], option("Play OLD as NEW; repeatable.", "OLD:=NEW", "--remap", "-m")] = [],
@@ -151,32 +157,37 @@ def play(
     sim: options.Sim = None,
     json_: options.Json = False,
 ) -> None:
-    """Play the messages of a bag into a running simulation.
+    """Play the messages of bags into a running simulation.
 
     The simulation's clock sets the pace.
     """
     from simkit.recording.bags.reader import open_bag_to_read
 
     names = _parse_remappings(remap)
-    with open_bag_to_read(recording) as reader, connect_to_simulation(sim) as client:
-        bag_topics = list(dict.fromkeys(t.name for t in reader.topics))
-        selected = [absolute_name(t) for t in topics] or _input_topics(client, bag_topics, names)
+    with ExitStack() as stack:
+        readers = [stack.enter_context(open_bag_to_read(recording)) for recording in recordings]
+        client = stack.enter_context(connect_to_simulation(sim))
+        bag_topics = list(dict.fromkeys(t.name for reader in readers for t in reader.topics))
+        selected = [absolute_name(t) for t in topics] or (
+            bag_topics if all_ else _input_topics(client, bag_topics, names)
+        )
         if not selected:
-            text = f"the world subscribes to no topic of {recording}; choose topics with --topics"
-            raise InputError("SK-CLI-030", text)
+            text = f"the world subscribes to no topic of {', '.join(map(str, recordings))}; choose topics with --topics"
+            raise InputError("SK-CLI-030", text, help="--all plays all topics")
         for unknown in [t for t in selected if t not in bag_topics][:1]:
-            next(reader.messages([unknown]))
-        reader.define_types(selected)
-        publishers = {
-            t.name: client.advertise(names.get(t.name, t.name), t.type_name)
-            for t in reader.topics
-            if t.name in selected
-        }
+            next(readers[0].messages([unknown]))
+        publishers: dict[str, LivePublisher] = {}
+        for reader in readers:
+            of_bag = [t for t in reader.topics if t.name in selected]
+            reader.define_types([t.name for t in of_bag])
+            for t in of_bag:
+                if t.name not in publishers:
+                    publishers[t.name] = client.advertise(names.get(t.name, t.name), t.type_name)
         if not json_:
             print_note(f"[INFO] [rosbag2_player]: playing {', '.join(publishers)}")
-        count = _play_once(client, reader, publishers, rate, start)
+        count = _play_once(client, readers, publishers, rate, start)
         while loop and count:  # a round without messages takes no time, so that the loop would never wait or end
-            count += _play_once(client, reader, publishers, rate, start)
+            count += _play_once(client, readers, publishers, rate, start)
         client.flush()
     if json_:
         print_json({"messages": count, "topics": list(publishers)})
@@ -199,14 +210,20 @@ def _input_topics(client: Client, topics: list[str], names: dict[str, str]) -> l
 
 
 def _play_once(
-    client: Client, reader: BagReader, publishers: dict[str, LivePublisher], rate: float, start: float
+    client: Client, readers: Sequence[BagReader], publishers: dict[str, LivePublisher], rate: float, start: float
 ) -> int:
-    """Play the bag once; return the number of messages."""
+    """Play the bags once, in the order of their times; return the number of messages."""
     clock = SimClock(client)
-    first_ns = reader.start + round(start * 1e9)
+    first_ns = min(reader.start for reader in readers) + round(start * 1e9)
     begun_ns = clock.now_ns()
     count = 0
-    for message in reader.messages(list(publishers), first_ns):
+    bags = []
+    for reader in readers:
+        known = {t.name for t in reader.topics}
+        played = [topic for topic in publishers if topic in known]
+        if played:
+            bags.append(reader.messages(played, first_ns))
+    for message in heapq.merge(*bags, key=lambda message: message.time_ns):
         due_ns = begun_ns + round((message.time_ns - first_ns) / rate)
         if not clock.wait_until(due_ns, begun_ns):
             print_note("note: the simulation was reset; the remaining messages are not played")

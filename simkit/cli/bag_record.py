@@ -44,6 +44,9 @@ def record(
         Path | None, option("NAME.mcap: one file; else a rosbag2 folder.", "OUT", "--output", "-o", show_default=False)
     ] = None,
     duration: Annotated[float | None, option("Simulated seconds to record.", "S", "--duration", "-d", min=0)] = None,
+    max_rate: Annotated[
+        float | None, option("Record at most N messages of a topic per simulated second.", "N", min=1e-6)
+    ] = None,
     hidden: Annotated[bool, Option("--include-hidden-topics", help="Include hidden topics.")] = False,
     storage: Annotated[str, option("Storage format; only mcap.", "mcap", "--storage", "-s")] = "mcap",
     force: options.Force = False,
@@ -61,7 +64,7 @@ def record(
         raise InputError("SK-CLI-018", f"--storage: found {storage!r}; expected mcap")
     target = output or Path(time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
     with connect_to_simulation(sim) as client:
-        recording = _Recording(LiveSource(client), selection, duration)
+        recording = _Recording(LiveSource(client), selection, duration, max_rate)
         with Interrupts() as stop:
             recording.subscribe()  # before the bag is created, because a topic may have no messages on this machine
             bag = open_bag(target, overwrite=force)
@@ -108,7 +111,11 @@ class _TopicSelection:
 class _Recording:
     """Recording of the selected topics of a running simulation."""
 
-    def __init__(self, source: LiveSource, selection: _TopicSelection, duration: float | None) -> None:
+    def __init__(
+        self, source: LiveSource, selection: _TopicSelection, duration: float | None, max_rate: float | None = None
+    ) -> None:
+        self._period_ns = 0 if max_rate is None else round(1e9 / max_rate)
+        self._due_ns: dict[str, int] = {}  # earliest time of the next message of a topic
         self._source, self._selection, self._duration = source, selection, duration
         self._feeds: list[LiveFeed] = []
         self._known: set[str] = set()
@@ -167,10 +174,23 @@ class _Recording:
             if self._duration is not None and time_ns - self._begun_ns > self._duration * 1e9:
                 self._is_past_end = True
                 continue
+            if self._period_ns and not self._is_due(received.topic, time_ns):
+                continue
             channel = bag.channel(received.topic, received.type_name, received.topic in self._latched)
             bag.write_raw(channel, received.data, time_ns)
             count += 1
         return self._is_past_end and not count
+
+    def _is_due(self, topic: str, time_ns: int) -> bool:
+        """Check whether the rate limit allows a message; latched topics such as /tf_static have no limit."""
+        if topic in self._latched:
+            return True
+        due_ns = self._due_ns.get(topic, time_ns)
+        if time_ns < due_ns:
+            return False
+        is_on_time = time_ns - due_ns < self._period_ns  # then the next message is due one period after this one was
+        self._due_ns[topic] = (due_ns if is_on_time else time_ns) + self._period_ns
+        return True
 
     def _take_messages(self, wait: float = _RECEIVE_TIMEOUT) -> list[ReceivedMessage]:
         """Return received messages, sorted by time; if there are none, wait for them [s, wall time]."""

@@ -23,9 +23,7 @@ from simkit.cli.terminal.output import (
     report_errors_quietly,
 )
 from simkit.cli.terminal.topic_sources import open_source
-from simkit.errors import InputError
 from simkit.run_fields import LoadArguments
-from simkit.writers.atomic_output import check_writable, write_atomically
 
 if TYPE_CHECKING:
     from simkit.msgs.transform_tree import TransformTree
@@ -38,7 +36,7 @@ _COLLECTION_TIME = 1.0  # [s] of wall time for the transforms of a running simul
 @with_run_options("file", "world", usual={"model_world": "empty space"})
 def graph(
     source: Annotated[str, argument("World, model, or name of a running simulation.", "WORLD|SIM", completion.worlds)],
-    output: Annotated[Path, option("Chart to write: OUT.svg.", "OUT.svg", "--output", "-o")] = Path("graph.svg"),
+    output: Annotated[Path, option("Chart to write: OUT.svg or OUT.pdf.", "OUT", "--output", "-o")] = Path("graph.svg"),
     tf: Annotated[bool, Option("--tf", help="Draw the tree of frames instead of nodes and topics.")] = False,
     hidden: Annotated[
         bool, Option("--all", "-a", help="Include hidden names, simkit's own nodes, and topics such as /clock.")
@@ -49,12 +47,9 @@ def graph(
     """Draw the nodes and topics, or the frames, of a world or a running simulation."""
     from simkit.live import simulations
     from simkit.recording.graphs.graph_contents import frame_graph, node_graph
-    from simkit.recording.graphs.graph_svg import graph_svg
+    from simkit.recording.graphs.graph_file import check_graph_file, write_graph
 
-    if output.suffix.lower() != ".svg":
-        suffix = output.suffix or "no suffix"
-        raise InputError("SK-CLI-016", f"cannot write {output}: found {suffix}; expected .svg")
-    check_writable(output)
+    check_graph_file(output)
     is_running = any(sim.name == source for sim in simulations())
     if is_running:
         nodes, frames = _of_simulation(source, tf=tf)
@@ -64,7 +59,7 @@ def graph(
     if not boxes:
         print_note(f"note: {source} has no {'frames' if tf else 'nodes with topics, services or actions'}")
     title = f"{'Frames' if tf else 'Nodes and topics'} of {Path(source).name if '<' not in source else 'a world'}"
-    write_atomically(output, graph_svg(printable(title), boxes, edges).encode())
+    write_graph(output, printable(title), boxes, edges)
     kinds = {kind: sum(box.kind == kind for box in boxes) for kind in (("frame",) if tf else ("node", "topic"))}
     if json_:
         print_json({"output": str(output), **{f"{kind}s": count for kind, count in kinds.items()}, "edges": len(edges)})

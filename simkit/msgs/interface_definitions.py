@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
 from simkit.msgs import own_interfaces
 from simkit.msgs.definition_parser import BASIC_TYPES, PARTS, TYPE_ALIASES
+from simkit.msgs.field_units import unit_of
 from simkit.msgs.message_builder import builder_of
 from simkit.msgs.message_text import message_to_dict
 from simkit.msgs.message_types import FieldValue, full_name, interface_parts, own_package_hint, type_store
@@ -19,6 +23,8 @@ if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
 _TYPE = re.compile(r"^\s*([A-Za-z]\w*(?:/\w+)*)(<=\d+)?(\[[^\]]*\])?\s+[a-z]\w*\b")
+
+_NUMBER = re.compile(r"^\s*(?:u?int\d+|float\d+)(?:\[[^\]]*\])?\s+([a-z]\w*)(?:\s|$)")
 
 
 def interface_names(kind: str) -> list[str]:
@@ -59,7 +65,10 @@ def interface_text(
 
 def _lines(name: str, depth: int, comments: bool, below: bool, store: Typestore | None) -> Iterator[str]:
     package = name.split("/")[0]
-    for line in _text(name, store).strip("\n").split("\n"):
+    definition = _text(name, store).strip("\n")
+    if comments and store is None and "#" not in definition:
+        definition = _commented(name, definition)
+    for line in definition.split("\n"):
         text = line.rstrip()
         if not comments:
             text = text.partition("#")[0].rstrip()
@@ -84,6 +93,24 @@ def _text(name: str, store: Typestore | None) -> str:
     for field, value in ({} if store else rosbags_defaults(full)).items():
         text = re.sub(rf"^\S+ {field}$", rf"\g<0> {str(value).lower()}", text, flags=re.MULTILINE)
     return text
+
+
+def _commented(name: str, definition: str) -> str:
+    """Add a comment about the type and the units of its numbers to a shipped definition that has no comments."""
+    if own_interfaces.is_known(name):
+        return definition
+    lines = [f"# {_type_comments()[name]}"] if name in _type_comments() else []
+    for line in definition.split("\n"):
+        match = _NUMBER.match(line)
+        unit = unit_of(name, match[1]) if match else ""
+        lines.append(f"{line.rstrip()}  # [{unit}]" if unit else line)
+    return "\n".join(lines)
+
+
+@cache
+def _type_comments() -> dict[str, str]:
+    text = Path(__file__).with_name("type_comments.toml").read_text(encoding="utf-8")
+    return dict(tomllib.loads(text))
 
 
 def prototype(type_name: str) -> dict[str, FieldValue]:

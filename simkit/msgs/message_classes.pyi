@@ -8374,6 +8374,40 @@ class WriteSplitEvent:
     node_name: str
     __msgtype__: ClassVar[str]
 
+# roscpp
+
+@dataclass
+class Logger:
+    """`roscpp/msg/Logger`"""
+    name: str
+    level: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetLoggers_Request:
+    """`roscpp/srv/GetLoggers_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetLoggers_Response:
+    """`roscpp/srv/GetLoggers_Response`"""
+    loggers: list[Logger]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetLoggerLevel_Request:
+    """`roscpp/srv/SetLoggerLevel_Request`"""
+    logger: str
+    level: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetLoggerLevel_Response:
+    """`roscpp/srv/SetLoggerLevel_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
 # roscpp_tutorials
 
 @dataclass

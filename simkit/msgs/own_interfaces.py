@@ -107,6 +107,11 @@ def has_any() -> bool:
     return bool(_added or _received)
 
 
+def is_known(name: str) -> bool:
+    """Check whether an interface was added or received."""
+    return name in _added or name in _received
+
+
 def known_names() -> list[str]:
     """Return the full name of every interface that was added or received, sorted."""
     read_environment()

@@ -69,6 +69,29 @@ def test_a_running_simulation_is_recorded(start: Any, simkit_line: Any, tmp_path
     assert "SK-CLI-018" in simkit_line("bag", "record", "-o", str(tmp_path / "x")).stderr
 
 
+def test_a_rate_limit_thins_the_messages_of_each_topic(start: Any, simkit_line: Any, tmp_path: Path) -> None:
+    start()
+    target = tmp_path / "thin.mcap"
+    limits = ("--max-rate", "10", "--duration", "1.0")
+    assert simkit_line("bag", "record", "/odom", "/imu", "-o", str(target), *limits).exit_code == 0
+    summary = json.loads(simkit_line("bag", "info", str(target), "--json").stdout)
+    assert all(topic["count"] in (10, 11) for topic in summary["topics"])
+
+
+def test_two_bags_are_played_on_one_timeline(
+    bag: Path, start: Any, simkit_line: Any, tmp_path: Path, yard_world: str
+) -> None:
+    lamps = tmp_path / "second.mcap"
+    with simkit.load(yard_world) as sim, Recorder(sim, lamps):
+        sim.publish("/cmd_vel", {"linear": {"x": 0.25}})
+        sim.run(0.2)
+    start()
+    played = json.loads(simkit_line("bag", "play", str(bag), str(lamps), "--topics", "/cmd_vel", "--json").stdout)
+    assert played == {"messages": 2, "topics": ["/cmd_vel"]}
+    played = json.loads(simkit_line("bag", "play", str(bag), "--all", "-r", "20", "--json").stdout)
+    assert {"/cmd_vel", "/imu", "/odom"} <= set(played["topics"])
+
+
 def test_a_recording_loses_large_messages_only_and_says_which(start: Any, simkit_line: Any, tmp_path: Path) -> None:
     sim = start(paused=True).sim
     camera = sim.advertise("/picture", "std_msgs/msg/UInt8MultiArray")

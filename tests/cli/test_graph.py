@@ -36,6 +36,19 @@ def test_the_tree_of_frames_has_moving_and_static_transforms(tmp_path: Path) -> 
     assert "base_footprint" in text and "dashed" in text
 
 
+def test_a_pdf_has_the_names_of_the_frames_and_a_valid_table_of_its_objects(tmp_path: Path) -> None:
+    out = tmp_path / "tf.pdf"
+    found = graph("turtlebot3_empty", "--tf", "-o", out)
+    data = out.read_bytes()
+    assert data.startswith(b"%PDF-1.4\n") and data.endswith(b"%%EOF\n")
+    assert data.count(b" c h B") + data.count(b" l h B") == found["frames"]
+    assert b"(base_footprint) Tj" in data and b"[5 4] 0 d" in data  # dashed: a static transform
+    table = int(data.rsplit(b"startxref\n", 1)[1].split()[0])
+    assert data[table : table + 4] == b"xref"
+    for number, line in enumerate(data[table:].splitlines()[3:9], 1):
+        assert data[int(line[:10]) :].startswith(b"%d 0 obj" % number)
+
+
 def test_a_file_that_is_no_svg_is_refused(tmp_path: Path) -> None:
     found = CliRunner().invoke(app, ["graph", "turtlebot3_empty", "-o", str(tmp_path / "graph.png")])
     assert found.exit_code == 2

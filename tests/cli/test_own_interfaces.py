@@ -122,11 +122,14 @@ def test_a_client_knows_what_the_run_knows_and_the_run_what_a_client_defines(
         run.communicate(timeout=20)
 
 
-def test_broken_definitions_end_a_command_with_all_problems(line: Line, tmp_path: Path) -> None:
+def test_broken_definitions_are_left_out_with_all_problems(line: Line, tmp_path: Path) -> None:
     (tmp_path / "types" / "course_msgs" / "msg" / "Bad.msg").write_text("int count\nint64 wheelCount\n")
-    text = line("interface", "list", *TYPES, code=2).replace("\n", "")
+    text = line("interface", "show", "course_msgs/msg/Num", *TYPES).replace("\n", "")
+    assert "Bad.msg:1: warning SK-INTERFACE-003: unknown type 'int'" in text
+    assert "Bad.msg:2: warning SK-INTERFACE-002" in text
+    assert "int64 num" in text
+    text = line("interface", "show", "course_msgs/msg/Bad", *TYPES, code=2)
     assert "Bad.msg:1: error SK-INTERFACE-003: unknown type 'int'" in text
-    assert "Bad.msg:2: error SK-INTERFACE-002" in text
     assert "Traceback" not in text
 
 

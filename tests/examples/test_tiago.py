@@ -27,7 +27,7 @@ def script(name: str) -> dict[str, Any]:
 # ---------------------------------------------------------------------- as scripts
 
 
-SCRIPTS = ("velocity", "joints", "arm_trajectory", "look", "wave", "carry")
+SCRIPTS = ("velocity", "joints", "arm_trajectory", "look", "wave", "carry", "grasps")
 
 
 @pytest.mark.parametrize("name", SCRIPTS)
@@ -47,6 +47,19 @@ def test_a_picture_that_cannot_be_written_is_told_before_anything_moves(
     with pytest.raises(SystemExit) as ended:
         script(name)["main"]([where])
     assert ended.value.code == 2 and not list(tmp_path.iterdir())
+
+
+# ---------------------------------------------------------------------- grasps
+
+
+@pytest.mark.labs
+def test_the_best_of_the_grasps_that_are_reached_lifts_the_can() -> None:
+    pytest.importorskip("pinocchio")
+    grasps, lifted = script("grasps")["run"]()
+    costs = [grasp.cost for grasp in grasps if grasp.joints]
+    assert 3 <= len(costs) < len(grasps) == 24
+    assert costs == sorted(costs) and grasps[0].cost == costs[0]
+    assert lifted == pytest.approx(0.12, abs=0.01)
 
 
 # ---------------------------------------------------------------------- the base

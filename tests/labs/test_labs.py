@@ -80,8 +80,9 @@ def test_a_typical_mistake_fails_the_check_that_names_it(mistake: tuple[str, str
     assert check in failed_checks(found.stdout)
 
 
-def test_each_lab_has_three_mistakes() -> None:
-    assert {name: sum(key[0] == name for key in MISTAKES) for name in LABS} == dict.fromkeys(LABS, 3)
+def test_each_lab_has_at_least_three_mistakes() -> None:
+    counts = {name: sum(key[0] == name for key in MISTAKES) for name in LABS}
+    assert {name: count for name, count in counts.items() if count < 3} == {}
 
 
 def test_a_folder_with_files_is_not_overwritten(tmp_path: Path) -> None:

@@ -50,6 +50,14 @@ def test_motions_are_played_one_after_another(lab: Path) -> None:
     assert found[0]["motion"] == "bow" and abs(found[0]["off"]) < 5e-3
 
 
+def test_a_speed_scale_slows_a_motion_down_also_beyond_twice_its_time(lab: Path) -> None:
+    """The motion takes 3 s at full speed, and its time limit follows the scale."""
+    for factor, seconds in (("0.5", "6.0"), ("0.25", "12.")):
+        result = motion("play", "bow", "--speed", factor, "--world", lab)
+        assert result.stdout.startswith(f"bow: done in {seconds}"), result.stdout
+    assert motion("play", "bow", "--speed", "0").exit_code == 2
+
+
 def test_a_robot_without_motions_gets_them_from_a_file(lab: Path) -> None:
     bare = lab.with_name("bare.sdf")
     bare.write_text(arm.world(arm.model()))

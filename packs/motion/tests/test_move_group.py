@@ -108,6 +108,20 @@ def test_a_joint_goal_is_reached_within_the_limits(sim: simkit.Simulation) -> No
     assert np.abs(speeds).max() < 1.05 * SPEED
 
 
+def test_the_scaling_factors_slow_a_plan_down_and_another_planner_is_told(sim: simkit.Simulation) -> None:
+    """2.5 rad with a quarter of 2 rad/s² and half of 2 rad/s: 2 s to accelerate, 2 s to brake, 0.5 s between."""
+    log = sim.subscribe("/rosout")
+    request = {"planner_id": "SBLkConfigDefault", "allowed_planning_time": 2.0, "max_velocity_scaling_factor": 0.5}
+    for factors in ({"max_acceleration_scaling_factor": 0.25}, {}):
+        goal = run_goal(sim, joint_goal(0.0, -2.5), **request, **factors)
+        if factors:
+            points = goal.result.planned_trajectory.joint_trajectory.points
+            assert seconds(points[-1]) == pytest.approx(4.5, rel=0.05)
+            assert max(np.abs(point.velocities).max() for point in points) <= 0.5 * SPEED + 1e-9
+    told = [message.msg for message in log.messages if "SBLkConfigDefault" in message.msg]
+    assert told == ["the planner 'SBLkConfigDefault' does not exist here; RRT-Connect plans instead"]
+
+
 @pytest.mark.parametrize("sim", [WALL], indirect=True)
 def test_a_plan_goes_round_a_wall(sim: simkit.Simulation) -> None:
     goal = run_goal(sim, joint_goal(-1.2, 0.0, 0.0))

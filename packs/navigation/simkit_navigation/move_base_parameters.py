@@ -79,6 +79,13 @@ def move_base_plugins(values: Values) -> list[PluginOfNode]:
     planner = str(values.get("base_global_planner", _PLANNERS[0]))
     if planner not in _PLANNERS:
         told.append(f"the planner {_PLANNERS[0]} replaces {planner}")
+    settings = _block(values, planner.rpartition("/")[2])
+    grid_based: Values = {"plugin": "nav2_navfn_planner::NavfnPlanner"}
+    _take(settings, ("default_tolerance",), grid_based, "tolerance")
+    grid_based |= {name: settings[name] for name in ("allow_unknown",) if name in settings}
+    if planner == _PLANNERS[1]:
+        grid_based["use_astar"] = not settings.get("use_dijkstra", True)
+    planners: Values = {"planner_plugins": ["GridBased"], "GridBased": grid_based}
     name = str(values.get("base_local_planner", "base_local_planner/TrajectoryPlannerROS"))
     told.append(f"the controller RegulatedPurePursuitController replaces {name}")
     local = _block(values, name.rpartition("/")[2])
@@ -103,7 +110,7 @@ def move_base_plugins(values: Values) -> list[PluginOfNode]:
     }
     behaviors = {**frames, "global_frame": costmaps["local_costmap"]["global_frame"]}
     plugins = [
-        *server["planner_server"].plugins({}, costmaps["global_costmap"]),
+        *server["planner_server"].plugins(planners, costmaps["global_costmap"]),
         *server["controller_server"].plugins(controller, costmaps["local_costmap"]),
         *server["behavior_server"].plugins(behaviors, costmaps["local_costmap"]),
         *server["bt_navigator"].plugins(frames, {}),
@@ -158,16 +165,24 @@ def _inflation(values: Values) -> Values:
     return {name: values[name] for name in ("inflation_radius", "cost_scaling_factor") if name in values}
 
 
-_OF_SOURCE: Final = ("topic", "data_type", "marking", "clearing", "inf_is_valid")
+_OF_SOURCE: Final = (
+    *("topic", "data_type", "marking", "clearing", "inf_is_valid", "sensor_frame", "observation_persistence"),
+    *("expected_update_rate", "min_obstacle_height", "max_obstacle_height"),
+)
+_OF_LAYER: Final = (
+    *("origin_z", "z_resolution", "z_voxels", "unknown_threshold", "mark_threshold", "publish_voxel_map"),
+    *("combination_method", "footprint_clearing_enabled", "max_obstacle_height"),
+)
 
 
 def _obstacles(values: Values) -> Values:
     """Return the settings of an obstacle layer: its sources, with the ranges of the layer."""
     sources = str(values.get("observation_sources", "")).split()
-    found: Values = {"observation_sources": sources}
+    found: Values = {"observation_sources": sources, **{key: values[key] for key in _OF_LAYER if key in values}}
     for name in sources:
         source = _block(values, name)
-        settings: Values = {key: source[key] for key in _OF_SOURCE if key in source}
+        settings: Values = {"max_obstacle_height": 2.0}  # default of ROS 1
+        settings |= {key: source[key] for key in _OF_SOURCE if key in source}
         settings["obstacle_max_range"] = source.get("obstacle_range", values.get("obstacle_range", 2.5))
         settings["raytrace_max_range"] = source.get("raytrace_range", values.get("raytrace_range", 3.0))
         found[name] = settings

@@ -20,12 +20,14 @@ from simkit.plugins.unread_parameters import names_read
 from simkit_navigation.plugins.localisation.amcl import Amcl
 from simkit_navigation.plugins.localisation.robot_localization import EkfNode
 from simkit_navigation.plugins.navigation.behavior_server import BehaviorServer
-from simkit_navigation.plugins.navigation.bt_navigator import BtNavigator
+from simkit_navigation.plugins.navigation.controller_parameters import controller_parameters
 from simkit_navigation.plugins.navigation.controller_server import ControllerServer
 from simkit_navigation.plugins.navigation.costmap_2d import Costmap2D
 from simkit_navigation.plugins.navigation.costmap_parameters import costmap_parameters
 from simkit_navigation.plugins.navigation.planner_server import PlannerServer
 from simkit_navigation.plugins.navigation.smoother_server import SmootherServer
+from simkit_navigation.plugins.navigators.bt_navigator import BtNavigator
+from simkit_navigation.plugins.navigators.waypoint_follower import WaypointFollower
 
 Values = dict[str, object]
 """Values of parameters; blocks are dictionaries."""
@@ -37,8 +39,6 @@ _EKF_INPUT: Final = re.compile(
     r"(odom|pose|twist|imu)\d+(_config|_differential|_relative|_queue_size|_nodelay|_remove_gravitational_acceleration"
     r"|(_pose|_twist|_linear_acceleration)?_rejection_threshold)?"
 )
-_PURSUIT: Final = "nav2_regulated_pure_pursuit_controller::RegulatedPurePursuitController"
-_SHIM: Final = "nav2_rotation_shim_controller::RotationShimController"
 _TUTORIAL_CLASSES: Final = frozenset(
     (
         "nav2_gradient_costmap_plugin::GradientLayer",
@@ -52,8 +52,6 @@ _MOTION_MODELS: Final = {
     "differential": "nav2_amcl::DifferentialMotionModel",
     "omnidirectional": "nav2_amcl::OmniMotionModel",
 }
-_SPEEDS: Final = ("desired_linear_vel", "max_vel_x", "vx_max", "max_linear_vel")
-_TURNING_RATES: Final = ("rotate_to_heading_angular_vel", "max_vel_theta", "wz_max", "max_angular_vel")
 _OF_ALL_NODES: Final = frozenset(
     (
         *("use_sim_time", "qos_overrides", "bond_heartbeat_period", "use_realtime_priority"),
@@ -281,40 +279,9 @@ def _smoother(values: Values, _: Values) -> list[PluginOfNode]:
 
 
 def _controller(values: Values, costmap: Values) -> list[PluginOfNode]:
-    outline = _outline_of(costmap)
-    plugin = PluginOfNode(ControllerServer, "controller_server", {**_frame_of(costmap), **outline, **values})
-    for name in _names(values.get("controller_plugins")):
-        plugin.blocks.append(name)
-        settings = _block(plugin.values, name)
-        kind = str(settings.get("plugin", "")).replace("/", "::")
-        if kind == _SHIM:
-            kind = str(settings.get("primary_controller", "")).replace("/", "::")
-            settings["plugin"] = kind
-        if not kind or kind == _PURSUIT or is_class_of_user(kind):
-            continue
-        plugin.told.append(f"{name}: the controller {_PURSUIT} replaces {kind}")
-        plugin.values[name] = _pursuit_settings(settings)
-    for wanted, element in (("goal_checker", "general_goal_checker"), ("progress_checker", "progress_checker")):
-        checkers = _names(values.get(f"{wanted}_plugins")) or _names(values.get(f"{wanted}_plugin")) or [wanted]
-        settings = _block(plugin.values, checkers[0])
-        plugin.values.pop(checkers[0], None)
-        if settings:
-            plugin.values[element] = {key: value for key, value in settings.items() if key != "plugin"}
-        for name in (f"{wanted}_plugins", f"{wanted}_plugin"):
-            plugin.values.pop(name, None)
+    found = controller_parameters(values, costmap, is_class_of_user)
+    plugin = PluginOfNode(ControllerServer, "controller_server", found.values, found.blocks, found.told)
     return [_costmap("local_costmap", costmap), plugin]
-
-
-def _pursuit_settings(settings: Values) -> Values:
-    """Return the settings of pure pursuit with the speeds of another controller."""
-    speed = next((settings[name] for name in _SPEEDS if name in settings), None)
-    rate = next((settings[name] for name in _TURNING_RATES if name in settings), None)
-    found: Values = {"plugin": _PURSUIT}
-    if isinstance(speed, (int, float)) and speed > 0:
-        found["desired_linear_vel"] = speed
-    if isinstance(rate, (int, float)) and rate > 0:
-        found["rotate_to_heading_angular_vel"] = rate
-    return found
 
 
 def _behaviors(values: Values, costmap: Values) -> list[PluginOfNode]:
@@ -323,7 +290,8 @@ def _behaviors(values: Values, costmap: Values) -> list[PluginOfNode]:
     rest = {name: value for name, value in values.items() if name not in renamed}
     outline = _outline_of(costmap)
     plugin = PluginOfNode(BehaviorServer, "behavior_server", {**outline, **own, **rest})
-    for name in _names(plugin.values.pop("behavior_plugins", None)):
+    listed = [name for key in ("behavior_plugins", "recovery_plugins") for name in _names(plugin.values.pop(key, None))]
+    for name in listed:
         block = plugin.values.pop(name, None)
         kind = str(block.get("plugin", name) if isinstance(block, dict) else name)
         if re.split(r"::|/", kind)[-1].replace("_", "").lower() not in _BEHAVIORS:
@@ -331,20 +299,36 @@ def _behaviors(values: Values, costmap: Values) -> list[PluginOfNode]:
     return [plugin]
 
 
-_BEHAVIORS: Final = frozenset(("spin", "backup", "driveonheading", "wait"))
+_BEHAVIORS: Final = frozenset(("spin", "backup", "driveonheading", "wait", "assistedteleop"))
 
 
 def _navigator(values: Values, _: Values) -> list[PluginOfNode]:
     plugin = PluginOfNode(BtNavigator, "bt_navigator", {"robot_base_frame": "base_link", **values})
     for name in _names(plugin.values.pop("navigators", None)):
-        plugin.values.pop(name, None)
-    for name in ("plugin_lib_names", "error_code_names", "error_code_name_prefixes"):
-        plugin.values.pop(name, None)
-    for name in ("default_bt_xml_filename", "default_nav_to_pose_bt_xml", "default_nav_through_poses_bt_xml"):
-        tree = str(plugin.values.pop(name, ""))
-        if tree and "w_replanning_and_recovery" not in tree:
-            plugin.told.append(f"the tree {tree.rpartition('/')[2]} is not executed; the default behaviour is used")
+        block = plugin.values.pop(name, None)
+        kind = str(block.get("plugin", name) if isinstance(block, dict) else name)
+        if re.split(r"::|/", kind)[-1] not in _NAVIGATORS and name not in _NAVIGATORS:
+            plugin.told.append(f"there is no navigator {name} ({kind})")
+    unknown = [
+        name for name in _names(plugin.values.pop("plugin_lib_names", None)) if not _TREE_LIBRARY.fullmatch(name)
+    ]
+    if unknown:
+        plugin.told.append(f"the nodes of the C++ libraries {', '.join(unknown)} are not available in behaviour trees")
     return [plugin]
+
+
+_NAVIGATORS: Final = (
+    "NavigateToPoseNavigator",
+    "NavigateThroughPosesNavigator",
+    "navigate_to_pose",
+    "navigate_through_poses",
+)
+_TREE_LIBRARY: Final = re.compile(r"nav2_\w+_(bt_node|condition)")
+
+
+def _waypoints(values: Values, _: Values) -> list[PluginOfNode]:
+    task = str(values.get("waypoint_task_executor_plugin", "wait_at_waypoint"))
+    return [PluginOfNode(WaypointFollower, "waypoint_follower", dict(values), [task])]
 
 
 def _ekf(values: Values, _: Values) -> list[PluginOfNode]:
@@ -370,6 +354,7 @@ SERVER_NODES: Final[Mapping[str, ServerNode]] = {
     "behavior_server": ServerNode(_behaviors, "behavior_server", "local_costmap"),
     "recoveries_server": ServerNode(_behaviors, "recoveries_server", "local_costmap"),
     "bt_navigator": ServerNode(_navigator, "bt_navigator"),
+    "waypoint_follower": ServerNode(_waypoints, "waypoint_follower"),
     "ekf_node": ServerNode(_ekf, "ekf_filter_node", is_lifecycle=False),
     "ukf_node": ServerNode(_ukf, "ukf_filter_node", is_lifecycle=False),
 }

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from controller_nodes import controller_node
 from navigation_worlds import DRIVE, WALL, pose, run_until_done, world
 
 import simkit
@@ -21,9 +21,8 @@ from simkit_navigation.plugins.navigation.pure_pursuit import PurePursuit
 
 
 def pursuit(path: Any, **options: float | str) -> PurePursuit:
-    node: Any = SimpleNamespace(controller_frequency=20.0, footprint=round_footprint(0.2), is_at_goal_position=False)
     found = PurePursuit()
-    found.configure(node, Params.from_dict(options))
+    found.configure(controller_node(), Params.from_dict(options))
     found.set_plan(np.array(path, np.float64))
     return found
 

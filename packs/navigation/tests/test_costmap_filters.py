@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from pathlib import Path
 from typing import Any
 
@@ -163,6 +164,37 @@ def test_a_filter_continues_after_a_reset_and_a_restore() -> None:
             runs.append(costs(sim).cells)
             sim.reset()
         assert runs[0].any() and all(np.array_equal(cells, runs[0]) for cells in runs)
+
+
+def test_a_pickled_snapshot_has_the_mask() -> None:
+    with load("KeepoutFilter") as sim, load("KeepoutFilter") as other:
+        place(sim)
+        send_mask(sim)
+        send_info(sim, KEEPOUT)
+        sim.run(0.25)
+        other.restore(pickle.loads(pickle.dumps(sim.snapshot())))
+        other.run(0.25)
+        assert costs(other).cells.any() and np.array_equal(costs(other).cells, costs(sim).cells)
+
+
+def test_a_controller_obeys_the_limit_of_a_speed_zone() -> None:
+    """The mask allows 40 % of the speed from x = 2 to 3, where the controller drives with 40 % of its speed before."""
+    controller = '<plugin filename="libsimkit_controller_server.so" name="controller_server"><costmap_topic>'
+    controller += "global_costmap/costmap_raw</costmap_topic><odom_frame_id>map</odom_frame_id></plugin>"
+    with load("SpeedFilter", more=controller) as sim:
+        commands = sim.subscribe("/cmd_vel", keep=1)
+        send_mask(sim)
+        send_info(sim, PERCENT, 100.0, -1.0)
+        speeds = []
+        for x in (0.5, 2.5):
+            drive(sim, x, x)
+            path = {"header": {"frame_id": "map"}, "poses": [pose(x + 0.05 * number, 1.0) for number in range(60)]}
+            task = sim.send_goal("/follow_path", {"path": path})
+            sim.run(0.2)
+            speeds.append(commands.latest.linear.x)
+            task.cancel()
+            sim.run(0.2)
+        assert speeds[1] == pytest.approx(0.4 * speeds[0], rel=0.05) and speeds[0] > 0.1
 
 
 def write_mask(folder: Path) -> None:

@@ -57,7 +57,7 @@ def test_each_replaced_class_and_each_parameter_without_effect_is_told_once(fold
         sim.run(0.5)
         told = "\n".join(warnings(sim, "SK-NAV-001"))
         assert "voxel_layer" not in told
-        assert "RegulatedPurePursuitController replaces dwb_core::DWBLocalPlanner" in told
+        assert "RegulatedPurePursuitController replaces teb_local_planner::TebLocalPlannerROS" in told
         assert "GridBased" not in told
         assert warnings(sim, "SK-NAV-002") == ["/amcl: no effect here: max_speed"]
         assert not [item for item in sim.diagnostics if item.code in ("SK-PARAM-003", "SK-SERVICE-004")]
@@ -114,6 +114,41 @@ def test_the_manager_goes_on_without_a_node_that_does_not_exist(folder: Path) ->
         sim.call("/lifecycle_manager/manage_nodes", {"command": 1}, on_done=lambda _: None)  # PAUSE
         sim.run(0.2)
         assert sim.call("/route_server/get_state").current_state.label == "inactive"
+
+
+SERVER = """
+import sys
+
+import rclpy
+from rclpy.lifecycle import LifecycleNode
+
+rclpy.init()
+node = LifecycleNode("server")
+while node.get_clock().now().nanoseconds < float(sys.argv[1]) * 1e9:
+    rclpy.spin_once(node, timeout_sec=0.1)
+"""
+
+
+def test_the_manager_takes_all_nodes_down_when_one_ends_and_starts_them_when_it_is_back(folder: Path) -> None:
+    file = folder / "server.py"
+    file.write_text(SERVER)
+    with simkit.load(rooms()) as sim:
+        sim.add_node("nav2_waypoint_follower/waypoint_follower")
+        sim.add_node(str(file), args=("1.0",))
+        names = ["waypoint_follower", "server"]
+        params = {"autostart": True, "node_names": names, "bond_timeout": 1.0}
+        sim.add_node("nav2_lifecycle_manager/lifecycle_manager", params=params)
+
+        def states() -> list[str]:
+            return [sim.call(f"/{name}/get_state").current_state.label for name in names]
+
+        sim.run(0.5)
+        assert states() == ["active", "active"]
+        sim.run(4.0)
+        assert sim.call("/waypoint_follower/get_state").current_state.label == "unconfigured"
+        sim.add_node(str(file), args=("99.0",))
+        sim.run(2.0)
+        assert states() == ["active", "active"]
 
 
 def test_a_parameter_that_is_not_valid_ends_the_activation_with_the_reason(folder: Path) -> None:
@@ -210,11 +245,12 @@ def test_the_map_saver_writes_the_map_of_slam_while_the_robot_moves(folder: Path
         }
         sim.add_node("slam_toolbox/async_slam_toolbox_node", params=params)
         sim.tf.open()
-        sim.run(0.5)  # the map begins at the pose of the first scan
-        start = sim.model("robot").pose
+        sim.run(0.5)
         drive(sim, 6.0, 0.05, 0.6)
-        known = sim.tf.lookup("map", "base_footprint")
-        true = start.inverse() @ sim.model("robot").pose
+        known, true = (
+            sim.tf.lookup("map", "base_footprint"),
+            sim.model("robot").pose,
+        )  # the odometry begins at the world
         assert math.hypot(*(known.position - true.position)[:2]) < 0.03
         assert abs(math.degrees(known.rpy[2] - true.rpy[2])) < 2.5  # the odometry is up to 0.05 s old
         saver = sim.add_node("nav2_map_server/map_saver_cli", args=("-f", "found"))

@@ -96,3 +96,12 @@ def test_amcl_has_the_names_of_ros_1() -> None:
 def test_robot_pose_ekf_reads_odometry_and_imu() -> None:
     (plugin,) = pose_ekf_plugins({"freq": 20.0, "imu_used": False})
     assert plugin.values["odom0"] == "odom" and "imu0" not in plugin.values and plugin.values["frequency"] == 20.0
+
+
+def test_move_base_searches_as_its_planner() -> None:
+    planner = {"allow_unknown": False, "use_dijkstra": False, "default_tolerance": 0.2}
+    values = {**MOVE_BASE, "base_global_planner": "global_planner/GlobalPlanner", "GlobalPlanner": planner}
+    settings = move_base_plugins(values)[1].values["GridBased"]
+    expected = {"use_astar": True, "allow_unknown": False, "tolerance": 0.2}
+    assert settings == {"plugin": "nav2_navfn_planner::NavfnPlanner", **expected}
+    assert "use_astar" not in move_base_plugins(dict(MOVE_BASE))[1].values["GridBased"]  # type: ignore[operator]

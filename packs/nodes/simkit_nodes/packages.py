@@ -20,6 +20,9 @@ from simkit_nodes.cmake_file import Command, cmake_commands
 from simkit_nodes.setup_file import console_scripts, scripts_of_ini, setup_arguments
 
 _NAME: Final = re.compile(r"<name>\s*([A-Za-z0-9_.-]+)\s*</name>")
+_DEPENDENCY: Final = re.compile(
+    r"<(?:(?:buildtool_|build_|build_export_|exec_|run_|test_)?depend)\b[^>]*>\s*([A-Za-z0-9_.-]+)\s*</"
+)
 _INSTALL_KEYWORDS: Final = ("DESTINATION", "PROGRAMS", "FILES", "DIRECTORY", "TARGETS", "RENAME", "PERMISSIONS")
 _INSTALL_KEYWORDS_OF_FOLDERS: Final = (
     *_INSTALL_KEYWORDS,
@@ -61,6 +64,16 @@ def package_name(package: Path) -> str:
     except OSError:
         match = None
     return match[1] if match else package.name
+
+
+def dependencies_of(package: Path) -> list[str]:
+    """Return the names of the packages that a `package.xml` depends on, each once, in their order."""
+    try:
+        text = read_input(package / "package.xml", _LARGEST, inside=package).decode(errors="replace")
+    except OSError:
+        return []
+    plain = re.sub(r"<!--.*?-->", "", text, flags=re.DOTALL)
+    return list(dict.fromkeys(match[1] for match in _DEPENDENCY.finditer(plain)))
 
 
 def executables_of(package: Path) -> dict[str, Executable]:

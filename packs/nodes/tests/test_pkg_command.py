@@ -44,6 +44,23 @@ def test_packages_and_executables_are_listed(workspace: Path) -> None:
     ]
 
 
+def test_executables_of_packages_of_ros_are_programs_of_simkit(workspace: Path) -> None:
+    names = ("draw_square", "mimic", "turtle_teleop_key", "turtlesim_node")
+    assert pkg("executables", "turtlesim").stdout == "".join(f"turtlesim {name}\n" for name in names)
+    assert "SK-NODE-060" in pkg("executables", "no_such_package").output
+
+
+def test_a_package_is_found_with_what_it_depends_on(workspace: Path) -> None:
+    folder = workspace / "src/wall_follower"
+    assert pkg("find", "wall_follower").stdout == f"{folder}\n"
+    file = folder / "package.xml"
+    file.write_text(
+        file.read_text().replace("</package>", "<!-- <depend>a</depend> --><run_depend>tf</run_depend></package>")
+    )
+    names = pkg("depends", "wall_follower").stdout.split()
+    assert {"rclpy", "tf"} <= set(names) and "a" not in names
+
+
 def test_the_prefix_of_a_source_package_is_its_folder(workspace: Path) -> None:
     folder = workspace / "src/wall_follower"
     assert pkg("prefix", "wall_follower").stdout == pkg("prefix", "wall_follower", "--share").stdout == f"{folder}\n"

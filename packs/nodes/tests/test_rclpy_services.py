@@ -300,3 +300,26 @@ def test_a_reset_starts_the_services_anew(write: Any) -> None:
             assert sim.call("/add", {"a": 2, "b": 40}).sum == 42
             sim.reset()
             sim.run(0.1)
+
+
+LOUDER = """
+import rclpy
+
+rclpy.init()
+node = rclpy.create_node("speaker", enable_logger_service=True)
+node.create_timer(0.1, lambda: node.get_logger().debug("details"))
+rclpy.spin(node)
+"""
+
+
+def test_the_levels_of_loggers_are_read_and_set_from_outside(write: Callable[[str, str], Path]) -> None:
+    with simkit.load(BALL) as sim:
+        node = sim.add_node(write("speaker", LOUDER))
+        sim.run(0.25)
+        assert node.log == []
+        levels = [{"name": "speaker", "level": 10}, {"name": "speaker", "level": 11}]
+        results = sim.call("/speaker/set_logger_levels", {"levels": levels}).results
+        assert [bool(result.successful) for result in results] == [True, False]
+        assert sim.call("/speaker/get_logger_levels", {"names": ["speaker"]}).levels[0].level == 10
+        sim.run(0.2)
+        assert len(node.log) == 2 and node.log[0].endswith("[speaker]: details")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -52,14 +53,26 @@ def test_nodes_are_plugins_and_sensors(yard: Any, simkit_line: Any) -> None:
     assert "SK-CLI-034" in simkit_line("node", "info", "/Tner").stderr
 
 
+def test_the_frames_are_drawn_as_a_pdf(yard: Any, simkit_line: Any, tmp_path: Path) -> None:
+    out = tmp_path / "frames.pdf"
+    assert simkit_line("tf", "frames", "-o", str(out), "--time", "0.3").stdout == f"{out}: 3 frames\n"
+    assert b"(odom) Tj" in out.read_bytes()
+    assert "SK-CLI-016" in simkit_line("tf", "frames", "-o", str(tmp_path / "frames.gv")).stderr
+
+
 def test_interfaces_are_shown_with_their_parts(simkit_line: Any) -> None:
     assert simkit_line("interface", "show", "geometry_msgs/msg/Twist").stdout == (
-        "geometry_msgs/Vector3 linear\n\tfloat64 x\n\tfloat64 y\n\tfloat64 z\n"
+        "# Velocity: linear and angular part\ngeometry_msgs/Vector3 linear\n\tfloat64 x\n\tfloat64 y\n\tfloat64 z\n"
         "geometry_msgs/Vector3 angular\n\tfloat64 x\n\tfloat64 y\n\tfloat64 z\n"
     )
     assert simkit_line("interface", "show", "std_srvs/srv/SetBool").stdout == (
-        "bool data\n---\nbool success\nstring message\n"
+        "# Switch something on or off\nbool data\n---\nbool success\nstring message\n"
     )
+    turn = simkit_line("interface", "show", "turtlesim/action/RotateAbsolute").stdout
+    assert turn.startswith("# Heading at the end of the turn [rad]")
+    assert "float32 angle_min  # [rad]\n" in simkit_line("interface", "show", "sensor_msgs/msg/LaserScan").stdout
+    plain = simkit_line("interface", "show", "sensor_msgs/msg/LaserScan", "--no-comments").stdout
+    assert "#" not in plain and "float32 angle_min\n" in plain
     assert simkit_line("interface", "show", "-", stdin="std_msgs/msg/String\n").stdout == "string data\n"
     proto = simkit_line("interface", "proto", "geometry_msgs/msg/PoseStamped", "--no-quotes").stdout
     assert yaml.safe_load(proto)["pose"]["orientation"] == {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}

@@ -130,7 +130,7 @@ class UriCandidates:
             self._models_of_project(name, inside, relative_to),
             self._models_of_packages(name, inside, relative_to),
         ):
-            if not inside and is_folder(candidate) and not holds_model(candidate):
+            if inside in ("", ".") and is_folder(candidate) and not holds_model(candidate):
                 without_model.append(candidate)
             else:
                 yield candidate

@@ -11,7 +11,9 @@ from typing import Final
 from simkit.recording.charts.canvas import printable
 from simkit.recording.graphs.layered_layout import layered_layout
 
-_MARGIN, _TITLE, _LINE, _PAD = 24.0, 40.0, 16.0, 10.0
+LINE_HEIGHT: Final = 16.0
+"""Distance of two lines of a box [px]."""
+_MARGIN, _TITLE, _PAD = 24.0, 40.0, 10.0
 _CHARACTER: Final = {True: 8.1, False: 6.5}  # [px] width of a character of a bold or a small text
 _LONGEST: Final = 44  # characters of a line
 _STYLE: Final = """
@@ -47,8 +49,8 @@ class GraphBox:
     def size(self) -> tuple[float, float]:
         """Return width and height [px]."""
         texts = [(self.head, True), *((line, False) for line in (self.above, *self.lines))]
-        width = max(len(_shortened(text)) * _CHARACTER[is_bold] for text, is_bold in texts)
-        return width + 2 * _PAD + 6, _LINE * (1 + len(self.lines) + bool(self.above)) + 12
+        width = max(len(shortened(text)) * _CHARACTER[is_bold] for text, is_bold in texts)
+        return width + 2 * _PAD + 6, LINE_HEIGHT * (1 + len(self.lines) + bool(self.above)) + 12
 
 
 @dataclass(frozen=True)
@@ -102,19 +104,19 @@ def _box(box: GraphBox, place: tuple[float, float, float, float]) -> str:
         f'<g><title>{_text(box.name)}</title><rect class="{box.kind}" x="{x:.1f}" y="{y:.1f}" '
         f'width="{width:.1f}" height="{height:.1f}" rx="{radius:.0f}"/>'
     ]
-    top = y + 6 + _LINE * 0.75
+    top = y + 6 + LINE_HEIGHT * 0.75
     lines = [
         *([(box.above, "small")] if box.above else []),
         (box.head, "head"),
         *((text, "small") for text in box.lines),
     ]
     for number, (line, role) in enumerate(lines):
-        at = f'x="{x + width / 2:.1f}" y="{top + number * _LINE:.1f}" text-anchor="middle"'
-        parts.append(f'<text class="{role}" {at}>{_text(_shortened(line))}</text>')
+        at = f'x="{x + width / 2:.1f}" y="{top + number * LINE_HEIGHT:.1f}" text-anchor="middle"'
+        parts.append(f'<text class="{role}" {at}>{_text(shortened(line))}</text>')
     return "".join([*parts, "</g>"])
 
 
-def _shortened(text: str) -> str:
+def shortened(text: str) -> str:
     """Leave out the middle of a long text."""
     if len(text) <= _LONGEST:
         return text

@@ -19,4 +19,10 @@ MISTAKES = {
         "interaction @ self.camera_jacobian()",
         "interaction[:, :3] @ self.camera_jacobian()[:3]",
     ),
+    "forgets the friction of the motors": (
+        "turns at least at wz_min outside of the dead zone",
+        "course_law.py",
+        "max(self.kp.value * abs(error), self.wz_min.value)",
+        "self.kp.value * abs(error)",
+    ),
 }

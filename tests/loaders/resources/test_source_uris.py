@@ -65,3 +65,15 @@ def test_a_world_finds_a_model_in_a_group_of_models_of_its_package(tmp_path: Pat
     (tmp_path / "package" / "package.xml").write_text("<package><name>package</name></package>", encoding="utf-8")
     with simkit.load(world) as sim:
         assert sim.model("box").name == "box"
+
+
+def test_a_folder_without_a_model_does_not_hide_the_model_of_its_name(tmp_path: Path) -> None:
+    """The world is in a project folder that has the name of a robot of simkit."""
+    folder = tmp_path / "turtlebot3_burger"
+    folder.mkdir()
+    (folder / "notes.txt").write_text("no model")
+    world = folder / "arena.sdf"
+    include = "<include><uri>model://turtlebot3_burger</uri></include>"
+    world.write_text(f"<sdf version='1.9'><world name='w'>{include}</world></sdf>")
+    with simkit.load(world) as sim:
+        assert list(sim.models) == ["turtlebot3_burger"]

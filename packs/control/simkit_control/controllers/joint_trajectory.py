@@ -206,6 +206,11 @@ class JointTrajectoryController(Controller):
         goal.canceled()
         self._next_trajectory = _HOLD
 
+    @property
+    def speed_scaling(self) -> float:
+        """Factor of the speed of trajectories; with 0.5, a trajectory takes twice its time."""
+        return self._scaling
+
     def _on_scaling(self, message: SpeedScalingFactor) -> None:
         if 0.0 <= message.factor <= _FASTEST:
             self._scaling = float(message.factor)

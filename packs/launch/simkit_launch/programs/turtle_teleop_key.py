@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import select
 import sys
 import termios
@@ -27,11 +28,15 @@ HEADINGS = {key: math.remainder(number * math.pi / 4, 2 * math.pi) for number, k
 
 
 def read_key() -> str:
-    """Wait for a key and return it; an arrow has three characters."""
-    key = sys.stdin.read(1)
-    if key == "\x1b" and select.select([sys.stdin], [], [], 0.01)[0]:
-        key += sys.stdin.read(2)
-    return key
+    """Wait for a key and return it; an arrow has three characters.
+
+    The characters are read without a buffer, which would hide the rest of an arrow from `select`.
+    """
+    file = sys.stdin.fileno()
+    key = os.read(file, 1)
+    if key == b"\x1b" and select.select([sys.stdin], [], [], 0.01)[0]:
+        key += os.read(file, 2)
+    return key.decode(errors="replace")
 
 
 def main() -> None:
@@ -55,11 +60,11 @@ def main() -> None:
                 command.linear.x = ARROWS[key][0] * linear
                 command.angular.z = ARROWS[key][1] * angular
                 publisher.publish(command)
-            elif key in HEADINGS and client.server_is_ready():
-                sent = client.send_goal_async(RotateAbsolute.Goal(theta=HEADINGS[key]))
+            elif key.lower() in HEADINGS and client.server_is_ready():
+                sent = client.send_goal_async(RotateAbsolute.Goal(theta=HEADINGS[key.lower()]))
                 rclpy.spin_until_future_complete(node, sent)
                 goal = sent.result()
-            elif key == "f" and goal is not None:
+            elif key in ("f", "F") and goal is not None:
                 goal.cancel_goal_async()
     except KeyboardInterrupt:
         pass

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 motion = typer.Typer(help="List and play the named motions of a robot.", no_args_is_help=True)
 
 ROBOT = "tiago"
+SPEED_SCALE = "control_msgs/msg/SpeedScalingFactor"
 Motions = Annotated[
     list[Path], option("Additional motion file (play_motion or play_motion2); repeatable.", "FILE.yaml", "--motions")
 ]
@@ -94,6 +95,10 @@ def play(
     skip_planning: Annotated[
         bool, Option("--skip-planning", help="Do not check for collisions on the way to the first point.")
     ] = False,
+    speed: Annotated[
+        float,
+        Option("--speed", help="Speed scale of all trajectories, 0.01 to 1.", min=0.01, max=1.0, metavar="FACTOR"),
+    ] = 1.0,
     record: Annotated[Path | None, option("Bag to write: NAME.mcap, else a rosbag2 folder.", "OUT")] = None,
     force: options.Force = False,
     picture: Annotated[Path | None, option("Picture of the scene at the end, to write.", "OUT.png")] = None,
@@ -114,6 +119,7 @@ def play(
     shown = []
     with ExitStack() as stack:
         sim = stack.enter_context(_open_world(world, robot, motions, given.load_arguments(), verbose=verbose))
+        _scale_speed(sim, speed)
         if picture is not None:
             check_available(sim)
         if record is not None:
@@ -128,6 +134,15 @@ def play(
             _draw(sim, picture)
     if json_:
         stdout_console().file.write(json.dumps(shown, indent=2) + "\n")
+
+
+def _scale_speed(sim: Simulation, factor: float) -> None:
+    """Send a speed scale to all trajectory controllers."""
+    if factor == 1.0:
+        return
+    for topic, kind in sim.topics().items():
+        if kind == SPEED_SCALE:
+            sim.publish(topic, {"factor": factor})
 
 
 def _open_world(

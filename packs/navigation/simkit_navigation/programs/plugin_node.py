@@ -70,7 +70,8 @@ class PluginHost:
         placed = [model.placed(item) for item in found]
         reports.extend(placed)
         missing = [name for name in names if f"{self._model}::{name}" not in self._sim.plugins]
-        return [str(item) for item in placed if item.code.startswith(("SK-PARAM", "SK-PLUGIN"))] if missing else []
+        codes = ("SK-PARAM", "SK-PLUGIN", "SK-BT", "SK-XML")
+        return [str(item) for item in placed if item.code.startswith(codes)] if missing else []
 
     def _names(self, arguments, space):
         """Return namespace and remappings of the node as elements; transforms have one topic for all."""

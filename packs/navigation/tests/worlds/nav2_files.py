@@ -42,7 +42,7 @@ controller_server:
     goal_checker_plugins: [checker]
     checker: {{plugin: "nav2_controller::SimpleGoalChecker", xy_goal_tolerance: 0.08, yaw_goal_tolerance: 0.1}}
     controller_plugins: [FollowPath]
-    FollowPath: {{plugin: "dwb_core::DWBLocalPlanner", max_vel_x: 0.4, max_vel_theta: 1.2, sim_time: 1.7}}
+    FollowPath: {{plugin: "teb_local_planner::TebLocalPlannerROS", max_vel_x: 0.4, max_vel_theta: 1.2}}
 local_costmap:
   local_costmap:
     ros__parameters:{COSTMAP}

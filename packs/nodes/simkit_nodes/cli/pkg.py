@@ -14,6 +14,7 @@ from simkit.cli.terminal.output import print_json, print_line, print_status
 from simkit.extend import GivenOptions, argument, option, report_errors, with_run_options
 
 if TYPE_CHECKING:
+    from simkit_nodes.packages import Executable
     from simkit_nodes.workspace import Workspace
 
 LISTED_AFTER = "node"
@@ -50,12 +51,23 @@ def executables(
     given: GivenOptions = NONE_GIVEN,
     json_: options.Json = False,
 ) -> None:
-    """Print `PACKAGE EXECUTABLE` for each executable in Python; `simkit run --node PACKAGE/EXECUTABLE` starts it."""
+    """Print `PACKAGE EXECUTABLE` for each executable in Python; `simkit run --node PACKAGE/EXECUTABLE` starts it.
+
+    With the name of a package of ROS, such as turtlesim, these are the programs that simkit has for its executables.
+    """
     from simkit_nodes.packages import executables_of
 
     workspace = _workspace(given)
-    folders = workspace.packages() if package is None else {package: workspace.required_package(package)}
+    of_simkit = [] if package is None else _known_executables(package)
+    if package is None:
+        folders = workspace.packages()
+    elif of_simkit and workspace.package(package) is None:
+        folders = {}
+    else:
+        folders = {package: workspace.required_package(package)}
     listed = [executable for folder in folders.values() for executable in executables_of(folder).values()]
+    names = {executable.name for executable in listed}
+    listed = sorted([*listed, *(e for e in of_simkit if e.name not in names)], key=lambda e: (e.package, e.name))
     if json_:
         print_json([{"package": e.package, "name": e.name, "file": str(e.file)} for e in listed])
         return
@@ -63,6 +75,39 @@ def executables(
         print_line(str(executable.file) if full_path else f"{executable.package} {executable.name}")
     if not listed:
         print_status("no executables in Python")
+
+
+def _known_executables(package: str) -> list[Executable]:
+    """Return the programs that simkit has for the executables of a package of ROS."""
+    from simkit_nodes.known_nodes import known_node, known_node_names
+    from simkit_nodes.packages import Executable
+
+    names = [name for name in known_node_names() if name.startswith(f"{package}/") and "*" not in name]
+    nodes = [node for name in names if "::" not in name and (node := known_node(name)) is not None]
+    return [Executable(package, node.name.rpartition("/")[2], node.file) for node in nodes if node.file is not None]
+
+
+@pkg.command()
+@report_errors
+@with_run_options("package_paths")
+def depends(package: Package, given: GivenOptions = NONE_GIVEN, json_: options.Json = False) -> None:
+    """Print the packages that a package names in its `package.xml`, as `rospack depends1`."""
+    from simkit_nodes.packages import dependencies_of
+
+    names = dependencies_of(_workspace(given).required_package(package))
+    if json_:
+        print_json(names)
+        return
+    for name in names:
+        print_line(name)
+
+
+@pkg.command()
+@report_errors
+@with_run_options("package_paths")
+def find(package: Package, given: GivenOptions = NONE_GIVEN) -> None:
+    """Print the folder of a package, as `rospack find`; `cd $(simkit pkg find PACKAGE)` is `roscd PACKAGE`."""
+    print_line(str(_workspace(given).required_package(package)))
 
 
 @pkg.command()

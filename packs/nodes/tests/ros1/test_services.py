@@ -36,6 +36,26 @@ def test_a_client_gets_the_sum_of_a_server(sim: Any, add: Any, texts: Any) -> No
     assert [texts(client) for client in clients] == [["3 7 11"]] * 3 + [["1 1 1"]]
 
 
+def test_the_level_of_the_log_is_read_and_set_from_outside(sim: Any, add: Any, texts: Any) -> None:
+    node = add(
+        """
+        import rospy
+        rospy.init_node("speaker")
+        while not rospy.is_shutdown():
+            rospy.logdebug("details")
+            rospy.sleep(0.1)
+        """,
+        "speaker",
+    )
+    sim.run(0.25)
+    (logger,) = sim.call("/speaker/get_loggers").loggers
+    assert (logger.name, logger.level, texts(node)) == ("rosout", "info", [])
+    sim.call("/speaker/set_logger_level", {"logger": "rosout", "level": "debug"})
+    sim.run(0.2)
+    assert texts(node) == ["details"] * 2
+    assert sim.call("/speaker/get_loggers").loggers[0].level == "debug"
+
+
 def test_a_script_calls_a_service_of_a_program(sim: Any, add: Any) -> None:
     add(SERVER.replace("{values}", "request.a + request.b"))
     sim.run(0.01)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterable
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -12,7 +13,14 @@ from typer import Argument, Option
 
 from simkit.cli.terminal import options
 from simkit.cli.terminal.frame_tree import receive_transforms
-from simkit.cli.terminal.output import not_found_error, print_json, print_line, print_name, report_errors_quietly
+from simkit.cli.terminal.output import (
+    not_found_error,
+    print_json,
+    print_line,
+    print_name,
+    printable,
+    report_errors_quietly,
+)
 from simkit.cli.terminal.topic_sources import open_source
 from simkit.errors import InputError, TransformError
 from simkit.extend import option
@@ -58,6 +66,37 @@ def tree(
             print_name(text)
     else:
         print_line("no transforms received")
+
+
+@tf.command("frames")
+@report_errors_quietly
+def draw_frames(
+    output: Annotated[Path, option("Chart to write: OUT.pdf or OUT.svg.", "OUT", "--output", "-o")] = Path(
+        "frames.pdf"
+    ),
+    topic: Topics = [],
+    duration: Annotated[float, option("Wall time for collecting transforms.", "S", "--time", min=0)] = _COLLECTION_TIME,
+    sim: options.Sim = None,
+    bag: options.Bag = None,
+    json_: options.Json = False,
+) -> None:
+    """Draw the tree of frames, as `ros2 run tf2_tools view_frames` does. Dashed lines are static transforms."""
+    from simkit.msgs.transform_tree import TransformTree
+    from simkit.recording.graphs.graph_contents import frame_graph
+    from simkit.recording.graphs.graph_file import check_graph_file, write_graph
+
+    check_graph_file(output)
+    frames = TransformTree()
+    with open_source(sim, bag) as source:
+        for _ in receive_transforms(source, frames, topic or None, duration=duration):
+            pass
+        where = source.where
+    boxes, edges = frame_graph(frames)
+    write_graph(output, printable(f"Frames of {where}"), boxes, edges)
+    if json_:
+        print_json({"output": str(output), "frames": len(boxes), "edges": len(edges)})
+    else:
+        print_line(f"{output}: {len(boxes)} frame{'' if len(boxes) == 1 else 's'}")
 
 
 @tf.command()

@@ -17,6 +17,7 @@ from simkit.writers.atomic_output import check_writable
 
 if TYPE_CHECKING:
     from simkit_verification.testing.grading.exercise_grading import LabHandIn
+    from simkit_verification.testing.grading.report_words import ReportWords
 
 _FAILED = 5
 DEFAULT_LIMIT = 5.0  # [s]
@@ -62,10 +63,12 @@ def grade_files(
     allow_code: bool = False,
     plugin_paths: Sequence[Path] = (),
     folders: Sequence[FilePath] = (),
+    words: ReportWords | None = None,
 ) -> int:
     """Grade plugins, print the results, and return the exit code; the arguments are those of the command.
 
-    For the hand-in of a lab, `lab` has its files, and `exercises` are those of the lab.
+    For the hand-in of a lab, `lab` has its files, and `exercises` are those of the lab. `words` has the language of the
+    report; None for English.
 
     Raises:
         LoadError: an exercise has problems, or SK-SCEN-008 it names code that is not allowed.
@@ -74,7 +77,9 @@ def grade_files(
     from simkit.testing.scenarios.code_permission import check_requests
     from simkit_verification.testing.grading.exercise import read_exercise
     from simkit_verification.testing.grading.exercise_grading import grade_all, grade_json, grade_text, junit_cases
+    from simkit_verification.testing.grading.report_words import ENGLISH
 
+    words = words or ENGLISH
     check_writable(junit)
     tasks = [
         read_exercise(exercise, folders, allow_code=allow_code, plugin_paths=plugin_paths) for exercise in exercises
@@ -94,7 +99,7 @@ def grade_files(
         for result in grade_all(task, of_task, folder, jobs, limit=limit, lab=lab, stopped=stopped):
             grades.append(result)
             if not json_:
-                for line in grade_text(result):
+                for line in grade_text(result, words):
                     stdout_console().print(line)
     if json_:
         print_json([grade_json(result) for result in grades])
@@ -105,9 +110,10 @@ def grade_files(
     if len(grades) > 1 and not json_:
         stdout_console().print("")
         for result in grades:
-            state = "passed" if result.passed else "not passed"
-            name = result.hand_in if len(tasks) == 1 else result.exercise.title
-            stdout_console().print(f"{result.points:>6g} of {result.worth:g}  {state:<11}{name}")
+            state = words.passed if result.passed else words.not_passed
+            name = result.hand_in if len(tasks) == 1 else words.translated(result.exercise.title)
+            points = words.points.format(points=result.points, worth=result.worth)
+            stdout_console().print(f"    {points:<10}  {state:<11}{name}")
     return 0 if all(result.passed for result in grades) else _FAILED
 
 

@@ -22,12 +22,17 @@ from simkit.loaders.resources.bundled_models import bundled_folders
 from simkit.writers.atomic_output import copy_failure, remove_abandoned, unfinished_folder
 from simkit_verification.cli.grade import DEFAULT_LIMIT, CallbackLimit, grade_files
 
+Language = Annotated[
+    str, option("Language of the texts: en or fr; the default is that of the environment (LC_ALL, LANG).", "LANGUAGE")
+]
+
 lab = typer.Typer(help="List, start and grade the labs of the course.", no_args_is_help=True)
 
 _EXERCISE = "exercise.yaml"
 _MARKER = ".simkit-lab"  # file with the name of the lab in a folder that `start` made
 _NAME_LIMIT = 1000  # bytes of this file
 _SOLUTION = "solution"
+_TRANSLATED_README = "README.{}.md"
 _REQUIREMENTS = "requirements.txt"  # packages that a lab needs beside simkit, one in a line
 
 
@@ -75,9 +80,10 @@ def start(
     name: Annotated[str, argument("Name of the lab; its number is enough.", "NAME", _complete)],
     folder: Annotated[Path, argument("New folder of the lab.", "DIR")],
     solution: Annotated[bool, Option("--solution", help="Write a solution instead of the student's file.")] = False,
+    lang: Language = "",
 ) -> None:
     """Copy a lab into a new folder."""
-    source = _named_lab(name)
+    source, language = _named_lab(name), _language(lang)
     target = folder.absolute()
     if target.exists() and (not target.is_dir() or any(target.iterdir())):
         raise _not_writable(folder, "it exists and is not an empty folder")
@@ -107,7 +113,10 @@ def start(
     missing = _missing_packages(target)
     if missing:
         print_line(f"this lab needs {' and '.join(missing)}: {_remedy(missing)}")
-    print_line(f"read {folder / 'README.md'}, then run: simkit lab grade {folder}")
+    translated = _TRANSLATED_README.format(language)
+    readme = translated if (target / translated).is_file() else "README.md"
+    again = f" --lang {lang}" if lang else ""
+    print_line(f"read {folder / readme}, then run: simkit lab grade {folder}{again}")
 
 
 def _missing_packages(folder: Path) -> list[str]:
@@ -148,13 +157,16 @@ def grade(
     jobs: Annotated[int, option("Number of parallel processes.", "N", min=1, max=256)] = 1,
     limit: CallbackLimit = DEFAULT_LIMIT,
     allow_code: options.AllowCode = False,
+    lang: Language = "",
     json_: options.Json = False,
 ) -> int:
     """Grade the exercises of the lab in a folder: exit code 0 for full points, 5 otherwise."""
     from simkit_verification.testing.grading.exercise import read_exercise
     from simkit_verification.testing.grading.exercise_grading import LabHandIn
     from simkit_verification.testing.grading.lab_files import changed_files, hand_in_files
+    from simkit_verification.testing.grading.report_words import read_words
 
+    language = _language(lang)
     source, exercises = _graded_lab(folder, name, exercise)
     missing = _missing_packages(source)
     if missing:
@@ -168,8 +180,20 @@ def grade(
         tell(f"note: not used, because the lab has its own: {', '.join(changed)}")
     return grade_files(
         exercises, pictures=pictures, jobs=jobs, limit=limit, lab=LabHandIn(folder, tuple(files)), json_=json_,
+        words=read_words(source, language),
         allow_code=allow_code or exercise is None,  # the code of the installed lab is simkit's own
     )  # fmt: skip
+
+
+def _language(name: str) -> str:
+    """Return the language of an option, or that of the environment if the option is empty.
+
+    Raises:
+        InputError: SK-CLI-018 the labs have no such language.
+    """
+    from simkit_verification.testing.grading.report_words import LANGUAGES, default_language
+
+    return options.validate_word("--lang", name, LANGUAGES) if name else default_language()
 
 
 def _graded_lab(folder: Path, name: str, exercise: Path | None) -> tuple[Path, list[Path]]:

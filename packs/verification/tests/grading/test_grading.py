@@ -19,6 +19,7 @@ from simkit_verification.testing.grading.exercise_grading import (
     junit_cases,
     short_labels,
 )
+from simkit_verification.testing.grading.report_words import read_words
 
 CART = """<sdf version="1.9"><world name="track"><model name="cart"><pose>0 0 0.05 0 0 0</pose><link name="body">
 <gravity>false</gravity><inertial><mass>1</mass></inertial></link></model></world></sdf>"""
@@ -85,8 +86,25 @@ def test_a_plugin_that_raises_is_reported_with_its_line(folder):
     file = hand_in(folder, "self.cart.set_velocity((1 / 0, 0, 0))")
     graded = grade(read_exercise(folder / "push.yaml"), file)
     assert not graded.passed and graded.points == 0.0
-    assert "ZeroDivisionError" in graded.outcomes[0].error
-    assert "push.py:10: self.cart.set_velocity((1 / 0, 0, 0))" in graded.outcomes[0].error
+    sentence, code = graded.outcomes[0].error.splitlines()
+    assert sentence == "push.py:10: ZeroDivisionError: division by zero, in before_step at t = 0 s"
+    assert code == "self.cart.set_velocity((1 / 0, 0, 0))"
+    text = "\n".join(grade_text(graded))
+    assert "hint:" not in text and "required:" not in text  # they are not about the exception
+
+
+def test_a_failed_check_tells_the_value_and_the_condition(folder):
+    hand_in(folder, "pass")
+    graded = grade(read_exercise(folder / "push.yaml"), folder / "push.py")
+    text = "\n".join(grade_text(graded))
+    assert "was 0" in text and "          required: " in text
+    french = "\n".join(grade_text(graded, read_words(folder, "fr")))
+    assert "ÉCHEC" in french and "indice : push it" in french
+    (folder / "messages.fr.yaml").write_text("push it: poussez-le\n")
+    assert "indice : poussez-le" in "\n".join(grade_text(graded, read_words(folder, "fr")))
+    (folder / "messages.fr.yaml").write_text("[push it]\n")
+    with pytest.raises(InputError, match="not a mapping from texts to texts"):
+        read_words(folder, "fr")
 
 
 def test_a_plugin_that_ends_the_process_gets_no_points(folder):

@@ -45,6 +45,7 @@ SCENE: Final = "moveit_msgs/srv/GetPlanningScene"
 MOVE: Final = "moveit_msgs/action/MoveGroup"
 EXECUTE: Final = "moveit_msgs/action/ExecuteTrajectory"
 _FINGERS: Final = ("gripper", "finger", "hand")
+_OWN_PLANNER: Final = "RRTConnect"
 
 
 class GroupOptions(Options):
@@ -131,6 +132,7 @@ class MoveGroup(ModelPlugin):
         self._fingers = tuple(name for name in parent.joints if any(word in name for word in _FINGERS))
         self._scene = PlanningScene(frozenset(frozenset((o.link1, o.link2)) for o in options.disable_collisions))
         self._executions: list[Execution] = []
+        self._replaced_planners: list[str] = []
         self.offer("compute_fk", FK, self._answers(self._compute_fk))
         self.offer("compute_ik", IK, self._answers(self._compute_ik))
         self.offer("plan_kinematic_path", PLAN, self._plan_kinematic_path)
@@ -287,8 +289,15 @@ class MoveGroup(ModelPlugin):
                 unreachable.append(error)
         if not goals:
             raise unreachable[0]
+        self._tell_planner(str(asked.planner_id))
         factors = float(asked.max_velocity_scaling_factor), float(asked.max_acceleration_scaling_factor)
         return planner.plan(goals, float(asked.allowed_planning_time), *factors)
+
+    def _tell_planner(self, name: str) -> None:
+        """Write to the log, once for each name, that another planner was requested than the one that plans."""
+        if name and _OWN_PLANNER not in name and name not in self._replaced_planners:
+            self._replaced_planners.append(name)
+            self.log.warning("the planner %r does not exist here; RRT-Connect plans instead", name)
 
     def _compute_cartesian_path(self, request: Message) -> dict[str, object]:
         group, frames = self._find_group(request.group_name), self._frames()

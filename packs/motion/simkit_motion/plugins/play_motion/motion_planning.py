@@ -52,11 +52,13 @@ class TrajectoryController:
         name: Name of the controller.
         action: Name of its action.
         joints: All joints of the controller, in its order.
+        speed_scaling: Factor of the speed of its trajectories.
     """
 
     name: str
     action: str
     joints: tuple[str, ...]
+    speed_scaling: float = 1.0
 
 
 def active_controllers(sim: Simulation, robot: Model) -> list[TrajectoryController]:
@@ -74,7 +76,7 @@ def active_controllers(sim: Simulation, robot: Model) -> list[TrajectoryControll
             interfaces = controller.command_interfaces()
             joints = dict.fromkeys(name.rpartition("/")[0] for name in interfaces if "/" in name)
             action = plugin.ros.topic(controller.topic("~/follow_joint_trajectory"))
-            controllers.append(TrajectoryController(name, action, tuple(joints)))
+            controllers.append(TrajectoryController(name, action, tuple(joints), controller.speed_scaling))
     return controllers
 
 

@@ -41,6 +41,7 @@ ROS_2_RAW: Final = "play_motion2_msgs/action/PlayMotion2Raw"
 ROS_1: Final = "play_motion_msgs/action/PlayMotion"
 SUCCEEDED, MOTION_NOT_FOUND, CONTROLLER_BUSY, TRAJECTORY_ERROR, GOAL_NOT_REACHED = 1, -1, -3, -5, -6
 _TRAJECTORY_RESULTS: Final = {-4: TRAJECTORY_ERROR, -5: GOAL_NOT_REACHED}
+_SLOWEST: Final = 0.01  # smallest speed scale that the time limit of a motion takes into account
 _GRIPPER_WORDS: Final = ("gripper", "finger", "hand")
 
 
@@ -242,7 +243,9 @@ class PlayMotion(ModelPlugin):
         except MotionRefused as refused:
             self._refuse(goal, refused, rejects=not is_accepted)
             return
-        until = self.sim.time_ns + round((2.0 * course.duration + 1.0) * 1e9)
+        slowest = min((controller.speed_scaling for controller in needed), default=1.0)
+        longest = 2.0 * course.duration / min(max(slowest, _SLOWEST), 1.0) + 1.0
+        until = self.sim.time_ns + round(longest * 1e9)
         run = _RunningMotion(goal, motion.key, names, course.duration, until)
         self._runs.append(run)
         for controller in needed:

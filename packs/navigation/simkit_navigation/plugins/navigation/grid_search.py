@@ -29,6 +29,7 @@ _STEPS: Final = (
 _STRAIGHT: Final = 4
 _DETOUR: Final = 0.25  # part of the straight way's cost by which a path may be dearer before A* searches everything
 _SAME: Final = 1e-12  # relative difference of two costs that are the same but for rounding errors
+_LEAST_STEP: Final = 1e-9  # relative cost of a step that is no rounding error
 _FINITE: Final = 1e300  # an edge into a blocked cell has an infinite cost, and lies beyond this limit
 
 
@@ -86,7 +87,8 @@ class Search:
             there = row - up, column - right
             if 0 <= there[0] < self.costs.shape[0] and 0 <= there[1] < self.costs.shape[1]:
                 cost, step = float(self.costs[there]), float(self.steps[there[0] + 1, there[1] + 1, index])
-                if step > 0.0 and cost + step <= present + _SAME * abs(present):
+                # a step that costs nothing may lead around in a circle
+                if step > _LEAST_STEP * present and cost + step <= present + _SAME * present:
                     cheapest.append((-up, -right))
         return cheapest
 
@@ -133,7 +135,7 @@ def search(
     return Search(begin, inner, costs, before)
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=2)
 def _edges(rows: int, columns: int, steps: int) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]:
     """Return the neighbours of all cells of a grid with a border of one cell, and where those of each cell begin."""
     width, size = columns + 2, (rows + 2) * (columns + 2)

@@ -11,8 +11,7 @@ import numpy.typing as npt
 
 from simkit import Pose, msgs
 from simkit.errors import ArgumentValueError, TransformError
-from simkit.extend import Options, SharedByCopies, boolean, choice, number, text
-from simkit.msgs.point_arrays import read_points
+from simkit.extend import Options, boolean, choice, number, text
 from simkit_navigation.plugins.navigation.planar_pose import Floats
 
 if TYPE_CHECKING:
@@ -47,7 +46,7 @@ class SourceOptions(Options):
 
 
 @dataclass(frozen=True, eq=False)
-class Observation(SharedByCopies):
+class Observation:
     """Points that a sensor saw at one time.
 
     Attributes:
@@ -168,6 +167,8 @@ def _observe(
     if options.sensor_frame:
         found = find_pose(node, frame, message, options.sensor_frame)
         if found is None:
+            text = f"there is no transform from {options.sensor_frame!r} (<sensor_frame>) to {frame!r}"
+            node.report_once(f"frame {options.topic}", f"{text}; messages on {options.topic} are ignored")
             return None
         origin = found[0]
     x, y, z = transformed(pose, points)
@@ -201,7 +202,7 @@ def points_of_scan(scan: msgs.LaserScan, inf_is_valid: bool) -> Points | None:
 def points_of_cloud(node: CostmapNode, cloud: msgs.PointCloud2, topic: str) -> Points | None:
     """Return the finite points of a point cloud in its frame; None, with an error once, if it has no x, y and z."""
     try:
-        points = read_points(cloud)
+        points = msgs.points(cloud)
         x, y, z = (np.asarray(points[axis], np.float32) for axis in ("x", "y", "z"))
     except (ArgumentValueError, ValueError) as error:
         node.report_once(f"cloud {topic}", f"a point cloud on {topic} is ignored: {error}")

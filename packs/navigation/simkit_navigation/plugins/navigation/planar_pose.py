@@ -37,6 +37,10 @@ class PlanarPose(NamedTuple):
         cos, sin = math.cos(self.yaw), math.sin(self.yaw)
         return PlanarPose(-cos * self.x - sin * self.y, sin * self.x - cos * self.y, -self.yaw)
 
+    def distance(self, other: PlanarPose) -> float:
+        """Return the distance between the positions of two poses [m]."""
+        return math.hypot(self.x - other.x, self.y - other.y)
+
     def transform(self, points: Floats) -> Floats:
         """Return points of this pose's frame, shape (n, 2) [m], in the frame in which this pose is given."""
         cos, sin = math.cos(self.yaw), math.sin(self.yaw)

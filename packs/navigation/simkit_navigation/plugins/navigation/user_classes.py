@@ -7,7 +7,7 @@ from functools import partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from simkit import Plugin
+from simkit import Params, Plugin
 from simkit.extend import SharedByCopies
 from simkit.msgs import Message
 from simkit.plugins.attribute_state import copy_attributes, restore_attributes
@@ -74,6 +74,19 @@ class ServerPlugin(NodeParameters):
             part = self._parts.by_name[name] = cls()
             if callable(getattr(part, begin, None)):
                 getattr(part, begin)(self, block)
+
+    def find_class(
+        self, name: str, wanted: str, block: Params, known: Mapping[str, type[object]]
+    ) -> type[object] | None:
+        """Return a class of a user or of simkit, by the rules of `make_parts`; None after an error.
+
+        Args:
+            name: name of the block of parameters.
+            wanted: name of the class.
+            block: block of parameters.
+            known: classes of simkit by their name in Nav2.
+        """
+        return _class(self, ScenePlugin(name, wanted, self.scoped, block, block.where), known, {})
 
     def receive(self, topic: str, type_name: str, parameter: str, callback: Callable[[Message], None]) -> Subscription:
         """Call a function with each message of a type; messages of another type are ignored after a warning.

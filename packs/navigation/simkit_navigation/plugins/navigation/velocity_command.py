@@ -26,9 +26,10 @@ class VelocityCommand(SharedByCopies):
         self._plugin, self._frame = plugin, frame
         self._publisher: Publisher = plugin.advertise("cmd_vel", _TWIST if frame is None else _STAMPED)
 
-    def publish(self, speeds: tuple[float, float]) -> None:
-        """Publish a forward speed [m/s] and a turning rate [rad/s]."""
-        twist = {"linear": {"x": speeds[0]}, "angular": {"z": speeds[1]}}
+    def publish(self, speeds: tuple[float, ...]) -> None:
+        """Publish a forward speed [m/s] and a turning rate [rad/s]; of three, the second is to the left [m/s]."""
+        forward, *aside, rate = speeds
+        twist = {"linear": {"x": forward, "y": aside[0] if aside else 0.0}, "angular": {"z": rate}}
         if self._frame is None:
             self._publisher.publish(msgs.make(_TWIST, **twist))
         else:

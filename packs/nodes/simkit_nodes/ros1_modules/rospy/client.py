@@ -11,6 +11,7 @@ import yaml
 from simkit_nodes import ros1_names as names
 from simkit_nodes.ros1_modules.rospy.exceptions import ROSException, ROSInitException, ROSInterruptException
 from simkit_nodes.ros1_modules.rospy.log import DEBUG, ERROR, FATAL, INFO, WARN, node_log
+from simkit_nodes.ros1_modules.rospy.logger_services import offer_logger_services
 from simkit_nodes.ros1_modules.rospy.ros_node import RosNode, ros_node
 from simkit_nodes.ros1_modules.rospy.rostime import limit_ns
 from simkit_nodes.ros1_modules.rospy.topics import Subscriber
@@ -91,6 +92,7 @@ def init_node(
         node_log().level = log_level
     _set_private_parameters(node, name, words)
     node.begin(name, handles_signals=not disable_signals)
+    offer_logger_services(node)
 
 
 def _set_private_parameters(node: RosNode, name: str, words: list[str]) -> None:

@@ -31,6 +31,7 @@ from simkit_nodes.ros_modules.rclpy.guard_condition import GuardCondition
 from simkit_nodes.ros_modules.rclpy.impl.implementation_singleton import Handle, NodeNameNonExistentError, RCLError
 from simkit_nodes.ros_modules.rclpy.impl.rcutils_logger import RcutilsLogger, log_state
 from simkit_nodes.ros_modules.rclpy.logging import get_logger
+from simkit_nodes.ros_modules.rclpy.logging_service import LoggingService
 from simkit_nodes.ros_modules.rclpy.node_parameters import NodeParameters
 from simkit_nodes.ros_modules.rclpy.node_queries import NodeQueries
 from simkit_nodes.ros_modules.rclpy.node_services import NodeServices
@@ -78,7 +79,7 @@ class Node(NodeParameters, NodeServices, NodeQueries):
         allow_undeclared_parameters: True if parameters need no declaration.
         automatically_declare_parameters_from_overrides: True to declare all values of `parameter_overrides` and of
             the command line.
-        enable_logger_service: has no effect.
+        enable_logger_service: True opens the services for the levels of loggers.
 
     Raises:
         NotInitializedException: `rclpy.init` was not called.
@@ -137,6 +138,8 @@ class Node(NodeParameters, NodeServices, NodeQueries):
         self._time_source.attach_clock(self._clock)
         if start_parameter_services:
             self._parameter_service = ParameterService(self)
+        if enable_logger_service:
+            self._logger_service = LoggingService(self)
         self._declare_type_description()
 
     def _read_arguments(self, cli_args: Sequence[str] | None, use_global_arguments: bool) -> RosArguments:

@@ -108,11 +108,11 @@ class GlobalParameters:
             ordered = sorted(names)
             values = self._client.call(f"{node}/get_parameters", {"names": ordered}).values
             for name, value in zip(ordered, values, strict=True):
-                *above, last = [*parts[len(prefix) :], *name.split(".")]
+                path: list[str] = parts[len(prefix) :] + str(name).split(".")
                 branch = tree
-                for part in above:
+                for part in path[:-1]:
                     branch = branch.setdefault(part, {})
-                branch[last] = plain_value(value)
+                branch[path[-1]] = plain_value(value)
         return tree
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from simkit import Check
 from simkit.child_process import ChildProcesses
 from simkit.errors import InputError
 from simkit.float_sum import float_sum
@@ -21,6 +22,7 @@ from simkit.run_spec import FilePath, JsonObject
 from simkit.testing.junit import JunitCase
 from simkit_verification.testing.grading.callback_limit import DEFAULT_LIMIT, is_debugged
 from simkit_verification.testing.grading.exercise import Exercise, ExerciseRun, permit_exercise
+from simkit_verification.testing.grading.report_words import ENGLISH, ReportWords
 
 _JUDGE: Final = "simkit_verification.testing.grading.judge_process"  # module of the child process
 _SPARE_SECONDS: Final = 60.0  # additional wall time for starting and ending the processes of a run [s]
@@ -39,7 +41,8 @@ class CheckGrade:
         message: Result with the measured values.
         points: Achieved points.
         worth: Achievable points.
-        hint: Hint for a check that failed.
+        hint: Hint for a check that failed; empty if the run ended early, for another reason.
+        required: Condition that did not hold; empty for a check that passed, has no condition, or was not decided.
         time: Simulated time at which the result was known [s].
     """
 
@@ -50,6 +53,7 @@ class CheckGrade:
     worth: float
     hint: str = ""
     time: float = 0.0
+    required: str = ""
 
 
 @dataclass(frozen=True)
@@ -236,11 +240,17 @@ class _Grader:
             if hand_in in self._stopped:  # told once, also by runs at the same time
                 result["error"] = _NOT_STARTED
             self._stopped.add(hand_in)
-        results = result.get("results") or [(False, "the run ended early", result["time"])] * len(checks)
-        marks = [
-            CheckGrade(title, passed, message, worth if passed else 0.0, worth, "" if passed else hint, time)
-            for (title, worth, hint), (passed, message, time) in zip(checks, results, strict=True)
-        ]
+        results = result.get("results")
+        if results:
+            marks = [
+                _check_grade(check, passed, message, time)
+                for check, (passed, message, time) in zip(checks, results, strict=True)
+            ]
+        else:
+            marks = [
+                CheckGrade(check.title, False, "the run ended early", 0.0, check.points, time=result["time"])
+                for check in checks
+            ]
         printed = result.get("printed", "")
         seed = variation.scenario.seed
         return RunGrade(variation.name, seed, result["time"], tuple(marks), result.get("error", ""), printed)
@@ -282,11 +292,19 @@ class _Grader:
         return result
 
 
-def _required_checks(variation: ExerciseRun) -> list[tuple[str, float, str]]:
-    """Return title, points and hint of all checks in the order of the results."""
+def _required_checks(variation: ExerciseRun) -> list[Check]:
+    """Return all checks in the order of the results."""
     scenario = variation.scenario
-    until = [(f"until {scenario.until}", 1.0, "")] if scenario.until else []
-    return until + [(check.title, check.points, check.hint) for check in scenario.checks]
+    until = [Check("goal", f"until {scenario.until}", scenario.until)] if scenario.until else []
+    return [*until, *scenario.checks]
+
+
+def _check_grade(check: Check, passed: bool, message: str, time: float) -> CheckGrade:
+    """Return the grade of a check of a complete run."""
+    if passed:
+        return CheckGrade(check.title, True, message, check.points, check.points, time=time)
+    required = "" if check.title.endswith(check.expression) else check.expression
+    return CheckGrade(check.title, False, message, 0.0, check.points, check.hint, time, required)
 
 
 def _read_process_result(target: Path, token: str, count: int) -> JsonObject | None:
@@ -300,26 +318,35 @@ def _read_process_result(target: Path, token: str, count: int) -> JsonObject | N
     return result if "error" in result or "fault" in result or len(result.get("results", ())) == count else None
 
 
-def grade_text(graded: Grade) -> Iterator[str]:
-    """Yield the lines of a text report: runs, checks with results, hints for failed checks, and points."""
-    exercise = graded.exercise
-    yield exercise.title + (f" - {Path(graded.hand_in).name}" if graded.hand_in else "")
+def grade_text(graded: Grade, words: ReportWords = ENGLISH) -> Iterator[str]:
+    """Yield the lines of a text report: runs, checks with results, hints for failed checks, and points.
+
+    The measured values and errors are in English in any language.
+    """
+    exercise, translated = graded.exercise, words.translated
+    yield translated(exercise.title) + (f" - {Path(graded.hand_in).name}" if graded.hand_in else "")
     for outcome in graded.outcomes:
-        yield f"  {outcome.name}: {outcome.time:g} s simulated, seed {outcome.seed}"
-        width = max((len(mark.title) for mark in outcome.marks), default=0)
+        yield "  " + words.run.format(name=translated(outcome.name), time=outcome.time, seed=outcome.seed)
+        titles = [translated(mark.title) for mark in outcome.marks]
+        width = max(map(len, titles), default=0)
         for number, line in enumerate(outcome.error.splitlines()):
-            yield f"      {line}" if number else f"    stopped: {line}"
-        for mark in outcome.marks:
-            sign = "pass" if mark.passed else "FAIL"
-            yield f"    {sign}  {mark.title:<{width}}  {mark.points:g} of {mark.worth:g}   {mark.message}".rstrip()
+            yield f"      {line}" if number else f"    {words.stopped} {line}"
+        for mark, title in zip(outcome.marks, titles, strict=True):
+            sign = words.passed_sign if mark.passed else words.failed_sign
+            points = words.points.format(points=mark.points, worth=mark.worth)
+            yield f"    {sign}  {title:<{width}}  {points}   {mark.message}".rstrip()
+            if mark.required:
+                yield f"          {words.required} {mark.required}"
             if mark.hint:
-                yield f"          hint: {mark.hint}"
+                yield f"          {words.hint} {translated(mark.hint)}"
         if outcome.printed and not all(mark.passed for mark in outcome.marks):
-            yield "    printed output:"
+            yield f"    {words.printed}"
             yield from (f"      {line}" for line in outcome.printed.splitlines())
     share = graded.points / graded.worth if graded.worth else 1.0
-    verdict = "passed" if graded.passed else "not passed"
-    yield f"  {graded.points:g} of {graded.worth:g} points ({share:.0%}), {exercise.pass_mark:.0%} needed: {verdict}"
+    verdict = words.passed if graded.passed else words.not_passed
+    yield "  " + words.result.format(
+        points=graded.points, worth=graded.worth, share=share, needed=exercise.pass_mark, verdict=verdict
+    )
 
 
 def grade_json(graded: Grade) -> JsonObject:

@@ -9,7 +9,7 @@ import json
 import os
 import sys
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -88,6 +88,9 @@ def _run_exercise(
     from simkit_verification.testing.grading.run_recorder import RunRecorder
 
     scenario = variation.scenario
+    mistake = _syntax_error(files)
+    if mistake:
+        return {"error": mistake}
     try:
         more: JsonObject = {}
         if hand_in is not None:
@@ -122,8 +125,7 @@ def _run_exercise(
     except (KeyboardInterrupt, SystemExit) as error:
         return {"error": f"{type(error).__name__} ended the run{_error_position(error, hand_in)}"}
     except PluginError as error:
-        place = "" if error.__cause__ is None else _error_position(error.__cause__, hand_in)
-        return {"error": f"{error}{place}"}
+        return {"error": _exception_text(error, files)}
     except RenderError as error:  # the submission is not the cause: this machine cannot run the exercise
         return {"fault": str(error), "codes": [error.code]}
     except SimkitError as error:
@@ -168,6 +170,36 @@ def _make_plugin(file: Path, parameters: JsonMapping) -> object:
         )
         diagnostics.error("SK-PLUGIN-008", message, where)
         raise LoadError(tuple(diagnostics)) from error
+
+
+def _syntax_error(files: Sequence[Path]) -> str:
+    """Return the place and the text of a syntax error in a Python file of the hand-in; empty if there is none."""
+    for file in files:
+        if file.suffix != ".py":
+            continue
+        try:
+            compile(file.read_bytes(), str(file), "exec", dont_inherit=True)
+        except SyntaxError as error:
+            code = (error.text or "").strip()
+            return f"{file}:{error.lineno or 1}: {type(error).__name__}: {error.msg}" + (f"\n{code}" if code else "")
+        except (OSError, ValueError):
+            continue  # the import reports it
+    return ""
+
+
+def _exception_text(error: PluginError, files: Sequence[Path]) -> str:
+    """Return the place, the text and the moment of an exception in one line, then the line of code.
+
+    The place is the innermost line of the hand-in; without one, the text is that of the plugin's error.
+    """
+    cause, names = error.__cause__, {str(file) for file in files} | {str(file.resolve()) for file in files}
+    frames = [] if cause is None else [f for f in traceback.extract_tb(cause.__traceback__) if f.filename in names]
+    if cause is None or not frames:
+        return str(error)
+    kind = type(cause).__name__
+    text = f"{kind}: {cause}" if str(cause) else kind
+    moment = f"in {error.hook} at t = {error.time:.6g} s"
+    return f"{Path(frames[-1].filename).name}:{frames[-1].lineno}: {text}, {moment}\n{frames[-1].line}"
 
 
 def _error_position(error: BaseException, file: Path | None) -> str:

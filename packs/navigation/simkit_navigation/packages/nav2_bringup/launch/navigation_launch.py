@@ -9,6 +9,7 @@ from nav2_common.launch import RewrittenYaml
 
 SERVERS = {
     "controller_server": ("nav2_controller", {"cmd_vel": "cmd_vel_nav"}),
+    "smoother_server": ("nav2_smoother", {}),
     "planner_server": ("nav2_planner", {}),
     "behavior_server": ("nav2_behaviors", {"cmd_vel": "cmd_vel_nav"}),
     "bt_navigator": ("nav2_bt_navigator", {}),

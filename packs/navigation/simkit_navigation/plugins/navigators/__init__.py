@@ -1,0 +1,1 @@
+"""Plugins that bring a robot to goals and waypoints."""
