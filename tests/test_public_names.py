@@ -38,7 +38,7 @@ PRIVATE_IMPORTS = {
     "launch": 31,
     "learning": 46,
     "motion": 16,
-    "navigation": 17,
+    "navigation": 25,
     "nodes": 32,
     "open_rmf": 5,
     "robots": 22,

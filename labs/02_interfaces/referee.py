@@ -1,8 +1,8 @@
-"""Referee of lab 2. It subscribes to the nodes, sends requests and goals, and publishes how many answers are right.
+"""Referee of lab 2. It subscribes to the nodes, sends requests and goals, and publishes whether the answers are right.
 
-All topics are of the type std_msgs/msg/Float64. `/referee/num`, `/referee/add_three_ints` and `/referee/countdown` are
-1 if the interface has the fields of the exercise, else 0: the referee compares the type hash by which ROS 2 tells types
-apart. The other topics have the share of right answers, from 0 to 1:
+All topics are of the type std_msgs/msg/String: `right`, or the first answer that is wrong and the true one.
+`/referee/num`, `/referee/add_three_ints` and `/referee/countdown` are `right` if the interface has the fields of the
+exercise: the referee compares the type hash by which ROS 2 tells types apart. The other topics are about:
 
     /referee/numbers   messages on /numbers: 1, 2, 3, …
     /referee/total     messages on /total: the sum of all numbers so far
@@ -23,6 +23,11 @@ HASHES = {
     "srv/AddThreeInts": "RIHS01_e731f7cb46225004ac7438e168d0d594b32345480a04ba79887f0d8639650131",
     "action/Countdown": "RIHS01_fbb6cebb1c5fc05702b2b56258f953cf7b48c7f700db33b1fbd4dcde6a239552",
 }
+FIELDS = {  # parts of each interface: type and name of each field
+    "msg/Num": {"": "int64 num"},
+    "srv/AddThreeInts": {"_Request": "int64 a, int64 b, int64 c", "_Response": "int64 sum"},
+    "action/Countdown": {"_Goal": "int32 start", "_Result": "int32[] numbers", "_Feedback": "int32 remaining"},
+}
 TOPICS = {"num": "msg/Num", "add_three_ints": "srv/AddThreeInts", "countdown": "action/Countdown"}
 ANSWERS = ("numbers", "total", "sums", "remaining", "service", "feedback", "result", "cancel")
 LONG = 50  # start of the goal that is cancelled
@@ -32,46 +37,52 @@ class Referee(WorldPlugin):
     after_step_rate = 10.0  # [Hz]
 
     def load(self, parent, params):
-        self.right = dict.fromkeys(ANSWERS, 0)
+        self.wrong = dict.fromkeys(ANSWERS, "")  # first wrong answer of each kind
         self.all = dict.fromkeys(ANSWERS, 0)
         self.sum = self.ticks = 0
         self.goal, self.second, self.fed = None, None, []
         self.drawn = self.random("numbers", 3)
-        self.shares = {name: self.advertise(f"/referee/{name}", "std_msgs/msg/Float64") for name in (*ANSWERS, *TOPICS)}
+        self.verdicts = {
+            name: self.advertise(f"/referee/{name}", "std_msgs/msg/String") for name in (*ANSWERS, *TOPICS)
+        }
         for name in ("numbers", "total", "sums", "remaining"):
             self.subscribe(f"/{name}", getattr(self, f"hear_{name}"))
 
-    def count(self, name, is_right):
+    def compare(self, name, yours, true):
         self.all[name] += 1
-        self.right[name] += bool(is_right)
+        if yours != true and not self.wrong[name]:
+            self.wrong[name] = f"answer {self.all[name]}: yours {yours}, true {true}"
 
     def hear_numbers(self, message):
         num = getattr(message, "num", 0)
-        self.count("numbers", num == self.all["numbers"] + 1)
+        self.compare("numbers", num, self.all["numbers"] + 1)
         self.sum += num
 
     def hear_total(self, message):
-        self.count("total", getattr(message, "num", 0) == self.sum)
+        self.compare("total", getattr(message, "num", None), self.sum)
 
     def hear_sums(self, message):
         middle = 3 * self.all["sums"] + 2
-        self.count("sums", getattr(message, "num", 0) == 3 * middle)
+        self.compare("sums", getattr(message, "num", None), 3 * middle)
 
     def hear_remaining(self, message):
-        self.count("remaining", getattr(message, "num", -1) == 4 - self.all["remaining"])
+        self.compare("remaining", getattr(message, "num", None), 4 - self.all["remaining"])
 
     def after_step(self):
         self.ticks += 1
         if self.ticks > 10:  # the goal of the client has ended
             self.ask_service()
             self.watch_action()
-        for name, share in self.shares.items():
-            share.publish({"data": self.verdict(name)})
+        for name, topic in self.verdicts.items():
+            topic.publish({"data": self.verdict(name)})
 
     def verdict(self, name):
         if name in TOPICS:
-            return float(msgs.rihs(f"lab_interfaces/{TOPICS[name]}") == HASHES[TOPICS[name]])
-        return self.right[name] / self.all[name] if self.all[name] else 0.0
+            interface = TOPICS[name]
+            is_right = msgs.rihs(f"lab_interfaces/{interface}") == HASHES[interface]
+            true = " --- ".join(FIELDS[interface].values())
+            return "right" if is_right else f"yours {fields(interface)}, true {true}"
+        return self.wrong[name] or ("right" if self.all[name] else "there was no answer")
 
     def ask_service(self):
         a, b, c = (int(1e9 * number) for number in self.drawn.normal(self.ticks))
@@ -79,7 +90,7 @@ class Referee(WorldPlugin):
             response = self.sim.call("/add_three_ints", {"a": a, "b": b, "c": c})
         except InputError:  # no such service, or other fields
             response = None
-        self.count("service", getattr(response, "sum", None) == a + b + c)
+        self.compare("service", getattr(response, "sum", None), a + b + c)
 
     def watch_action(self):
         """Send, one after the other: a goal, a second one at the same time, one to cancel, and one from 0."""
@@ -88,19 +99,19 @@ class Referee(WorldPlugin):
         elif self.ticks == 13:
             self.second = self.send(3)
         elif self.ticks == 20 and self.goal is not None:
-            self.count("cancel", self.second is not None and self.second.status.name == "REJECTED")
-            self.count("feedback", self.fed == [5, 4, 3, 2, 1, 0])
-            self.count("result", self.goal.status.name == "SUCCEEDED" and self.numbers() == [6, 5, 4, 3, 2, 1, 0])
+            self.compare("cancel", None if self.second is None else self.second.status.name, "REJECTED")
+            self.compare("feedback", self.fed, [5, 4, 3, 2, 1, 0])
+            self.compare("result", (self.goal.status.name, self.numbers()), ("SUCCEEDED", [6, 5, 4, 3, 2, 1, 0]))
             self.goal, self.fed = self.send(LONG), []
         elif self.ticks == 25 and self.goal is not None:
             self.goal.cancel()
         elif self.ticks == 27 and self.goal is not None:
             counted = list(range(LONG, LONG - 1 - len(self.fed), -1))
-            self.count("feedback", self.fed == counted[1:] and len(self.fed) > 2)
-            self.count("cancel", self.goal.status.name == "CANCELED" and self.numbers() == counted)
+            self.compare("feedback", self.fed if len(self.fed) > 2 else "too few", counted[1:])
+            self.compare("cancel", (self.goal.status.name, self.numbers()), ("CANCELED", counted))
             self.goal = self.send(0)
         elif self.ticks == 29 and self.goal is not None:
-            self.count("cancel", self.goal.status.name == "REJECTED")
+            self.compare("cancel", self.goal.status.name, "REJECTED")
 
     def numbers(self):
         return [int(number) for number in getattr(self.goal.result, "numbers", ())]
@@ -113,3 +124,13 @@ class Referee(WorldPlugin):
 
     def feed(self, feedback):
         self.fed.append(getattr(feedback, "remaining", None))
+
+
+def fields(interface):
+    """Return the fields of an interface of the student in one line."""
+    parts = []
+    for part in FIELDS[interface]:
+        lines = msgs.definition(f"lab_interfaces/{interface}{part}").split("=" * 80)[0].splitlines()
+        texts = [" ".join(line.split("#")[0].split()) for line in lines]
+        parts.append(", ".join(text for text in texts if text) or "nothing")
+    return " --- ".join(parts)

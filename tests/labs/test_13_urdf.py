@@ -52,7 +52,8 @@ def test_the_picture_shows_the_robot_of_the_solution(lab: Path, tmp_path: Path) 
         for time in (10.8, 12.9, 14.9):
             sim.run(time - sim.time)
             x, y, _ = sim.model("carrier").pose.position
-            views.append(render_view(sim, 330, 330, eye=(x + 0.6, y - 0.9, 0.5), target=(x - 0.05, y, 0.3), passes=8))
+            eye, target = np.array((x + 0.6, y - 0.9, 0.5)), np.array((x - 0.05, y, 0.3))
+            views.append(render_view(sim, 330, 330, eye=eye, target=target, passes=8))
     picture = tmp_path / "robot.png"
     cv2.imwrite(str(picture), np.hstack(views)[:, :, ::-1], [cv2.IMWRITE_PNG_COMPRESSION, 9])
     shown, drawn = (cv2.imread(str(file)) for file in (LAB / "robot.png", picture))

@@ -46,3 +46,15 @@ def test_both_pages_have_the_same_commands_pages_and_words() -> None:
     tables = [text.split("\n## ")[-1].splitlines() for text in texts]
     english, french = ([tuple(row.split(" | ")[:2]) for row in rows if row.startswith("| ")][1:] for rows in tables)
     assert {(a.removeprefix("| "), b) for a, b in english} == {(b, a.removeprefix("| ")) for a, b in french}
+
+
+def test_both_pages_have_the_same_sections_with_the_same_rows() -> None:
+    sections = [
+        [
+            [row.split(" | ")[0] for row in part.splitlines() if row.startswith("| ")]
+            for part in text.split("\n## ")[1:-1]
+        ]
+        for text in (page.read_text("utf-8") for page in PAGES)
+    ]
+    english, french = ([rows[1:] for rows in page] for page in sections)  # without the headers
+    assert english == french

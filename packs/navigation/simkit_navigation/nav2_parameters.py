@@ -290,7 +290,8 @@ def _behaviors(values: Values, costmap: Values) -> list[PluginOfNode]:
     rest = {name: value for name, value in values.items() if name not in renamed}
     outline = _outline_of(costmap)
     plugin = PluginOfNode(BehaviorServer, "behavior_server", {**outline, **own, **rest})
-    for name in _names(plugin.values.pop("behavior_plugins", None)):
+    listed = [name for key in ("behavior_plugins", "recovery_plugins") for name in _names(plugin.values.pop(key, None))]
+    for name in listed:
         block = plugin.values.pop(name, None)
         kind = str(block.get("plugin", name) if isinstance(block, dict) else name)
         if re.split(r"::|/", kind)[-1].replace("_", "").lower() not in _BEHAVIORS:
@@ -322,7 +323,7 @@ _NAVIGATORS: Final = (
     "navigate_to_pose",
     "navigate_through_poses",
 )
-_TREE_LIBRARY: Final = re.compile(r"nav2_\w+_bt_node")
+_TREE_LIBRARY: Final = re.compile(r"nav2_\w+_(bt_node|condition)")
 
 
 def _waypoints(values: Values, _: Values) -> list[PluginOfNode]:

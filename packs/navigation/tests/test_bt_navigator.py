@@ -79,6 +79,24 @@ def test_a_default_tree_that_does_not_exist_is_an_error_of_the_world() -> None:
     assert "SK-BT-008" in str(caught.value) and "did you mean 'navigate_w_replanning_time.xml'?" in str(caught.value)
 
 
+def test_a_world_file_names_trees_in_its_folder_only(tmp_path: Path) -> None:
+    inner = tmp_path / "worlds"
+    inner.mkdir()
+    (tmp_path / "tree.xml").write_text(TREE)
+    (inner / "own.xml").write_text(TREE)
+    file = inner / "world.sdf"
+    option = "<default_nav_to_pose_bt_xml>{}</default_nav_to_pose_bt_xml>"
+    for outside in (str(tmp_path / "tree.xml"), "../tree.xml"):
+        file.write_text(world(option.format(outside)))
+        with pytest.raises(LoadError, match="SK-BT-008"):
+            simkit.load(file)
+    file.write_text(world(option.format("own.xml")))
+    with simkit.load(file) as sim:
+        goal = sim.send_goal("/navigate_to_pose", {"pose": pose(1.0, 0.0), "behavior_tree": str(tmp_path / "tree.xml")})
+        sim.run(0.1)
+        assert (goal.status.name, "there is no behaviour tree" in goal.reason) == ("REJECTED", True)
+
+
 def test_a_goal_with_another_tree_waits_for_the_end_of_the_active_one(tmp_path: Path) -> None:
     (tmp_path / "tree.xml").write_text(TREE)
     with simkit.load(world()) as sim:
@@ -109,6 +127,39 @@ def test_a_restore_in_a_tree_repeats_it(tmp_path: Path) -> None:
             sim.restore(kept)
             assert goal.status.name == "EXECUTING"
         assert ends[0] == ends[1] == pytest.approx(3.2, abs=0.7)
+
+
+def test_a_person_drives_more_slowly_towards_an_obstacle_and_ends_the_drive() -> None:
+    cells = [0] * 1600
+    for row in range(40):
+        cells[row * 40 + 32] = 254  # x from 0.6 to 0.65 m
+    metadata = {"size_x": 40, "size_y": 40, "resolution": 0.05, "origin": {"position": {"x": -1.0, "y": -1.0}}}
+    costmap = {"header": {"frame_id": "odom"}, "metadata": metadata, "data": cells}
+    with simkit.load(world(followers=BEHAVIORS)) as sim:
+        sim.advertise("/local_costmap/costmap_raw", "nav2_msgs/msg/Costmap", latched=True).publish(costmap)
+        sent = sim.subscribe("/cmd_vel", keep=1)
+        goal = sim.send_goal("/assisted_teleop", {"time_allowance": {"sec": 9}})
+        speeds = []
+        for command in (0.2, 1.0, -0.5):
+            sim.publish("/cmd_vel_teleop", {"linear": {"x": command}})
+            sim.run(0.3)
+            speeds.append(sent.latest.linear.x)
+        assert speeds == pytest.approx([0.2, 0.5, -0.5])  # 1 m/s would reach the obstacle within 0.6 s
+        sim.publish("/preempt_teleop", {})
+        sim.run(0.2)
+        assert goal.status.name == "SUCCEEDED" and sent.latest.linear.x == 0.0
+
+
+def test_a_drive_that_contradicts_itself_is_not_valid() -> None:
+    with simkit.load(world(followers=BEHAVIORS)) as sim:
+        for name, target, speed, code in (
+            ("drive_on_heading", {"x": 0.3}, -0.1, 724),
+            ("drive_on_heading", {"x": 0.3, "y": 0.1}, 0.1, 724),
+            ("backup", {"x": 0.3}, 0.0, 713),
+        ):
+            goal = sim.send_goal(f"/{name}", {"target": target, "speed": speed})
+            sim.step(2)
+            assert (goal.status.name, goal.result.error_code) == ("ABORTED", code)
 
 
 # ---------------------------------------------------------------------- waypoints

@@ -195,10 +195,15 @@ def test_the_collision_detector_says_which_zones_are_hit() -> None:
         source = {"type": "range", "topic": "/points"}
         monitor(sim, "collision_detector", {"observation_sources": ["s"], "s": source})
         states = sim.subscribe("/collision_detector_state", keep=1)
+        markers = sim.subscribe("/collision_detector/collision_points_marker", keep=1)
         for reach, expected in ((1.5, False), (0.5, True)):
             send_source(sim, "range", reach)
             sim.run(0.25)
             assert list(states.latest.detections) == [expected]
+            (marker,) = markers.latest.markers
+            assert marker.ns == "collision_points_s" and max(p.x for p in marker.points) == pytest.approx(
+                reach, abs=0.01
+            )
         sim.check_nodes()
 
 

@@ -178,7 +178,7 @@ def test_a_pickled_snapshot_has_the_mask() -> None:
 
 
 def test_a_controller_obeys_the_limit_of_a_speed_zone() -> None:
-    """The mask allows 40 % of the speed from x = 2 to 3, and the controller drives there with 40 % of its speed before."""
+    """The mask allows 40 % of the speed from x = 2 to 3, where the controller drives with 40 % of its speed before."""
     controller = '<plugin filename="libsimkit_controller_server.so" name="controller_server"><costmap_topic>'
     controller += "global_costmap/costmap_raw</costmap_topic><odom_frame_id>map</odom_frame_id></plugin>"
     with load("SpeedFilter", more=controller) as sim:

@@ -143,6 +143,16 @@ def test_updates_of_a_map_replace_a_rectangle() -> None:
         assert "an update of the map on /map is ignored" in [item.message for item in sim.diagnostics][-1]
 
 
+def test_cells_outside_of_the_map_keep_their_cost() -> None:
+    """The map reaches from x = 0 to 0.8; without track_unknown_space, cells beyond it are free, not unknown."""
+    with load("<rolling_window>true</rolling_window><plugins>static_layer</plugins>") as sim:
+        place(sim, 0.02, 0.02)
+        send_map(sim, np.full((8, 8), 100, np.int8))
+        sim.run(0.25)
+        grid = costs(sim)
+        assert [grid.cost(x, 0.45) for x in (-0.55, 0.45, 1.15)] == [FREE, LETHAL, FREE]
+
+
 def test_the_footprint_is_padded_along_both_axes() -> None:
     """Nav2's `padFootprint`: a corner moves by the padding along x and along y."""
     node: Any = None

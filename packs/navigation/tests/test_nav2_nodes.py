@@ -116,6 +116,41 @@ def test_the_manager_goes_on_without_a_node_that_does_not_exist(folder: Path) ->
         assert sim.call("/route_server/get_state").current_state.label == "inactive"
 
 
+SERVER = """
+import sys
+
+import rclpy
+from rclpy.lifecycle import LifecycleNode
+
+rclpy.init()
+node = LifecycleNode("server")
+while node.get_clock().now().nanoseconds < float(sys.argv[1]) * 1e9:
+    rclpy.spin_once(node, timeout_sec=0.1)
+"""
+
+
+def test_the_manager_takes_all_nodes_down_when_one_ends_and_starts_them_when_it_is_back(folder: Path) -> None:
+    file = folder / "server.py"
+    file.write_text(SERVER)
+    with simkit.load(rooms()) as sim:
+        sim.add_node("nav2_waypoint_follower/waypoint_follower")
+        sim.add_node(str(file), args=("1.0",))
+        names = ["waypoint_follower", "server"]
+        params = {"autostart": True, "node_names": names, "bond_timeout": 1.0}
+        sim.add_node("nav2_lifecycle_manager/lifecycle_manager", params=params)
+
+        def states() -> list[str]:
+            return [sim.call(f"/{name}/get_state").current_state.label for name in names]
+
+        sim.run(0.5)
+        assert states() == ["active", "active"]
+        sim.run(4.0)
+        assert sim.call("/waypoint_follower/get_state").current_state.label == "unconfigured"
+        sim.add_node(str(file), args=("99.0",))
+        sim.run(2.0)
+        assert states() == ["active", "active"]
+
+
 def test_a_parameter_that_is_not_valid_ends_the_activation_with_the_reason(folder: Path) -> None:
     with simkit.load(rooms()) as sim:
         node = sim.add_node("nav2_amcl/amcl", params={"laser_model_type": "sonar"})

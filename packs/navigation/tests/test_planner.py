@@ -99,8 +99,13 @@ def test_a_path_through_the_house_is_short_and_clear_of_walls() -> None:
 
 
 PLANNER = """
+from simkit_navigation.plugins.navigation.planning_error import PlanningError, Reason
+
+
 class Straight:
     def create_plan(self, grid, start, goal):
+        if goal.y < 0:
+            raise PlanningError(Reason.GOAL_OCCUPIED, "no goals on that side")
         return [(start.x, start.y), (goal.x, goal.y)] if goal.x < 1.5 else []
 """
 
@@ -117,7 +122,9 @@ def test_a_planner_of_a_user_makes_the_path(tmp_path: Path) -> None:
             for x, planner in ((1.2, ""), (1.7, ""), (1.2, "GridBased"), (1.2, "None"), (99.0, ""))
         ]
         nowhere = sim.send_goal("/compute_path_to_pose", {"goal": pose(1.2, 1.0, frame="moon")})
+        refused = sim.send_goal("/compute_path_to_pose", {"goal": pose(1.2, -1.0)})
         sim.step(2)
+        assert (refused.result.error_code, refused.reason) == (206, "no goals on that side")
         assert [goal.status.name for goal in goals] == ["SUCCEEDED", "ABORTED", "SUCCEEDED", "ABORTED", "ABORTED"]
         assert [goal.result.error_code for goal in (*goals, nowhere)] == [0, 208, 0, 201, 204, 202]
         path = goals[0].result.path

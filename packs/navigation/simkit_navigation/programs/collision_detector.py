@@ -43,6 +43,7 @@ class CollisionDetector(ZoneNode):
         if not self._is_active:
             return
         points = {name: found for name, found in self.points_by_source().items() if found is not None}
+        self.publish_points(points)
         zones = list(self.zones.values())
         hits = [zone.is_hit(points_of(zone, points)) for zone in zones]
         self._state.publish(CollisionDetectorState(polygons=[zone.name for zone in zones], detections=hits))

@@ -53,12 +53,13 @@ class CollisionMonitor(ZoneNode):
         if not self._is_active or not all(map(math.isfinite, wanted)):
             return
         points = self.points_by_source()
+        known = {name: found for name, found in points.items() if found is not None}
+        self.publish_points(known)
         if any(found is None and self.is_required(name) for name, found in points.items()):
             self._tell("stop", "invalid source", "a source has no new data")
             allowed = STANDING
         else:
             zones = [zone.at_velocity(wanted) for zone in self.zones.values()]
-            known = {name: found for name, found in points.items() if found is not None}
             allowed, zone = allowed_velocity(zones, wanted, known)
             self._tell(*(("", "", "") if zone is None else (zone.action, zone.name, f"points in {zone.name}")))
         self.publish_zones(wanted)

@@ -4,13 +4,14 @@ import ast
 import math
 
 import numpy as np
-from geometry_msgs.msg import Point32, PolygonInstanceStamped, PolygonStamped
+from geometry_msgs.msg import Point, Point32, PolygonInstanceStamped, PolygonStamped
 from node_support import ServerNode, warn
 from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 from rclpy.time import Time
 from sensor_msgs.msg import LaserScan, PointCloud2, Range
 from sensor_msgs_py.point_cloud2 import read_points
 from tf2_ros import Buffer, TransformException, TransformListener
+from visualization_msgs.msg import Marker, MarkerArray
 
 from simkit_navigation.plugins.navigation.collision_zones import ACTIONS, CollisionZone, VelocityRange
 
@@ -38,6 +39,7 @@ class ZoneNode(ServerNode):
         self._buffer = Buffer()
         self._listener = TransformListener(self._buffer, self)
         self._received = {}
+        self._drawings["~"] = self.create_publisher(MarkerArray, "~/collision_points_marker", 1)
         names = self._names("observation_sources")
         unknown = [name for name in names if not self._add_source(name)]
         if unknown:
@@ -134,8 +136,11 @@ class ZoneNode(ServerNode):
 
     def publish_zones(self, velocity):
         """Publish the polygons that have a topic, as they are for a velocity."""
-        for name, publisher in self._drawings.items():
-            zone = self.zones[name].at_velocity(velocity)
+        for name, zone in self.zones.items():
+            publisher = self._drawings.get(name)
+            if publisher is None:
+                continue
+            zone = zone.at_velocity(velocity)
             corners = zone.corners
             if corners is None:  # Nav2 draws a circle with 16 corners
                 angles = np.arange(16) * math.tau / 16
@@ -145,6 +150,25 @@ class ZoneNode(ServerNode):
             message.header.stamp = self.get_clock().now().to_msg()
             message.polygon.points = [Point32(x=float(x), y=float(y)) for x, y in corners]
             publisher.publish(message)
+
+    def publish_points(self, points):
+        """Publish the points of each source as a marker, if there is a subscriber.
+
+        Args:
+            points: points by the name of their source.
+        """
+        publisher = self._drawings["~"]
+        if not publisher.get_subscription_count():
+            return
+        markers = []
+        for name, found in points.items():
+            marker = Marker(ns=f"collision_points_{name}", type=Marker.POINTS, action=Marker.ADD, frame_locked=True)
+            marker.header.frame_id = self._base
+            marker.scale.x = marker.scale.y = 0.02
+            marker.color.r = marker.color.a = 1.0
+            marker.points = [Point(x=float(x), y=float(y)) for x, y in found]
+            markers.append(marker)
+        publisher.publish(MarkerArray(markers=markers))
 
     # ------------------------------------------------------------------ sources
 

@@ -13,6 +13,7 @@ from std_srvs.srv import Trigger
 CONFIGURE, CLEANUP, ACTIVATE, DEACTIVATE = 1, 2, 3, 4
 SHUTDOWN_OF_STATE = {1: 5, 2: 6, 3: 7}
 TEXTS = {CONFIGURE: "Configuring", CLEANUP: "Cleaning up", ACTIVATE: "Activating", DEACTIVATE: "Deactivating"}
+CONFIGURE_COMMAND, CLEANUP_COMMAND = 5, 6  # of the service in Jazzy
 PATIENCE = 5.0  # [s] Nav2 waits for ever
 
 
@@ -24,21 +25,23 @@ class LifecycleManager(Node):
         self._names = list(self.declare_parameter("node_names", [""]).value or [])
         self._names = [name for name in self._names if name]
         is_automatic = self.declare_parameter("autostart", False).value
-        for name, value in (
-            ("bond_timeout", 4.0),
-            ("service_timeout", 5.0),
-            ("bond_respawn_max_duration", 10.0),
-            ("attempt_respawn_reconnection", True),
-        ):
-            self.declare_parameter(name, value)
+        self._bond_timeout = self.declare_parameter("bond_timeout", 4.0).value
+        self._longest_respawn = self.declare_parameter("bond_respawn_max_duration", 10.0).value
+        self._respawns = self.declare_parameter("attempt_respawn_reconnection", True).value
+        self.declare_parameter("service_timeout", 5.0)
         self._is_active = False
         self._missing = set()
+        self._lost = {}  # seconds since which a node is lost, by its name
+        self._respawn_timer = None
         name, namespace = f"{self.get_name()}_service_client", self.get_namespace()
         self._client_node = Node(name, namespace=namespace, use_global_arguments=False)
         self._executor_of_clients = SingleThreadedExecutor()
         self._executor_of_clients.add_node(self._client_node)
         self.create_service(ManageLifecycleNodes, "~/manage_nodes", self._on_manage)
         self.create_service(Trigger, "~/is_active", self._on_is_active)
+        self._states = {name: self._client_node.create_client(GetState, f"{name}/get_state") for name in self._names}
+        if self._bond_timeout > 0:
+            self.create_timer(1.0, self._check_bonds)
         if is_automatic:
             self._start_timer = self.create_timer(0.0, self._on_start)
 
@@ -53,6 +56,8 @@ class LifecycleManager(Node):
             request.RESUME: lambda: self._bring("Resuming", "active", True, ACTIVATE),
             request.RESET: lambda: self._bring("Resetting", "reset", False, DEACTIVATE, CLEANUP, reverse=True),
             request.SHUTDOWN: self._shut_down,
+            CONFIGURE_COMMAND: lambda: self._bring("Configuring", "configured", False, CONFIGURE),
+            CLEANUP_COMMAND: lambda: self._bring("Cleaning up", "cleaned up", False, CLEANUP, reverse=True),
         }
         command = commands.get(request.command)
         response.success = command is not None and command()
@@ -77,6 +82,55 @@ class LifecycleManager(Node):
         self._is_active = is_active
         self.get_logger().info(f"Managed nodes are {state}")
         return True
+
+    def _now(self):
+        return self.get_clock().now().nanoseconds * 1e-9
+
+    def _is_there(self, name):
+        """Check whether a node has its services; a node that was missing from the beginning counts."""
+        return name in self._missing or self._states[name].service_is_ready()
+
+    def _check_bonds(self):
+        """Take all nodes down if one of them has ended, as Nav2 does after `bond_timeout` without a heartbeat."""
+        if not self._is_active:
+            self._lost.clear()
+            return
+        now = self._now()
+        for name in self._names:
+            if self._is_there(name):
+                self._lost.pop(name, None)
+            elif now - self._lost.setdefault(name, now) >= self._bond_timeout:
+                self._take_down(name)
+                return
+
+    def _take_down(self, name):
+        """Reset the nodes that are left, and wait for the one that has ended."""
+        self.get_logger().error(
+            f"CRITICAL FAILURE: SERVER {name} IS DOWN after not receiving a heartbeat for "
+            f"{round(self._bond_timeout * 1e3)} ms. Shutting down related nodes."
+        )
+        self._is_active = False
+        self._lost.clear()
+        for transition in (DEACTIVATE, CLEANUP):
+            for other in reversed(self._names):
+                if self._states[other].service_is_ready():
+                    self._change(other, transition)
+        if self._respawns:
+            self._respawn_end = self._now() + self._longest_respawn
+            self._respawn_timer = self.create_timer(1.0, self._check_respawn)
+
+    def _check_respawn(self):
+        """Start all nodes again as soon as the one that has ended is back."""
+        is_back = all(map(self._is_there, self._names))
+        if not is_back and self._now() < self._respawn_end:
+            return
+        self.destroy_timer(self._respawn_timer)
+        if is_back:
+            self.get_logger().info("Successfully re-established connections from server respawns, starting back up.")
+            self._start_up()
+        else:
+            end = f"after maximum timeout: {self._longest_respawn:g} s."
+            self.get_logger().error(f"Failed to re-establish connection from a server crash {end}")
 
     def _shut_down(self):
         self.get_logger().info("Shutting down managed nodes...")

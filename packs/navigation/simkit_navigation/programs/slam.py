@@ -127,15 +127,16 @@ class Slam(LifecycleNode):
     def _use_if_known(self, scan):
         """Use a scan as soon as its transforms are known; return whether they are."""
         values, stamp = self._values, Time.from_msg(scan.header.stamp)
+        if not self._is_due(stamp.nanoseconds):
+            return True
         try:
             base = _planar(self._buffer.lookup_transform(values["odom_frame"], values["base_frame"], stamp))[0]
-            sensor, is_inverted = _planar(
-                self._buffer.lookup_transform(values["base_frame"], scan.header.frame_id, stamp)
-            )
+            if not self._has_moved(base):
+                return True
+            transform = self._buffer.lookup_transform(values["base_frame"], scan.header.frame_id, stamp)
         except TransformException:
             return False
-        if not self._is_new(base, stamp.nanoseconds):
-            return True
+        sensor, is_inverted = _planar(transform)
         if self._odometry is None:
             self.get_logger().info(f"Registering sensor: [{scan.header.frame_id}]")
         ranges = np.asarray(scan.ranges, np.float64)
@@ -166,16 +167,19 @@ class Slam(LifecycleNode):
 
     _has_stored_map = False
 
-    def _is_new(self, base, time_ns):
-        """Return whether the robot has moved since the last scan that was used."""
+    def _is_due(self, time_ns):
+        """Return whether enough time has passed since the last scan that was used, and scans are used at all."""
         if self._odometry is None or self._is_far:
             return True
-        if self._is_paused:
-            return False
+        return not self._is_paused and time_ns - self._last_ns >= self._values["minimum_time_interval"] * 1e9
+
+    def _has_moved(self, base):
+        """Return whether the robot has moved enough since the last scan that was used."""
+        if self._odometry is None or self._is_far:
+            return True
         moved = self._odometry.inverse().compose(base)
-        is_late = time_ns - self._last_ns >= self._values["minimum_time_interval"] * 1e9
         is_far = math.hypot(moved.x, moved.y) >= self._values["minimum_travel_distance"]
-        return is_late and (is_far or abs(moved.yaw) >= self._values["minimum_travel_heading"])
+        return is_far or abs(moved.yaw) >= self._values["minimum_travel_heading"]
 
     def _on_initial_pose(self, message):
         if self._mode != LOCALIZATION:

@@ -105,16 +105,24 @@ FLIGHT = gz(
     + tags(rotorConfiguration=CONFIGURATION, linearVelocityNoiseStdDev="0.1 0.1 0.1"),
     "MulticopterVelocityControl",
 )
+VOXELS = tags(
+    always_send_full_costmap="false",
+    plugins="voxel_layer denoise_layer inflation_layer",
+    voxel_layer=tags(
+        plugin="nav2_costmap_2d::VoxelLayer", observation_sources="scan", scan=tags(observation_persistence=0.1)
+    ),
+    denoise_layer=tags(plugin="nav2_costmap_2d::DenoiseLayer", minimal_group_size=1),
+)
 NAVIGATION = (
     plugin("libsimkit_map_server.so", tags(height=0.5), "map_server")
     + plugin("libsimkit_fake_localization.so", tags(base_frame_id="base", update_rate=100), "fake_localization")
     + "".join(
         plugin(
             "libsimkit_costmap_2d.so",
-            tags(robot_base_frame="base", update_frequency=100, publish_frequency=100, rolling_window=rolls),
+            tags(robot_base_frame="base", update_frequency=100, publish_frequency=100, rolling_window=rolls) + layers,
             name,
         )
-        for name, rolls in (("global_costmap", "false"), ("local_costmap", "true"))
+        for name, rolls, layers in (("global_costmap", "false", ""), ("local_costmap", "true", VOXELS))
     )
     + "".join(
         plugin(f"libsimkit_{name}.so", tags(robot_base_frame="base"), name)
@@ -141,6 +149,14 @@ DRIFT = tags(motionSmallNoise=0.2, motionDriftNoise=0.1, motionDriftNoiseTime=0.
 PANELS = tags(color_1="red", color_2="green", color_3="yellow", visuals=tags(visual="v"))
 ODOMETRY = ros("diff_drive", REAR + tags(robot_base_frame="base", publish_odom_tf="true"))
 NAVIGATOR = plugin("libsimkit_bt_navigator.so", tags(robot_base_frame="base"), "bt_navigator")
+FOLLOWER = plugin(
+    "libsimkit_waypoint_follower.so",
+    tags(
+        waypoint_task_executor_plugin="ask",
+        ask=tags(plugin="nav2_waypoint_follower::InputAtWaypoint", input_topic="go_on"),
+    ),
+    "waypoint_follower",
+)
 # a zoom goes on for the whole part of the run, between the random commands, which end at 1
 ZOOM = plugin(
     "libPublisherPlugin.so",
@@ -715,9 +731,7 @@ WORLDS: dict[str, str] = {
         lab(world=NAVIGATION, model=ODOMETRY),
     ),
     "BtNavigator": lab(world=NAVIGATION + NAVIGATOR, model=ODOMETRY),
-    "WaypointFollower": lab(
-        world=NAVIGATION + NAVIGATOR + plugin("libsimkit_waypoint_follower.so", "", "waypoint_follower"), model=ODOMETRY
-    ),
+    "WaypointFollower": lab(world=NAVIGATION + NAVIGATOR + FOLLOWER, model=ODOMETRY),
     "TurtleSim": lab(world=plugin("libsimkit_turtlesim.so")),
     "TurtleMimic": lab(
         world=plugin("libsimkit_turtlesim.so")

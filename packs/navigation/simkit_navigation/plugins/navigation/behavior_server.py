@@ -58,6 +58,7 @@ class BehaviorServerOptions(Options):
     simulation_time_step: float = number(0.1, "s", minimum=0.001)
     cmd_vel_teleop: str = text("cmd_vel_teleop")
     transform_tolerance: bool = without_effect()
+    transform_timeout: bool = without_effect()
     global_costmap_topic: bool = without_effect()
     local_footprint_topic: bool = without_effect()
     global_footprint_topic: bool = without_effect()
