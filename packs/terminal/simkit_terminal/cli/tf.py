@@ -92,7 +92,7 @@ def draw_frames(
     write_frame_chart(output, printable(f"Frames of {where}"), frames)
     parents = frames.frames()
     if json_:
-        edges = sum(bool(parent) for parent in parents.values())
+        edges = len([child for child, parent in parents.items() if parent])
         print_json({"output": str(output), "frames": len(parents), "edges": edges})
     else:
         print_line(f"{output}: {len(parents)} frame{'' if len(parents) == 1 else 's'}")
