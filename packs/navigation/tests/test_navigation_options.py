@@ -151,3 +151,14 @@ def test_an_element_of_the_world_comes_before_a_default_of_nav2(folder: Path) ->
         costmap = sim.plugins["global_costmap"]
         assert costmap.options.robot_base_frame == "base_footprint"
         assert costmap.inscribed_radius == pytest.approx(0.3, abs=0.005)  # of a polygon around the circle
+
+
+def test_the_map_of_slam_has_the_frame_of_the_world(folder: Path) -> None:
+    with simkit.load("rooms.sdf") as sim:
+        for node in navigation_nodes(navigates=False, makes_map=True):
+            sim.add_node(**node)
+        frames = sim.tf  # transforms are kept from here on
+        sim.run(1.5)
+        pose = frames.lookup("map", "base_footprint")
+        x, y, _ = sim.model("robot").pose.position
+        assert pose.position[:2] == pytest.approx((x, y), abs=0.01) and pose.rpy[2] == pytest.approx(0.5, abs=0.01)

@@ -26,6 +26,8 @@ from simkit_navigation.plugins.maps.map_saver import MapNotSaved, write_map
 from simkit_navigation.plugins.maps.pose_graph_file import PoseGraphFault, read_pose_graph, write_pose_graph
 from simkit_navigation.plugins.maps.scan_mapper import MapScan, ScanMapper
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose
+from simkit_navigation.plugins.navigation.robot_link import links_of_frame
+from simkit_nodes.host import current_host
 
 THRESHOLDS = (0.25, 0.65)
 """Occupancies of free and of occupied cells in the files of `save_map`, as in `map_saver_cli`."""
@@ -143,6 +145,8 @@ class Slam(LifecycleNode):
         ranges = np.where(ranges < scan.range_min, np.nan, ranges)
         angles = scan.angle_min + scan.angle_increment * np.arange(len(ranges))
         guess = self._correction.compose(base)
+        if self._odometry is None and self._start is None and values["begin_at_true_pose"]:
+            self._start = self._true_pose()
         if self._start is not None:
             guess, self._start = self._start, None
         measured = MapScan(ranges, -angles if is_inverted else angles, float(scan.range_max), sensor, base, guess)
@@ -157,6 +161,16 @@ class Slam(LifecycleNode):
         if is_first:
             self._publish_map()
         return True
+
+    def _true_pose(self):
+        """Return the true pose of the robot in the world, so that the map has the frame of the world."""
+        simulation, frame = current_host().simulation, self._values["base_frame"]
+        links = [] if simulation is None else links_of_frame(simulation, frame)
+        if len(links) != 1:
+            warn(self, "SK-NAV-001", f"{len(links)} models have a link {frame!r}: the map begins at the odometry")
+            return None
+        pose = links[0].pose
+        return PlanarPose(float(pose.position[0]), float(pose.position[1]), float(pose.rpy[2]))
 
     def _used(self, scan):
         """Match a scan, add it in mapping, and return the pose of the robot in the map."""
