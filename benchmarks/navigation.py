@@ -37,7 +37,7 @@ def house() -> CostGrid:
     """Return the costs around the walls of the house."""
     with simkit.load("turtlebot3_house", plugins=[MapServer()], spawn=[COSTMAP]) as sim:
         sim.run(1.3)
-        grid: CostGrid = sim.plugins["costmap::global_costmap"].grid  # type: ignore[attr-defined]
+        grid: CostGrid = sim.plugins["costmap::global_costmap"].grid
         return grid
 
 

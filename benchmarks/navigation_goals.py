@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 import simkit
 from simkit import msgs
-from simkit_navigation.navigation_nodes import MAP_MODEL, navigation_nodes
+from simkit_navigation.navigation_nodes import MAP_MODEL, navigation_nodes, topics_of_robot
 
 CLEARANCE = 0.45  # [m] of a goal from a wall
 APART = 2.0  # [m] between two goals
@@ -105,13 +105,15 @@ def main() -> None:
     parser.add_argument("--params-file", default=None)
     parser.add_argument("--tolerance", type=float, default=0.4)
     parser.add_argument("--picture", default="")
+    parser.add_argument("--spawn", action="append", default=[], metavar="MODEL:x,y,yaw")
     parser.add_argument("--remap", action="append", default=[], metavar="OLD:=NEW")
     options = parser.parse_args()
     files = [options.params_file] if options.params_file else []
     rules = dict(rule.split(":=") for rule in options.remap)
-    with simkit.load(options.world, spawn=[{"model": MAP_MODEL}], params_files=files) as sim:
-        for node in navigation_nodes(params_files=files):
-            sim.add_node(**{**node, "remap": {**rules, **node.get("remap", {})}})
+    spawn = [{"model": MAP_MODEL}, *options.spawn]
+    with simkit.load(options.world, spawn=spawn, params_files=files) as sim:
+        for node in navigation_nodes(params_files=files, remap=topics_of_robot(sim) | rules):
+            sim.add_node(**node)
         maps, costs = sim.subscribe("/map", keep=1), sim.subscribe("/global_costmap/costmap", keep=1)
         sim.step()
         x, y, _ = sim.model(options.robot).pose.position

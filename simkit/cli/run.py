@@ -125,6 +125,8 @@ def execute(spec: RunSpec, parts: Sequence[RunPart], *, verbose: bool, quiet: bo
         with load(spec.world, **spec.load_arguments()) as sim:
             try:
                 try:
+                    nodes = [node for part in parts for node in part.added_nodes(spec, sim)]
+                    spec = replace(spec, nodes=(*spec.nodes, *nodes))
                     add_nodes(spec, sim)
                 finally:
                     print_diagnostics([*spec.diagnostics, *sim.diagnostics], verbose=verbose)

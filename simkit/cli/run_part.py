@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from simkit.bridges.bridge_process import BridgeProcess
     from simkit.cli.run_loop import Interrupts, RunLoop
     from simkit.cli.run_verdict import RunVerdict
+    from simkit.run_nodes import Node
     from simkit.run_spec import RunSpec
     from simkit.runtime import Simulation
 
@@ -87,12 +88,16 @@ class RunPart:
         return False
 
     def extended(self, spec: RunSpec) -> RunSpec:
-        """Return the run with what the part adds to it: nodes, models, files; called before `around_run`.
+        """Return the run with the models and files that the part adds to it; called before `around_run`.
 
         Raises:
             InputError: the run cannot do what the options request.
         """
         return spec
+
+    def added_nodes(self, spec: RunSpec, sim: Simulation) -> Sequence[Node]:
+        """Return the nodes that the part adds to the run of a loaded world."""
+        return ()
 
     def around_run(self, spec: RunSpec, verdict: RunVerdict) -> AbstractContextManager[object]:
         """Return a context manager around loading and running; its start checks what the run will need.

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
+from simkit.bridges.teleop import find_targets
 from simkit.diagnostics import Diagnostics
 from simkit.loaders.resources.bundled_models import bundled_folders
 from simkit.plugins.ros_parameter_files import read_parameter_file
+
+if TYPE_CHECKING:
+    from simkit import Simulation
 
 MAP_MODEL: Final = """<sdf version="1.9"><model name="true_map"><static>true</static><link name="link"/>
 <plugin filename="libsimkit_map_server.so" name="map_server"/></model></sdf>"""
@@ -24,6 +28,8 @@ _SERVERS: Final[Mapping[str, str]] = {
     "velocity_smoother": "nav2_velocity_smoother",
 }
 """Packages of the servers by their executables, in the order in which they become active."""
+_ODOMETRY: Final = "nav_msgs/msg/Odometry"
+_SCAN: Final = "sensor_msgs/msg/LaserScan"
 _MONITOR: Final = "collision_monitor"
 _COMMANDED: Final = ("controller_server", "behavior_server", "velocity_smoother")
 """Servers whose topic `cmd_vel` is that before the smoother."""
@@ -36,6 +42,7 @@ def navigation_nodes(
     navigates: bool = True,
     makes_map: bool = False,
     params_files: Sequence[str | os.PathLike[str]] = (),
+    remap: Mapping[str, str] | None = None,
 ) -> list[dict[str, Any]]:
     """Return the nodes that navigate or make a map, as mappings with the arguments of `Simulation.add_node`.
 
@@ -49,8 +56,10 @@ def navigation_nodes(
         makes_map: whether slam_toolbox makes the map; AMCL is then left out.
         params_files: parameter files of Nav2 that the run gives to all nodes. Parameters of simkit are used without a
             file that names one of the servers.
+        remap: names of the topics `scan`, `odom` and `cmd_vel` of the robot, where they are others; see
+            `topics_of_robot`.
     """
-    named = _nodes_named_in(params_files)
+    named, rules = _nodes_named_in(params_files), dict(remap or {})
     nodes: list[dict[str, Any]] = []
     if makes_map:
         nodes.append(_node("slam_toolbox", "async_slam_toolbox_node", params={"begin_at_true_pose": True}))
@@ -63,26 +72,49 @@ def navigation_nodes(
             servers.insert(0, "map_server")
         nodes += [_node("nav2_amcl", "amcl", params={"begin_at_true_pose": True}), _manager("localization", servers)]
     if navigates:
-        nodes += _servers(has_monitor=_MONITOR in named)
+        nodes += _servers(has_monitor=_MONITOR in named, command=rules.pop("cmd_vel", "cmd_vel"))
+    for node in nodes:
+        if rules:
+            node["remap"] = {**rules, **node.get("remap", {})}
     if not named & {*_SERVERS, *_LOCALIZATION}:
         for node in nodes:
             node["args"] = ["--ros-args", "--params-file", str(default_parameters())]
     return nodes
 
 
-def _servers(*, has_monitor: bool) -> list[dict[str, Any]]:
-    """Return the servers of Nav2 and their manager."""
+def _servers(*, has_monitor: bool, command: str) -> list[dict[str, Any]]:
+    """Return the servers of Nav2 and their manager; the last one publishes the velocity on the topic `command`."""
     nodes = [
         _node(package, name, remap={"cmd_vel": "cmd_vel_nav"} if name in _COMMANDED else {})
         for name, package in _SERVERS.items()
     ]
     names = list(_SERVERS)
     if has_monitor:
-        nodes.append(_node("nav2_collision_monitor", _MONITOR))
+        nodes.append(
+            _node("nav2_collision_monitor", _MONITOR, remap={} if command == "cmd_vel" else {"cmd_vel": command})
+        )
         names.append(_MONITOR)
     else:
-        nodes[-1]["remap"] = {"cmd_vel": "cmd_vel_nav", "cmd_vel_smoothed": "cmd_vel"}
+        nodes[-1]["remap"] = {"cmd_vel": "cmd_vel_nav", "cmd_vel_smoothed": command}
     return [*nodes, _manager("navigation", names)]
+
+
+def topics_of_robot(sim: Simulation) -> dict[str, str]:
+    """Return the topics of the robot by `scan`, `odom` and `cmd_vel`, where they have other names.
+
+    The velocity topic is that of the only drive. The odometry is that in its namespace, and the scan the only one.
+    """
+    types, found = sim.topics(), dict[str, str]()
+    drives = {target.model: target.topic for target in find_targets(sim)}
+    if "/cmd_vel" not in drives.values() and len(drives) == 1:
+        found["cmd_vel"] = next(iter(drives.values()))
+    space = found.get("cmd_vel", "/").rpartition("/")[0]
+    odometries = [topic for topic, kind in types.items() if kind == _ODOMETRY and topic.startswith(f"{space}/")]
+    scans = [topic for topic, kind in types.items() if kind == _SCAN]
+    for name, topics in (("odom", odometries), ("scan", scans)):
+        if f"/{name}" not in types and len(topics) == 1:
+            found[name] = topics[0]
+    return found
 
 
 def _node(package: str, executable: str, **more: Any) -> dict[str, Any]:
@@ -99,7 +131,7 @@ def _manager(part: str, names: Sequence[str]) -> dict[str, Any]:
     }
 
 
-def _nodes_named_in(files: Sequence[str | os.PathLike[str]]) -> Collection[str]:
+def _nodes_named_in(files: Sequence[str | os.PathLike[str]]) -> set[str]:
     """Return the plain names of the nodes in parameter files; a file with errors is reported when the run reads it."""
     read = (read_parameter_file(Path(file), Diagnostics()) for file in files if Path(file).is_file())
     return {pattern.rpartition("/")[2] for file in read if file is not None for pattern, _ in file.nodes}

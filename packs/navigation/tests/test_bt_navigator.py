@@ -79,6 +79,24 @@ def test_a_default_tree_that_does_not_exist_is_an_error_of_the_world() -> None:
     assert "SK-BT-008" in str(caught.value) and "did you mean 'navigate_w_replanning_time.xml'?" in str(caught.value)
 
 
+def test_a_world_file_names_trees_in_its_folder_only(tmp_path: Path) -> None:
+    inner = tmp_path / "worlds"
+    inner.mkdir()
+    (tmp_path / "tree.xml").write_text(TREE)
+    (inner / "own.xml").write_text(TREE)
+    file = inner / "world.sdf"
+    option = "<default_nav_to_pose_bt_xml>{}</default_nav_to_pose_bt_xml>"
+    for outside in (str(tmp_path / "tree.xml"), "../tree.xml"):
+        file.write_text(world(option.format(outside)))
+        with pytest.raises(LoadError, match="SK-BT-008"):
+            simkit.load(file)
+    file.write_text(world(option.format("own.xml")))
+    with simkit.load(file) as sim:
+        goal = sim.send_goal("/navigate_to_pose", {"pose": pose(1.0, 0.0), "behavior_tree": str(tmp_path / "tree.xml")})
+        sim.run(0.1)
+        assert (goal.status.name, "there is no behaviour tree" in goal.reason) == ("REJECTED", True)
+
+
 def test_a_goal_with_another_tree_waits_for_the_end_of_the_active_one(tmp_path: Path) -> None:
     (tmp_path / "tree.xml").write_text(TREE)
     with simkit.load(world()) as sim:

@@ -141,6 +141,24 @@ def test_the_parameters_of_humble_keep_controller_critics_and_checkers() -> None
     ]
 
 
+def test_the_path_handler_and_the_motion_model_of_rolling_are_those_of_the_controller() -> None:
+    mppi = {"plugin": "nav2_mppi_controller::MPPIController", "motion_model": "car", "critics": ["GoalCritic"]}
+    values: dict[str, Any] = {
+        "path_handler_plugins": ["PathHandler"],
+        "PathHandler": {
+            "plugin": "nav2_controller::FeasiblePathHandler",
+            "prune_distance": 2.0,
+            "reject_unit_path": True,
+        },
+        "controller_plugins": ["FollowPath"],
+        "FollowPath": {**mppi, "car": {"plugin": "mppi::AckermannMotionModel", "min_turning_r": 0.4}},
+    }
+    found = controller_parameters(values, {}, is_class_of_user)
+    own = {"motion_model": "Ackermann", "AckermannConstraints": {"min_turning_r": 0.4}, "prune_distance": 2.0}
+    assert found.values["FollowPath"] == {**mppi, **own}
+    assert "PathHandler" not in found.values and found.told == ["PathHandler: reject_unit_path has no effect"]
+
+
 MPPI = """<controller_plugins>FollowPath</controller_plugins>
 <FollowPath><plugin>nav2_mppi_controller/MPPIController</plugin>
 <batch_size>200</batch_size><regenerate_noises>true</regenerate_noises><vx_max>0.26</vx_max><visualize>true</visualize>

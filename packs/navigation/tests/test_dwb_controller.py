@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Any
 
@@ -72,6 +73,20 @@ def test_distances_are_counted_in_cells_from_the_nearest_source() -> None:
     found = _distances((4, 5), np.array([0, 19]))
     assert found is not None
     assert found.reshape(4, 5).tolist() == [[0, 1, 2, 3, 3], [1, 2, 3, 3, 2], [2, 3, 3, 2, 1], [3, 3, 2, 1, 0]]
+
+
+def test_the_robot_drives_around_the_end_of_a_wall() -> None:
+    """The local goal is behind the wall, and the distance through the wall grows on the first part of the path."""
+    grid = empty_grid()
+    grid.cells[36:40, :40] = INSCRIBED  # a wall 0.3 m to the left, which ends 0.5 m ahead
+    corners = [(0.0, 0.0), (0.8, 0.2), (0.8, 0.8), (0.0, 0.9)]
+    path = [
+        (x + (u - x) * part / 10, y + (v - y) * part / 10, 0.0)
+        for (x, y), (u, v) in itertools.pairwise(corners)
+        for part in range(10)
+    ]
+    command = dwb(path=path).compute_velocity_commands(BEGIN, (0.1, 0.0), grid)
+    assert command is not None and command[0] > 0.2
 
 
 def test_the_robot_drives_straight_turns_to_a_path_beside_it_and_avoids_an_obstacle() -> None:

@@ -140,3 +140,25 @@ def test_parameter_files_of_a_run_reach_its_nodes_before_their_own_arguments(fol
     found = run("empty", *node, "--params-file", "run.yaml", "--duration", "0.1")
     assert "values [0.7, 0.4]" in found.output and "SK-CONTROL-060" not in found.output
     assert "SK-CONTROL-060" in run("empty", "--params-file", "run.yaml", "--duration", "0.1").output
+
+
+def test_an_element_of_the_world_comes_before_a_default_of_nav2(folder: Path) -> None:
+    nested = "global_costmap:\n  global_costmap:\n    ros__parameters:\n      robot_radius: 0.3\n"
+    (folder / "nav2.yaml").write_text(nested, "utf-8")
+    frame = "<robot_base_frame>base_footprint</robot_base_frame><footprint_padding>0</footprint_padding>"
+    text = SERVERS.format("").replace('name="global_costmap"/>', f'name="global_costmap">{frame}</plugin>')
+    with simkit.load(world(text), params_files="nav2.yaml") as sim:
+        costmap = sim.plugins["global_costmap"]
+        assert costmap.options.robot_base_frame == "base_footprint"
+        assert costmap.inscribed_radius == pytest.approx(0.3, abs=0.005)  # of a polygon around the circle
+
+
+def test_the_map_of_slam_has_the_frame_of_the_world(folder: Path) -> None:
+    with simkit.load("rooms.sdf") as sim:
+        for node in navigation_nodes(navigates=False, makes_map=True):
+            sim.add_node(**node)
+        frames = sim.tf  # transforms are kept from here on
+        sim.run(1.5)
+        pose = frames.lookup("map", "base_footprint")
+        x, y, _ = sim.model("robot").pose.position
+        assert pose.position[:2] == pytest.approx((x, y), abs=0.01) and pose.rpy[2] == pytest.approx(0.5, abs=0.01)

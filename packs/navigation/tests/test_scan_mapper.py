@@ -214,7 +214,7 @@ def ring() -> tuple[list[PlanarPose], Floats]:
     return poses, np.array(walls, float)
 
 
-@pytest.mark.parametrize("is_closing", [True, False])
+@pytest.mark.parametrize("is_closing", [True, pytest.param(False, marks=pytest.mark.slow)])
 def test_a_loop_is_closed_when_the_robot_comes_back(is_closing: bool) -> None:
     settings = MapperSettings(
         max_laser_range=2.5,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from simkit.cli.terminal.output import not_found_error
@@ -49,3 +50,22 @@ def receive_transforms(
             yield received
     finally:
         feed.close()
+
+
+def check_frame_chart(output: Path) -> None:
+    """Check that a chart can be written to a file.
+
+    Raises:
+        InputError: SK-CLI-016 the suffix of the file is none of a chart.
+    """
+    from simkit.recording.graphs.graph_file import check_graph_file
+
+    check_graph_file(output)
+
+
+def write_frame_chart(output: Path, title: str, frames: TransformTree) -> None:
+    """Write the tree of frames as SVG or PDF, as the suffix of the file says."""
+    from simkit.recording.graphs.graph_contents import frame_graph
+    from simkit.recording.graphs.graph_file import write_graph
+
+    write_graph(output, title, *frame_graph(frames))

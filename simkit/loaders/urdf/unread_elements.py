@@ -19,9 +19,11 @@ _TOOLS_ELEMENTS = """
     sensor simulated_actuated_joint compliance gear_ratio rotor_inertia saturationLower saturationUpper deadBandUpper
     deadBandLower ignoreTransmissionAbsoluteEncoder robotNamespace hardwareInterface leftActuator rightActuator
     flexJoint rollJoint gap_joint passive_joint use_simulated_gripper_joint simulated_reduction collision_filter_group
-    loop_joint parent2 child2 origin actuator_frame force_element bushing
+    loop_joint parent2 child2 origin actuator_frame force_element bushing model_state
 """
-# Elements and attributes of Bullet, Drake, OpenRAVE and PR2, which Gazebo ignores as well.
+# Elements and attributes of Bullet, Drake, OpenRAVE and PR2, and those of the URDF specification that nobody reads,
+# which Gazebo ignores as well.
+_SENSOR_HINT = "a sensor that measures: <gazebo reference='LINK'><sensor type='camera'> or 'ray', as in an SDF file"
 _OF_OTHER_TOOLS = frozenset(_TOOLS_ELEMENTS.split())
 _TOOLS_ATTRIBUTES = "version concave current command_effort gear_velocity acceleration jerk D K mu_coulomb mu_viscous"
 _ATTRIBUTES_OF_OTHER_TOOLS = frozenset(_TOOLS_ATTRIBUTES.split())
@@ -61,20 +63,21 @@ def report_unread(robot: Params, extensions: GazeboExtensions) -> None:
     _report_extensions(robot, extensions, warnings)
     for (message, code, hint), places in warnings.items():
         robot.diagnostics.warning(code, message + _repeated(places), places[0], hint)
-    _note_all("SK-URDF-011", "elements of other tools, without effect in simkit and in Gazebo", notes, robot)
+    hint = _SENSOR_HINT if "<sensor> in <robot>" in notes else ""
+    _note_all("SK-URDF-011", "elements of other tools, without effect in simkit and in Gazebo", notes, robot, hint)
     water: _Places = defaultdict(list)
     for child in (child for link in robot.all("link") for child in link.children if child.name in PLUGIN_ELEMENTS):
         water[f"<{child.name}> in <link>"].append(child.where)
     _note_all("SK-URDF-033", "elements for libfreefloating_gazebo_fluid.so of the world", water, robot)
 
 
-def _note_all(code: str, message: str, counted: _Places, robot: Params) -> None:
+def _note_all(code: str, message: str, counted: _Places, robot: Params, hint: str = "") -> None:
     """Record one note that lists the found names with lines; none if the list is empty."""
     if counted:
         counts = {name: f", {len(places)} times" if len(places) > 1 else "" for name, places in counted.items()}
         listed = ", ".join(f"{name} (line {places[0].line}{counts[name]})" for name, places in counted.items())
         first = min((p for places in counted.values() for p in places), key=lambda w: w.line or 0)
-        robot.diagnostics.note(code, f"{message}: {listed}", first)
+        robot.diagnostics.note(code, f"{message}: {listed}", first, hint)
 
 
 def _report_extensions(robot: Params, extensions: GazeboExtensions, warnings: _Warnings) -> None:

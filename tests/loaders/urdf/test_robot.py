@@ -309,6 +309,15 @@ def test_elements_of_other_tools_cause_one_note_and_prefixed_elements_none(load)
     assert not [d for d in found if "drake" in d.message]
 
 
+def test_a_sensor_and_a_state_of_the_urdf_specification_are_a_note_with_what_measures(load):
+    specified = '<sensor name="c"><parent link="l"/><camera/></sensor><model_state model="r"/>'
+    found = load(robot(link("l", MASS) + specified))[1]
+    (note,) = with_code(found, "SK-URDF-011")
+    assert note.severity == "note" and "<gazebo reference='LINK'><sensor type='camera'>" in note.hint
+    assert "<sensor> in <robot>" in note.message and "<model_state> in <robot>" in note.message
+    assert not with_code(found, "SK-URDF-010")
+
+
 def test_loading_a_robot_is_deterministic(load):
     first, second = (load(ARM)[0].model for _ in range(2))
     assert [(x.scoped, x.pose_world) for x in first.links] == [(x.scoped, x.pose_world) for x in second.links]

@@ -26,6 +26,8 @@ from simkit_navigation.plugins.maps.map_saver import MapNotSaved, write_map
 from simkit_navigation.plugins.maps.pose_graph_file import PoseGraphFault, read_pose_graph, write_pose_graph
 from simkit_navigation.plugins.maps.scan_mapper import MapScan, ScanMapper
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose
+from simkit_navigation.plugins.navigation.robot_link import links_of_frame
+from simkit_nodes.host import current_host
 
 THRESHOLDS = (0.25, 0.65)
 """Occupancies of free and of occupied cells in the files of `save_map`, as in `map_saver_cli`."""
@@ -127,21 +129,24 @@ class Slam(LifecycleNode):
     def _use_if_known(self, scan):
         """Use a scan as soon as its transforms are known; return whether they are."""
         values, stamp = self._values, Time.from_msg(scan.header.stamp)
+        if not self._is_due(stamp.nanoseconds):
+            return True
         try:
             base = _planar(self._buffer.lookup_transform(values["odom_frame"], values["base_frame"], stamp))[0]
-            sensor, is_inverted = _planar(
-                self._buffer.lookup_transform(values["base_frame"], scan.header.frame_id, stamp)
-            )
+            if not self._has_moved(base):
+                return True
+            transform = self._buffer.lookup_transform(values["base_frame"], scan.header.frame_id, stamp)
         except TransformException:
             return False
-        if not self._is_new(base, stamp.nanoseconds):
-            return True
+        sensor, is_inverted = _planar(transform)
         if self._odometry is None:
             self.get_logger().info(f"Registering sensor: [{scan.header.frame_id}]")
         ranges = np.asarray(scan.ranges, np.float64)
         ranges = np.where(ranges < scan.range_min, np.nan, ranges)
         angles = scan.angle_min + scan.angle_increment * np.arange(len(ranges))
         guess = self._correction.compose(base)
+        if self._odometry is None and self._start is None and values["begin_at_true_pose"]:
+            self._start = self._true_pose()
         if self._start is not None:
             guess, self._start = self._start, None
         measured = MapScan(ranges, -angles if is_inverted else angles, float(scan.range_max), sensor, base, guess)
@@ -157,6 +162,16 @@ class Slam(LifecycleNode):
             self._publish_map()
         return True
 
+    def _true_pose(self):
+        """Return the true pose of the robot in the world, so that the map has the frame of the world."""
+        simulation, frame = current_host().simulation, self._values["base_frame"]
+        links = [] if simulation is None else links_of_frame(simulation, frame)
+        if len(links) != 1:
+            warn(self, "SK-NAV-001", f"{len(links)} models have a link {frame!r}: the map begins at the odometry")
+            return None
+        pose = links[0].pose
+        return PlanarPose(float(pose.position[0]), float(pose.position[1]), float(pose.rpy[2]))
+
     def _used(self, scan):
         """Match a scan, add it in mapping, and return the pose of the robot in the map."""
         is_far, self._is_far = self._is_far and bool(self._mapper.scans), False
@@ -166,16 +181,19 @@ class Slam(LifecycleNode):
 
     _has_stored_map = False
 
-    def _is_new(self, base, time_ns):
-        """Return whether the robot has moved since the last scan that was used."""
+    def _is_due(self, time_ns):
+        """Return whether enough time has passed since the last scan that was used, and scans are used at all."""
         if self._odometry is None or self._is_far:
             return True
-        if self._is_paused:
-            return False
+        return not self._is_paused and time_ns - self._last_ns >= self._values["minimum_time_interval"] * 1e9
+
+    def _has_moved(self, base):
+        """Return whether the robot has moved enough since the last scan that was used."""
+        if self._odometry is None or self._is_far:
+            return True
         moved = self._odometry.inverse().compose(base)
-        is_late = time_ns - self._last_ns >= self._values["minimum_time_interval"] * 1e9
         is_far = math.hypot(moved.x, moved.y) >= self._values["minimum_travel_distance"]
-        return is_late and (is_far or abs(moved.yaw) >= self._values["minimum_travel_heading"])
+        return is_far or abs(moved.yaw) >= self._values["minimum_travel_heading"]
 
     def _on_initial_pose(self, message):
         if self._mode != LOCALIZATION:

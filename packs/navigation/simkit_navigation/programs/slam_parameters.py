@@ -21,6 +21,7 @@ DEFAULTS = SETTINGS | {
     "map_file_name": "",
     "map_start_pose": [],
     "map_start_at_dock": False,
+    "begin_at_true_pose": False,
     "use_map_saver": True,
     "use_lifecycle_manager": False,
     "throttle_scans": 1,
@@ -38,7 +39,7 @@ DEFAULTS = SETTINGS | {
     "paused_new_measurements": False,
     "localization_on_configure": False,
 }
-"""Parameters of slam_toolbox that have an effect, with the defaults of its sources."""
+"""Parameters of slam_toolbox that have an effect, with the defaults of its sources; begin_at_true_pose is simkit's."""
 SILENT = {
     "use_sim_time",
     "solver_plugin",

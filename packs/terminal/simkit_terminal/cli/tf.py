@@ -12,7 +12,7 @@ import typer
 from typer import Argument, Option
 
 from simkit.cli.terminal import options
-from simkit.cli.terminal.frame_tree import receive_transforms
+from simkit.cli.terminal.frame_tree import check_frame_chart, receive_transforms, write_frame_chart
 from simkit.cli.terminal.output import (
     not_found_error,
     print_json,
@@ -82,21 +82,20 @@ def draw_frames(
 ) -> None:
     """Draw the tree of frames, as `ros2 run tf2_tools view_frames` does. Dashed lines are static transforms."""
     from simkit.msgs.transform_tree import TransformTree
-    from simkit.recording.graphs.graph_contents import frame_graph
-    from simkit.recording.graphs.graph_file import check_graph_file, write_graph
 
-    check_graph_file(output)
+    check_frame_chart(output)
     frames = TransformTree()
     with open_source(sim, bag) as source:
         for _ in receive_transforms(source, frames, topic or None, duration=duration):
             pass
         where = source.where
-    boxes, edges = frame_graph(frames)
-    write_graph(output, printable(f"Frames of {where}"), boxes, edges)
+    write_frame_chart(output, printable(f"Frames of {where}"), frames)
+    parents = frames.frames()
     if json_:
-        print_json({"output": str(output), "frames": len(boxes), "edges": len(edges)})
+        edges = len([child for child, parent in parents.items() if parent])
+        print_json({"output": str(output), "frames": len(parents), "edges": edges})
     else:
-        print_line(f"{output}: {len(boxes)} frame{'' if len(boxes) == 1 else 's'}")
+        print_line(f"{output}: {len(parents)} frame{'' if len(parents) == 1 else 's'}")
 
 
 @tf.command()

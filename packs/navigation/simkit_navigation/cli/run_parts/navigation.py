@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ClassVar
@@ -12,7 +13,10 @@ from simkit.extend import RunPart, option
 from simkit.run_files import model_and_file
 
 if TYPE_CHECKING:
-    from simkit import RunSpec
+    from collections.abc import Sequence
+
+    from simkit import RunSpec, Simulation
+    from simkit.run_nodes import Node
 
 _NAV_HELP = "Navigate with Nav2's servers on a map, or on the true map; goals: /navigate_to_pose, /goal_pose."
 _SLAM_HELP = "Make the map with slam_toolbox while the robot moves."
@@ -34,31 +38,40 @@ class Navigation(RunPart):
         return fill_in_value(words, "--nav", _TRUE_MAP, lambda word: word.endswith((".yaml", ".yml")))
 
     def extended(self, spec: RunSpec) -> RunSpec:
-        """Return the run with the nodes that navigate or make a map.
+        """Return the run with the true map of the world, if it is needed.
 
         Raises:
-            InputError: SK-CLI-060 the map is not there, or both a map and `--slam` are given.
+            InputError: SK-NAV-020 the map is not there, or both a map and `--slam` are given.
         """
-        if self.nav is None and not self.slam:
-            return spec
-        from simkit_navigation.navigation_nodes import MAP_MODEL, navigation_nodes
-
-        has_file = self.nav not in (None, _TRUE_MAP)
-        if has_file and self.slam:
-            raise InputError(
-                "SK-NAV-020", f"found --nav {self.nav} and --slam", help="--slam makes the map: use --nav alone"
-            )
-        if has_file and not Path(str(self.nav)).is_file():
+        if self._map is not None and self.slam:
+            text = f"found --nav {self.nav} and --slam"
+            raise InputError("SK-NAV-020", text, help="--slam makes the map: write --nav without a file")
+        if self._map is not None and not Path(self._map).is_file():
             problem = f"there is no map {self.nav}"
             raise InputError("SK-NAV-020", problem, help="simkit map WORLD -o NAME writes the true map of a world")
-        files = [file for model, file in map(model_and_file, spec.options.get("params_files", ())) if not model]
-        nodes = navigation_nodes(
-            self.nav if has_file else None,
+        if self.nav != _TRUE_MAP or self.slam:
+            return spec
+        from simkit_navigation.navigation_nodes import MAP_MODEL
+
+        return replace(spec, spawn=(*spec.spawn, {"model": MAP_MODEL}))
+
+    def added_nodes(self, spec: RunSpec, sim: Simulation) -> Sequence[Node]:
+        """Return the nodes that navigate or make a map."""
+        if self.nav is None and not self.slam:
+            return ()
+        from simkit_navigation.navigation_nodes import navigation_nodes, topics_of_robot
+
+        given = spec.options.get("params_files", ())
+        given = [given] if isinstance(given, (str, os.PathLike)) else given
+        files = [file for model, file in map(model_and_file, given) if not model]
+        return navigation_nodes(
+            self._map,
             navigates=self.nav is not None,
             makes_map=self.slam,
             params_files=files,
+            remap=topics_of_robot(sim),
         )
-        spec = replace(spec, nodes=(*spec.nodes, *nodes))
-        if self.nav == _TRUE_MAP and not self.slam:
-            spec = replace(spec, spawn=(*spec.spawn, {"model": MAP_MODEL}))
-        return spec
+
+    @property
+    def _map(self) -> str | None:
+        return None if self.nav == _TRUE_MAP else self.nav

@@ -28,6 +28,7 @@ Covariance = tuple[float, float, float, float]
 
 _FULL: Final = 100  # value of a cell with a point
 _MOST_POINTS: Final = 600  # of a scan; their sum stays below 2 ** 16
+_FEW_POINTS: Final = 200  # of a scan in the search with double steps
 _MOST_CELLS: Final = 3000  # between the sensor and a point that is matched; 30 m at 1 cm
 _DISTANCE_GAIN: Final = 0.2  # of the penalties, as in Karto
 _ANGLE_GAIN: Final = 0.2
@@ -88,13 +89,14 @@ class CorrelationMatcher:
             return Match(guess, 0.0, (_LARGEST_VARIANCE, 0.0, _LARGEST_VARIANCE, 4 * rules.coarse_angle_resolution**2))
         is_near = np.hypot(points[:, 0], points[:, 1]) <= _MOST_CELLS * step
         points = points[is_near] if is_near.any() else points[:0]
-        points = points[:: max(-(-len(points) // _MOST_POINTS), 1)]
+        points = _thinned(points, _MOST_POINTS)
+        few = _thinned(points, _FEW_POINTS)
         half = math.ceil(float(np.hypot(points[:, 0], points[:, 1]).max(initial=0.0)) / step) + 2 * self._reach + 4
         field = self._field(reference - np.array((guess.x, guess.y)), half)
         offset = rules.coarse_search_angle_offset
         for _ in range(4 if rules.use_response_expansion else 1):
             turns = _lattice(rules.coarse_angle_resolution, offset)
-            coarse = _Lattice(field, half, points / step, guess.yaw, (0, 0), turns, 2, self._reach)
+            coarse = _Lattice(field, half, few / step, guess.yaw, (0, 0), turns, 2, self._reach)
             scores = coarse.responses * self._penalties(coarse, is_penalised)
             index = int(scores.argmax())
             if scores.flat[index] > 0.0:
@@ -213,6 +215,11 @@ class _Lattice:
             spacing = float(self.turns[turn + 1] - self.turns[turn])
             angle += spacing * _vertex(sums[turn - 1 : turn + 2, row, column].tolist())
         return float(x), float(y), angle
+
+
+def _thinned(points: Floats, most: int) -> Floats:
+    """Return at most so many points, evenly over all."""
+    return points[:: max(-(-len(points) // most), 1)]
 
 
 def _place(index: int, scores: Floats) -> tuple[int, int, int]:

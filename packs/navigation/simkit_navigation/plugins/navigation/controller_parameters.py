@@ -31,6 +31,13 @@ _CHECKERS: Final = (
     ("goal_checker", GOAL_CHECKERS, "nav2_controller::SimpleGoalChecker"),
     ("progress_checker", PROGRESS_CHECKERS, "nav2_controller::SimpleProgressChecker"),
 )
+_OF_PATH_HANDLERS: Final = (
+    "prune_distance",
+    "max_robot_pose_search_dist",
+    "enforce_path_inversion",
+    "inversion_xy_tolerance",
+    "inversion_yaw_tolerance",
+)
 _OF_THE_SHIM: Final = frozenset(RotationShimOptions.element_names())
 _OF_THE_COSTMAP: Final = ("robot_radius", "footprint", "track_unknown_space")
 
@@ -68,12 +75,38 @@ def controller_parameters(
     own.update({name: costmap[name] for name in _OF_THE_COSTMAP if name in costmap})
     own["inflation_layer"] = _inflation(costmap)
     found = ControllerParameters({**own, **values})
+    of_path = _path_handling(found)
     for name in _names(values.get("controller_plugins")):
         found.blocks.append(name)
-        found.values[name] = _controller(name, _block(values, name), found, is_known)
+        found.values[name] = _controller(name, _block(values, name), found, is_known, of_path)
     for what, known, default in _CHECKERS:
         _add_checkers(what, known, default, found)
     return found
+
+
+def _path_handling(found: ControllerParameters) -> Values:
+    """Return the parameters of Rolling's path handler, which belong to the controllers in Humble and Jazzy."""
+    values: Values = {}
+    for name in _names(found.values.pop("path_handler_plugins", None)):
+        block = _block(found.values, name)
+        found.values.pop(name, None)
+        values = {key: block[key] for key in _OF_PATH_HANDLERS if key in block}
+        for key in ("enforce_path_rotation", "reject_unit_path"):
+            if block.get(key) is True:
+                found.told.append(f"{name}: {key} has no effect")
+    return values
+
+
+def _set_motion_model(settings: Values) -> None:
+    """Translate the motion model of Rolling, a block with a class, to the word of Humble and Jazzy."""
+    name = str(settings.get("motion_model", ""))
+    block = _block(settings, name)
+    if block:
+        kind = str(block.get("plugin", "")).replace("/", "::").rpartition("::")[2]
+        settings["motion_model"] = kind.removesuffix("MotionModel")
+        settings.pop(name)
+        if "min_turning_r" in block:
+            settings["AckermannConstraints"] = {"min_turning_r": block["min_turning_r"]}
 
 
 def _inflation(costmap: Values) -> Values:
@@ -85,7 +118,9 @@ def _inflation(costmap: Values) -> Values:
     return {}
 
 
-def _controller(name: str, settings: Values, found: ControllerParameters, is_known: Callable[[str], bool]) -> Values:
+def _controller(
+    name: str, settings: Values, found: ControllerParameters, is_known: Callable[[str], bool], of_path: Values
+) -> Values:
     """Return the block of a controller; the nearest class replaces one that simkit does not have."""
     kind = str(settings.get("plugin", "")).replace("/", "::")
     if kind == _SHIM:
@@ -98,6 +133,9 @@ def _controller(name: str, settings: Values, found: ControllerParameters, is_kno
     elif kind and not is_known(kind):
         found.told.append(f"{name}: the controller {_PURSUIT} replaces {kind}")
         return _pursuit_settings(settings)
+    if kind == _MPPI:
+        settings.update({key: value for key, value in of_path.items() if key not in settings})
+        _set_motion_model(settings)
     if kind in (_MPPI, _DWB):
         settings["critics"] = _critics(name, kind, settings, found)
     return settings

@@ -200,6 +200,37 @@ def _distances(shape: tuple[int, ...], sources: Indices) -> Indices | None:
     return found.reshape(-1)
 
 
+def _distance_of_goal(situation: Situation, path_cells: Indices) -> Indices | None:
+    """Return for each cell the distance from the last cell of a path, along rows and columns and around obstacles.
+
+    Nav2 measures through obstacles, so its robot may stop where a path goes around the end of a wall. The distances are
+    those of Nav2 where no obstacle is between, and everywhere if the goal is enclosed.
+    """
+    grid = situation.grid
+    straight = _distances(grid.cells.shape, path_cells[-1:])
+    robot = grid.to_cell(*grid.origin.compose(situation.pose)[:2])
+    blocked = grid.cells >= INSCRIBED
+    if straight is None or robot is None or not blocked.any():
+        return straight
+    found = np.full(grid.cells.shape, -1, np.int64)
+    front = np.zeros(grid.cells.shape, np.bool_)
+    front.reshape(-1)[path_cells[-1]] = True
+    is_open, distance = ~blocked, 0
+    while front.any():
+        found[front] = distance
+        wider = np.zeros_like(front)
+        wider[1:] |= front[:-1]
+        wider[:-1] |= front[1:]
+        wider[:, 1:] |= front[:, :-1]
+        wider[:, :-1] |= front[:, 1:]
+        front = wider & is_open & (found < 0)
+        distance += 1
+    if found[robot] < 0:
+        return straight
+    found[found < 0] = distance
+    return found.reshape(-1)
+
+
 def _known_cells(situation: Situation, path: Floats) -> Indices:
     """Return the cells of a path up to where it leaves the costmap, with poses at most one cell apart."""
     dense = _dense(path[:, :2], situation.grid.resolution)
@@ -235,7 +266,7 @@ class GoalDistCritic(_MapGridCritic):
     """Distance of the robot from the last path pose in the costmap."""
 
     def distances(self, situation: Situation) -> Indices | None:
-        return _distances(situation.grid.cells.shape, situation.path_cells[-1:])
+        return _distance_of_goal(situation, situation.path_cells)
 
 
 class PathAlignCritic(PathDistCritic):
@@ -265,7 +296,7 @@ class GoalAlignCritic(GoalDistCritic):
         angle = math.atan2(goal.y - pose.y, goal.x - pose.x)
         path[-1, 0] += self.distance * math.cos(angle)
         path[-1, 1] += self.distance * math.sin(angle)
-        return _distances(situation.grid.cells.shape, _known_cells(situation, path)[-1:])
+        return _distance_of_goal(situation, _known_cells(situation, path))
 
 
 class PreferForwardCritic(DwbCritic):

@@ -47,11 +47,14 @@ class NodeParameters(Plugin):
             plugin = tables.costmap_plugin(self.ros.node, values)
         unused: list[str] = []
         of_file = plugin.params(places, unused, self.params.diagnostics)
-        names = {child.name for child in of_file.children}
+        in_world = {child.name for child in self.params.children}
+        # a default of Nav2, which is not in the file, replaces no element
+        used = [child for child in of_file.children if child.name in values or child.name not in in_world]
+        names = {child.name for child in used}
         others = [child for child in self.params.children if child.name not in names]
         where, diagnostics = next(iter(places.values())), self.params.diagnostics
         self.params = Params(
-            self.params.name, self.params.value, self.params.attributes, [*of_file.children, *others], self.where,
+            self.params.name, self.params.value, self.params.attributes, [*used, *others], self.where,
             diagnostics,
         )  # fmt: skip
         for sentence in plugin.told:

@@ -26,6 +26,8 @@ from simkit.extend import (
     texts,
     without_effect,
 )
+from simkit.plugins.find_entities import find_plugin_file
+from simkit.trusted_folders import TrustedFolders
 from simkit_navigation.behavior_trees import default_trees
 from simkit_navigation.behavior_trees.path_geometry import nearest_index, path_length
 from simkit_navigation.behavior_trees.tree_node import RUNNING, SUCCESS, Tree, TreeError
@@ -162,7 +164,12 @@ class BtNavigator(NodeParameters):
         if not name:
             name = default_trees.TO_POSE if kind == TO_POSE else default_trees.THROUGH_POSES
         world = self.where.file
-        return default_trees.find_tree_file(name, (Path(world).parent,) if world else ())
+        folders = (Path(world).parent,) if world else ()
+        path = default_trees.find_tree_file(name, folders)
+        if path is None or (world and not TrustedFolders([default_trees.FOLDER, Path(), *folders]).allows(path)):
+            # a world file is not trusted: it may name the files that it may use for models and maps, too
+            path = find_plugin_file(self, name, self.sim.engine.structure.builder)
+        return path
 
     def _load_tree(self, kind: str, wanted: str, diagnostics: Diagnostics) -> tuple[Path, Tree] | None:
         """Return a tree, which stays loaded; None after an error, which is reported."""
@@ -171,7 +178,8 @@ class BtNavigator(NodeParameters):
             name = wanted or self._defaults[kind]
             names = default_trees.default_tree_names()
             help_ = did_you_mean(Path(name).name, names) or f"the default trees are {', '.join(names)}"
-            diagnostics.error("SK-BT-008", f"there is no behaviour tree {name!r}", self.where, help_)
+            place = " in the working folder or the folders of the world" if self.where.file else ""
+            diagnostics.error("SK-BT-008", f"there is no behaviour tree {name!r}{place}", self.where, help_)
             return None
         if file not in self._trees:
             found = read_tree_file(file, diagnostics)

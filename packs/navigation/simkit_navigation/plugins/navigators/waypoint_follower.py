@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
-from simkit import Params, Plugin, msgs
+from simkit import Params, msgs
 from simkit.errors import InputError
 from simkit.extend import NEVER, Options, OptionsOf, boolean, number, offers, text, without_effect
 from simkit.msgs.goal_status import GoalStatus
 from simkit_navigation.plugins.lifecycle_state import GET_STATE, answer_active
+from simkit_navigation.plugins.navigation.node_parameters import NodeParameters
 
 if TYPE_CHECKING:
     from simkit import Model, Simulation
@@ -57,7 +58,7 @@ class _Walk:
     task_end_ns: int | None = None
 
 
-class WaypointFollower(Plugin):
+class WaypointFollower(NodeParameters):
     """Navigates to poses in turn: actions `follow_waypoints` and `follow_gps_waypoints`.
 
     At each waypoint, the robot waits, or waits for a message on a topic, as `<waypoint_task_executor_plugin>` says.
@@ -67,6 +68,7 @@ class WaypointFollower(Plugin):
     filenames = ("libsimkit_waypoint_follower.so",)
     names = ("simkit::WaypointFollower", "nav2_waypoint_follower::WaypointFollower")
     parent_kind = ("world", "model")
+    executable = "waypoint_follower"
     options = OptionsOf(WaypointFollowerOptions)
     endpoints = (offers("~/get_state", GET_STATE),)
     before_step_rate = NEVER
