@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Final
 
 from simkit_navigation.nav2_parameters import SERVER_NODES, PluginOfNode, Values
-from simkit_navigation.plugins.navigation.fake_localization import FakeLocalization
+from simkit_navigation.plugins.localisation.fake_localization import FakeLocalization
 
 _OF_AMCL: Final = {
     **{f"odom_alpha{n}": f"alpha{n}" for n in range(1, 6)},

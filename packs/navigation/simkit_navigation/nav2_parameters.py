@@ -17,17 +17,17 @@ from simkit.diagnostic_record import TEXT_SOURCE
 from simkit.diagnostics import NOWHERE, Diagnostic, Diagnostics, Where
 from simkit.plugins.ros_names import WITHOUT_RUN_FILES
 from simkit.plugins.unread_parameters import names_read
+from simkit_navigation.plugins.controllers.controller_parameters import controller_parameters
+from simkit_navigation.plugins.controllers.controller_server import ControllerServer
+from simkit_navigation.plugins.costmaps.costmap_2d import Costmap2D
+from simkit_navigation.plugins.costmaps.costmap_parameters import costmap_parameters
 from simkit_navigation.plugins.localisation.amcl import Amcl
 from simkit_navigation.plugins.localisation.robot_localization import EkfNode
-from simkit_navigation.plugins.navigation.behavior_server import BehaviorServer
-from simkit_navigation.plugins.navigation.controller_parameters import controller_parameters
-from simkit_navigation.plugins.navigation.controller_server import ControllerServer
-from simkit_navigation.plugins.navigation.costmap_2d import Costmap2D
-from simkit_navigation.plugins.navigation.costmap_parameters import costmap_parameters
-from simkit_navigation.plugins.navigation.planner_server import PlannerServer
-from simkit_navigation.plugins.navigation.smoother_server import SmootherServer
+from simkit_navigation.plugins.navigators.behavior_server import BehaviorServer
 from simkit_navigation.plugins.navigators.bt_navigator import BtNavigator
 from simkit_navigation.plugins.navigators.waypoint_follower import WaypointFollower
+from simkit_navigation.plugins.planners.planner_server import PlannerServer
+from simkit_navigation.plugins.planners.smoother_server import SmootherServer
 
 Values = dict[str, object]
 """Values of parameters; blocks are dictionaries."""

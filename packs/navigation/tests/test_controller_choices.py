@@ -14,18 +14,18 @@ from navigation_worlds import pose, run_until_done, world
 import simkit
 from simkit import Params
 from simkit_navigation.nav2_parameters import is_class_of_user, nested
-from simkit_navigation.plugins.navigation.controller_parameters import controller_parameters
-from simkit_navigation.plugins.navigation.cost_grid import LETHAL
-from simkit_navigation.plugins.navigation.goal_checkers import (
+from simkit_navigation.plugins.controllers.controller_parameters import controller_parameters
+from simkit_navigation.plugins.controllers.goal_checkers import (
     PositionGoalChecker,
     SimpleGoalChecker,
     StoppedGoalChecker,
 )
-from simkit_navigation.plugins.navigation.graceful_controller import GracefulController
+from simkit_navigation.plugins.controllers.graceful_controller import GracefulController
+from simkit_navigation.plugins.controllers.progress_checkers import PoseProgressChecker, SimpleProgressChecker
+from simkit_navigation.plugins.controllers.pure_pursuit import PurePursuit
+from simkit_navigation.plugins.controllers.rotation_shim import RotationShim
+from simkit_navigation.plugins.costmaps.cost_grid import LETHAL
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose
-from simkit_navigation.plugins.navigation.progress_checkers import PoseProgressChecker, SimpleProgressChecker
-from simkit_navigation.plugins.navigation.pure_pursuit import PurePursuit
-from simkit_navigation.plugins.navigation.rotation_shim import RotationShim
 
 BEGIN, STOPPED = PlanarPose(0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
 PURSUIT = "nav2_regulated_pure_pursuit_controller::RegulatedPurePursuitController"

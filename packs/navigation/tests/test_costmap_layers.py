@@ -11,9 +11,9 @@ from navigation_worlds import place
 
 import simkit
 from simkit import msgs
-from simkit_navigation.plugins.navigation.cost_grid import FREE, LETHAL, UNKNOWN, CostGrid, cost_table, grid_of_message
-from simkit_navigation.plugins.navigation.costmap_parameters import costmap_parameters
-from simkit_navigation.plugins.navigation.footprint import cells_within, padded, read_footprint, round_footprint
+from simkit_navigation.plugins.costmaps.cost_grid import FREE, LETHAL, UNKNOWN, CostGrid, cost_table, grid_of_message
+from simkit_navigation.plugins.costmaps.costmap_parameters import costmap_parameters
+from simkit_navigation.plugins.costmaps.footprint import cells_within, padded, read_footprint, round_footprint
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose
 
 WORLD = """<sdf version="1.9"><world name="w"><plugin filename="libsimkit_costmap_2d.so" name="local_costmap">
