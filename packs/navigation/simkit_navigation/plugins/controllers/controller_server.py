@@ -24,6 +24,7 @@ from simkit.extend import (
 )
 from simkit.plugins.drives.odometry_messages import ODOMETRY
 from simkit_navigation.plugins.controllers.controller_node import ControllerNode
+from simkit_navigation.plugins.controllers.controller_parameters import controller_parameters
 from simkit_navigation.plugins.controllers.controller_topics import TOPICS, ControllerTopics
 from simkit_navigation.plugins.controllers.dwb_options import DwbCriticOptions, DwbOptions
 from simkit_navigation.plugins.controllers.goal_checkers import GOAL_CHECKERS, GoalCheckerOptions, PositionGoalChecker
@@ -31,19 +32,18 @@ from simkit_navigation.plugins.controllers.graceful_controller import GracefulOp
 from simkit_navigation.plugins.controllers.local_path import distances_along
 from simkit_navigation.plugins.controllers.mppi_critics import CRITICS as MPPI_CRITICS
 from simkit_navigation.plugins.controllers.mppi_options import MppiOptions
-from simkit_navigation.plugins.controllers.primary_controllers import PRIMARY_CONTROLLERS
 from simkit_navigation.plugins.controllers.progress_checkers import (
     PROGRESS_CHECKERS,
     ProgressCheckerOptions,
     SimpleProgressChecker,
 )
 from simkit_navigation.plugins.controllers.pure_pursuit import PurePursuitOptions, Speeds
-from simkit_navigation.plugins.controllers.rotation_shim import RotationShim, RotationShimOptions
+from simkit_navigation.plugins.controllers.rotation_shim import CONTROLLERS, RotationShimOptions
 from simkit_navigation.plugins.controllers.tutorial_pure_pursuit import PurePursuitControllerOptions
 from simkit_navigation.plugins.costmaps.cost_grid import CostGrid
 from simkit_navigation.plugins.costmaps.costmap_reader import COSTMAP, CostmapReader
 from simkit_navigation.plugins.costmaps.footprint import Footprint, read_footprint
-from simkit_navigation.plugins.navigation.name_lists import split_names
+from simkit_navigation.plugins.navigation.node_values import NodeValues, Values, split_names
 from simkit_navigation.plugins.navigation.planar_pose import Floats, PlanarPose, look_up, poses_of_path
 from simkit_navigation.plugins.navigation.user_classes import ServerPlugin
 from simkit_navigation.plugins.navigation.velocity_command import VelocityCommand
@@ -66,10 +66,6 @@ _CHECKERS: Final = {
     "progress_checker": "nav2_controller::PoseProgressChecker",
 }
 """Class of a checker without `<plugin>`."""
-CONTROLLERS: Final = {
-    **PRIMARY_CONTROLLERS,
-    "nav2_rotation_shim_controller::RotationShimController": RotationShim,
-}
 SPEED_LIMIT: Final = "nav2_msgs/msg/SpeedLimit"
 _METHODS: Final = ("compute_velocity_commands", "set_plan")
 _DEFAULT: Final = {"FollowPath": "nav2_regulated_pure_pursuit_controller::RegulatedPurePursuitController"}
@@ -156,7 +152,7 @@ class ControllerServer(ControllerTopics, CostmapReader, ServerPlugin):
 
     filenames = ("libsimkit_controller_server.so",)
     names = ("simkit::ControllerServer", "nav2_controller::ControllerServer")
-    executable = "controller_server"
+    costmap = "local_costmap"
     options = OptionsOf(ControllerServerOptions)
     option_types = (
         PurePursuitOptions,
@@ -177,6 +173,10 @@ class ControllerServer(ControllerTopics, CostmapReader, ServerPlugin):
         *(publishes(topic, kind) for topic, kind in TOPICS.items()),
     )
     before_step_rate = NEVER
+
+    @classmethod
+    def translate_parameters(cls, values: Values, costmap: Values, /) -> NodeValues:
+        return controller_parameters(values, costmap)
 
     def load(self, parent: Simulation | Model, params: Params) -> None:
         options = self.options.read_all()

@@ -13,7 +13,7 @@ from simkit_navigation.plugins.controllers.dwb_options import DwbCriticOptions, 
 from simkit_navigation.plugins.controllers.local_path import distances_along
 from simkit_navigation.plugins.controllers.velocity_samples import Speeds3, Trajectories, VelocitySampler
 from simkit_navigation.plugins.costmaps.cost_grid import CostGrid
-from simkit_navigation.plugins.navigation.name_lists import split_names
+from simkit_navigation.plugins.navigation.node_values import split_names
 from simkit_navigation.plugins.navigation.planar_pose import Floats, PlanarPose
 
 if TYPE_CHECKING:

@@ -22,7 +22,7 @@ from simkit_navigation.plugins.controllers.mppi_samples import (
 from simkit_navigation.plugins.controllers.sample_arithmetic import sum_over_samples
 from simkit_navigation.plugins.controllers.sample_markers import trajectory_markers
 from simkit_navigation.plugins.costmaps.cost_grid import CostGrid
-from simkit_navigation.plugins.navigation.name_lists import split_names
+from simkit_navigation.plugins.navigation.node_values import split_names
 from simkit_navigation.plugins.navigation.planar_pose import Floats, PlanarPose
 
 if TYPE_CHECKING:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -148,3 +148,10 @@ class RotationShim:
         is_unknown = costs == UNKNOWN
         hits = (costs >= options.max_cost_threshold) & ~is_unknown
         return bool(hits.any() or (is_unknown.any() and not self._node.tracks_unknown_space))
+
+
+CONTROLLERS: Final[dict[str, type[Any]]] = {
+    **PRIMARY_CONTROLLERS,
+    "nav2_rotation_shim_controller::RotationShimController": RotationShim,
+}
+"""All controllers of simkit by their name in Nav2."""

@@ -32,6 +32,7 @@ from simkit_navigation.plugins.costmaps.costmap_layers import (
     StaticLayer,
     StaticLayerOptions,
 )
+from simkit_navigation.plugins.costmaps.costmap_parameters import costmap_parameters
 from simkit_navigation.plugins.costmaps.denoise_layer import DenoiseLayerOptions
 from simkit_navigation.plugins.costmaps.footprint import Footprint, padded, read_footprint
 from simkit_navigation.plugins.costmaps.gradient_layer import GradientLayer, GradientLayerOptions
@@ -45,6 +46,7 @@ from simkit_navigation.plugins.costmaps.update_window import (
     window_of_layers,
 )
 from simkit_navigation.plugins.costmaps.voxel_layer import VoxelLayerOptions
+from simkit_navigation.plugins.navigation.node_values import NodeValues, Values
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose, look_up, pose_of_message
 from simkit_navigation.plugins.navigation.user_classes import ServerPlugin
 
@@ -130,6 +132,15 @@ class Costmap2D(ServerPlugin):
         offers("~/get_costmap", "nav2_msgs/srv/GetCostmap"),
         *(offers(f"~/clear_{extent}_<name>", type_name) for extent, type_name in _CLEARS.items()),
     )
+
+    @classmethod
+    def translate_parameters(cls, values: Values, _: Values, /) -> NodeValues:
+        return costmap_parameters(values)
+
+    @property
+    def node_names(self) -> tuple[str, ...]:
+        space, node = self.ros.namespace, self.ros.node
+        return (f"{space}/{node}/{node}", f"{space}/{node}")
 
     def load(self, parent: Simulation | Model, params: Params) -> None:
         options = self.options.read_all()

@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from typing import Final
 
 from simkit_navigation.plugins.costmaps.costmap_layers import DEFAULT_LAYERS, LAYERS
-
-Values = dict[str, object]
+from simkit_navigation.plugins.navigation.node_values import NodeValues, Values, block_of, names_of
 
 _COSTMAP: Final[Values] = {
     "robot_base_frame": "base_link",
@@ -21,8 +20,8 @@ _PACKAGE: Final = "nav2_costmap_2d::"
 _DATA_TYPES: Final = ("LaserScan", "PointCloud2")
 
 
-def costmap_parameters(values: Mapping[str, object]) -> tuple[Values, list[str], list[str]]:
-    """Return the parameters of a `Costmap2D`, the names of its blocks, and sentences about what is left out.
+def costmap_parameters(values: Mapping[str, object]) -> NodeValues:
+    """Return the parameters of a `Costmap2D`.
 
     Args:
         values: parameters of a costmap node of Nav2; blocks are dictionaries.
@@ -35,10 +34,9 @@ def costmap_parameters(values: Mapping[str, object]) -> tuple[Values, list[str],
         listed = names_of(values.get(key))
         kept[key] = []
         for name in listed or (DEFAULT_LAYERS if key == "plugins" else ()):
-            found = values.get(name)
-            if not listed and not isinstance(found, dict):
+            if not listed and not isinstance(values.get(name), dict):
                 continue  # a layer of simkit's own list with simkit's defaults
-            settings: Values = dict(found) if isinstance(found, dict) else {}
+            settings = block_of(values, name)
             kind = str(settings.get("plugin") or DEFAULT_LAYERS.get(name, "")).replace("/", "::")
             if kind.startswith(_PACKAGE) and kind not in LAYERS:
                 told.append(f"{name}: the {'filter' if key == 'filters' else 'layer'} {kind} is left out")
@@ -53,7 +51,7 @@ def costmap_parameters(values: Mapping[str, object]) -> tuple[Values, list[str],
         is_layer = isinstance(block, dict) and ("plugin" in block or name in DEFAULT_LAYERS)
         if is_layer and names_of(values.get("plugins")) and name not in blocks:
             result.pop(name, None)
-    return result, blocks, told
+    return NodeValues(result, blocks, told)
 
 
 def _layer(
@@ -67,8 +65,7 @@ def _layer(
     settings = {**_OBSERVING, **settings}
     sources = []
     for source in names_of(settings["observation_sources"]):
-        block = settings.get(source)
-        own: Values = {"topic": source, **_SOURCE, **(block if isinstance(block, dict) else {})}
+        own: Values = {"topic": source, **_SOURCE, **block_of(settings, source)}
         if own.get("data_type", "LaserScan") not in _DATA_TYPES:
             told.append(f"{name}: the source {source} is left out: its data_type is not {' or '.join(_DATA_TYPES)}")
             settings.pop(source, None)
@@ -77,10 +74,3 @@ def _layer(
         sources.append(source)
     settings["observation_sources"] = " ".join(sources)
     return settings, sources
-
-
-def names_of(value: object) -> list[str]:
-    """Return the names in a list, or in a text with spaces."""
-    if isinstance(value, (list, tuple)):
-        return [str(item) for item in value if str(item)]
-    return value.split() if isinstance(value, str) else []

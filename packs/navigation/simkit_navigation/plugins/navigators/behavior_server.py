@@ -13,8 +13,10 @@ from simkit.pose import wrap_angle
 from simkit_navigation.plugins.costmaps.cost_grid import CostGrid
 from simkit_navigation.plugins.costmaps.costmap_reader import COSTMAP, CostmapReader
 from simkit_navigation.plugins.costmaps.footprint import Footprint, read_footprint
+from simkit_navigation.plugins.navigation.node_values import NodeValues, Values
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose, look_up
 from simkit_navigation.plugins.navigation.velocity_command import VelocityCommand
+from simkit_navigation.plugins.navigators.navigator_parameters import behavior_parameters
 
 if TYPE_CHECKING:
     from simkit import Model, Simulation
@@ -102,13 +104,17 @@ class BehaviorServer(CostmapReader):
     filenames = ("libsimkit_behavior_server.so",)
     names = ("simkit::BehaviorServer", "behavior_server::BehaviorServer")
     parent_kind = ("world", "model")
-    executable = "behavior_server"
+    costmap = "local_costmap"
     options = OptionsOf(BehaviorServerOptions)
     endpoints = (
         listens("local_costmap/costmap_raw", COSTMAP, named_by=("costmap_topic",)),
         listens("cmd_vel_teleop", *_TWIST, named_by=("cmd_vel_teleop",)),
     )
     before_step_rate = NEVER
+
+    @classmethod
+    def translate_parameters(cls, values: Values, costmap: Values, /) -> NodeValues:
+        return behavior_parameters(values, costmap)
 
     def load(self, parent: Simulation | Model, params: Params) -> None:
         options = self.options.read_all()

@@ -11,6 +11,7 @@ from simkit import Params, Plugin, msgs
 from simkit.extend import NEVER, Options, OptionsOf, listens, number, text, texts, without_effect
 from simkit_navigation.plugins.costmaps.cost_grid import CostGrid
 from simkit_navigation.plugins.costmaps.costmap_reader import COSTMAP, CostmapReader
+from simkit_navigation.plugins.navigation.node_values import NodeValues, Values, names_of
 from simkit_navigation.plugins.navigation.planar_pose import (
     Floats,
     PlanarPose,
@@ -103,7 +104,7 @@ class PlannerServer(CostmapReader, ServerPlugin):
 
     filenames = ("libsimkit_planner_server.so",)
     names = ("simkit::PlannerServer", "nav2_planner::PlannerServer")
-    executable = "planner_server"
+    costmap = "global_costmap"
     options = OptionsOf(PlannerServerOptions)
     option_types = (
         GridPlannerOptions,
@@ -113,6 +114,11 @@ class PlannerServer(CostmapReader, ServerPlugin):
     )
     endpoints = (listens("global_costmap/costmap_raw", COSTMAP, named_by=("costmap_topic",)),)
     before_step_rate = NEVER
+
+    @classmethod
+    def translate_parameters(cls, values: Values, costmap: Values, /) -> NodeValues:
+        base = costmap.get("robot_base_frame", "base_link")
+        return NodeValues({"robot_base_frame": base, **values}, names_of(values.get("planner_plugins")))
 
     def load(self, parent: Simulation | Model, params: Params) -> None:
         options = self.options.read_all()

@@ -11,6 +11,7 @@ from simkit import Params, msgs
 from simkit.extend import Options, OptionsOf, listens, text, texts
 from simkit_navigation.plugins.costmaps.cost_grid import LETHAL, CostGrid
 from simkit_navigation.plugins.costmaps.costmap_reader import COSTMAP, CostmapReader
+from simkit_navigation.plugins.navigation.node_values import NodeValues, Values, names_of
 from simkit_navigation.plugins.navigation.planar_pose import (
     Floats,
     PlanarPose,
@@ -89,13 +90,16 @@ class SmootherServer(CostmapReader, ServerPlugin):
 
     filenames = ("libsimkit_smoother_server.so",)
     names = ("simkit::SmootherServer", "nav2_smoother::SmootherServer")
-    executable = "smoother_server"
     options = OptionsOf(SmootherServerOptions)
     option_types = (SimpleSmootherOptions, SavitzkyGolaySmootherOptions)
     endpoints = (
         listens("global_costmap/costmap_raw", COSTMAP, named_by=("costmap_topic",)),
         listens("global_costmap/published_footprint", _POLYGON, named_by=("footprint_topic",)),
     )
+
+    @classmethod
+    def translate_parameters(cls, values: Values, _: Values, /) -> NodeValues:
+        return NodeValues({"robot_base_frame": "base_link", **values}, names_of(values.get("smoother_plugins")))
 
     def load(self, parent: Simulation | Model, params: Params) -> None:
         options = self.options.read_all()
