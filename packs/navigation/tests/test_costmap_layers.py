@@ -192,6 +192,12 @@ def test_the_costmap_node_has_the_defaults_of_nav2() -> None:
     assert len(told) == 2 and "OddLayer is left out" in told[1] and "the source radar is left out" in told[0]
 
 
+def test_filters_that_the_launch_file_of_nav2_enables_are_enabled() -> None:
+    block = {"plugin": "nav2_costmap_2d::KeepoutFilter", "enabled": "KEEPOUT_ZONE_ENABLED"}
+    values, _, told = costmap_parameters({"filters": ["zones"], "zones": block})
+    assert values["zones"] == {**block, "enabled": True} and not told
+
+
 def test_heights_of_a_laser_scan_are_checked() -> None:
     layer = "<plugins>obstacle_layer</plugins><obstacle_layer><scan>{}</scan></obstacle_layer>"
     for limits, expected in (("<min_obstacle_height>0.1</min_obstacle_height>", 0), ("", 1)):

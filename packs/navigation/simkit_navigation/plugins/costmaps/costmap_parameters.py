@@ -17,6 +17,11 @@ _OBSERVING: Final[Values] = {"observation_sources": "", "min_obstacle_height": 0
 _SOURCE: Final[Values] = {"clearing": False, "min_obstacle_height": 0.0, "max_obstacle_height": 0.0}
 """Defaults of Humble and Jazzy: nav2_costmap_2d/src/costmap_2d_ros.cpp, plugins/obstacle_layer.cpp, voxel_layer.cpp."""
 _PACKAGE: Final = "nav2_costmap_2d::"
+_ENABLED_BY_LAUNCH: Final = ("KEEPOUT_ZONE_ENABLED", "SPEED_ZONE_ENABLED")
+"""Values of `enabled` which the launch file of nav2_bringup replaces, by true unless its arguments say otherwise.
+
+Source: nav2_bringup/launch/bringup_launch.py of Kilted and later, use_keepout_zones and use_speed_zones.
+"""
 _DATA_TYPES: Final = ("LaserScan", "PointCloud2")
 
 
@@ -60,6 +65,8 @@ def _layer(
     """Return the settings of a layer with Nav2's defaults, and the names of its sources."""
     if kind == f"{_PACKAGE}StaticLayer" and not settings.get("map_topic") and values.get("map_topic"):
         settings["map_topic"] = values["map_topic"]
+    if settings.get("enabled") in _ENABLED_BY_LAUNCH:
+        settings["enabled"] = True
     if kind not in (f"{_PACKAGE}ObstacleLayer", f"{_PACKAGE}VoxelLayer"):
         return settings, []
     settings = {**_OBSERVING, **settings}
