@@ -3,7 +3,9 @@
     python benchmarks/navigation_goals.py turtlebot3_house --goals 10 --params-file nav2_params.yaml --picture house.png
 
 A goal is a free cell of the true map at least 0.45 m from walls, 2 m from the goal before and connected with the
-start. A goal is reached if the action succeeds and the true position is within the tolerance of it.
+start. A goal is reached if the action succeeds and the true position is within the tolerance of it. The least distance
+is that of the robot's centre from an occupied cell of the true map. `--motion home` plays a motion of `play_motion2`
+first, for a TIAGo whose arm is stretched out at the start.
 """
 
 from __future__ import annotations
@@ -68,6 +70,23 @@ def drive(sim: simkit.Simulation, goals: npt.NDArray[np.float64], robot: str, to
     return reached, np.array(track), plans.messages[-1] if plans.messages else None
 
 
+def least_distance(grid: msgs.OccupancyGrid, track: npt.NDArray[np.float64]) -> float:
+    """Return the least distance of places from the middle of an occupied cell [m]."""
+    cells = np.asarray(grid.data).reshape(grid.info.height, grid.info.width)
+    step, origin = float(f"{grid.info.resolution:.7g}"), grid.info.origin.position
+    distance = cv2.distanceTransform((cells != 100).astype(np.uint8), cv2.DIST_L2, 5) * step
+    columns, rows = np.floor((track - (origin.x, origin.y)) / step).astype(np.intp).T
+    return float(distance[rows, columns].min())
+
+
+def play(sim: simkit.Simulation, motion: str) -> None:
+    """Play a motion of `play_motion2`."""
+    task = sim.send_goal("/play_motion2", {"motion_name": motion, "skip_planning": True})
+    while not task.is_done and sim.time < LONGEST:
+        sim.run(0.2)
+    print(f"  motion {motion}: {task.status.name if task.is_done else 'NOT DONE'} at {sim.time:.1f} s")
+
+
 def draw(file: str, grid: msgs.OccupancyGrid, track: Any, goals: Any, plan: Any, costs: Any) -> None:
     """Draw map, costs, track, goals and the last plan."""
     cells = np.asarray(grid.data).reshape(grid.info.height, grid.info.width)
@@ -107,6 +126,7 @@ def main() -> None:
     parser.add_argument("--picture", default="")
     parser.add_argument("--spawn", action="append", default=[], metavar="MODEL:x,y,yaw")
     parser.add_argument("--remap", action="append", default=[], metavar="OLD:=NEW")
+    parser.add_argument("--motion", default="", help="motion to play first, such as home")
     options = parser.parse_args()
     files = [options.params_file] if options.params_file else []
     rules = dict(rule.split(":=") for rule in options.remap)
@@ -116,6 +136,8 @@ def main() -> None:
             sim.add_node(**node)
         maps, costs = sim.subscribe("/map", keep=1), sim.subscribe("/global_costmap/costmap", keep=1)
         sim.step()
+        if options.motion:
+            play(sim, options.motion)
         x, y, _ = sim.model(options.robot).pose.position
         goals = goals_of(maps.messages[-1], (x, y), options.goals, options.seed)
         begun, cpu = sim.time, time.process_time()
@@ -127,6 +149,7 @@ def main() -> None:
         length = float(np.hypot(*np.diff(track, axis=0).T).sum())
         name = Path(options.params_file).name if options.params_file else "default parameters"
         print(f"{options.world}, {name}: {reached} of {len(goals)} goals, {length:.1f} m, {simulated:.0f} s")
+        print(f"{least_distance(maps.messages[-1], track):.2f} m from a wall at least")
         print(f"{simulated / cpu:.1f} × real time of CPU")
         if options.picture:
             draw(options.picture, maps.messages[-1], track, goals, plan, costs.messages[-1] if costs.messages else None)

@@ -12,9 +12,9 @@ from navigation_worlds import WALL, place
 
 import simkit
 from simkit.errors import LoadError, PluginError
-from simkit_navigation.plugins.navigation.cost_grid import FREE, INSCRIBED, LETHAL, UNKNOWN, CostGrid, grid_of_message
-from simkit_navigation.plugins.navigation.footprint import read_footprint, round_footprint
-from simkit_navigation.plugins.navigation.obstacle_layer import shifted
+from simkit_navigation.plugins.costmaps.cost_grid import FREE, INSCRIBED, LETHAL, UNKNOWN, CostGrid, grid_of_message
+from simkit_navigation.plugins.costmaps.footprint import read_footprint, round_footprint
+from simkit_navigation.plugins.costmaps.obstacle_layer import shifted
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose
 
 COSTMAP = '<plugin filename="libsimkit_costmap_2d.so" name="global_costmap">{}</plugin>'
