@@ -41,6 +41,20 @@ def _own_folders(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
         yield
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _empty_present_folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Run the tests in an empty folder, which stays empty.
+
+    A world of text and a node of a package search packages around the present folder. In a checkout this search lists
+    900 folders for each simulation, and those of other checkouts beside it.
+    """
+    folder = tmp_path_factory.mktemp("present_folder")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        yield
+    assert list(folder.iterdir()) == [], "a test wrote files to the present folder"
+
+
 @pytest.hookimpl(hookwrapper=True)
 def pytest_collection() -> Iterator[None]:
     """Collect the tests without the garbage collector, which then never scans them.

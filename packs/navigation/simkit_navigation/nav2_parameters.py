@@ -12,9 +12,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Final
 
-from simkit import Params, Plugin
+from simkit import Diagnostic, Params, Plugin
 from simkit.diagnostic_record import TEXT_SOURCE
-from simkit.diagnostics import Diagnostic, Where
+from simkit.extend import Where
 from simkit.plugins.ros_names import WITHOUT_RUN_FILES
 from simkit_navigation.plugins.controllers.controller_server import ControllerServer
 from simkit_navigation.plugins.costmaps.costmap_2d import Costmap2D

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.bridges.teleop import find_targets
-from simkit.diagnostics import Diagnostics
+from simkit.extend import Diagnostics
 from simkit.loaders.resources.bundled_models import bundled_folders
 from simkit.plugins.ros_parameter_files import read_parameter_file
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from simkit import Params, Plugin
-from simkit.diagnostics import NOWHERE
 from simkit.extend import Diagnostics, Where
 from simkit.plugins.unread_parameters import names_read
 
@@ -69,7 +68,7 @@ class NodeValues:
         """
         names = {part for name in names_read(kind) for part in name.split(".")} | set(self.blocks)
         root = Params("plugin", diagnostics=diagnostics)
-        root.where = next(iter(places.values()), NOWHERE)
+        root.where = next(iter(places.values()), Where())
         _add_elements(root, self.values, names, "", unused, places)
         return root
 

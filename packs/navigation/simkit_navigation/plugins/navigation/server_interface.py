@@ -6,10 +6,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
-    from simkit import Simulation
+    from simkit import Publisher, Simulation, Subscription
     from simkit.msgs import Message
-    from simkit.runtime.communication.publisher import Publisher
-    from simkit.runtime.communication.subscription import Subscription
     from simkit.topic_logger import TopicLogger
 
 
@@ -23,11 +21,6 @@ class Node(Protocol):
 
     sim: Simulation
     log: TopicLogger
-
-    def subscribe(
-        self, topic: str, callback: Callable[[Message], None] | None = None, keep: int | None = None
-    ) -> Subscription:
-        """Receive each message on a topic; see `Plugin.subscribe`."""
 
     def receive(self, topic: str, type_name: str, parameter: str, callback: Callable[[Message], None]) -> Subscription:
         """Receive the messages of a type on a topic; see `ServerPlugin.receive`."""

@@ -17,7 +17,7 @@ from simkit_navigation.plugins.navigation.node_parameters import NodeParameters
 from simkit_navigation.plugins.navigation.node_values import split_names
 
 if TYPE_CHECKING:
-    from simkit.runtime.communication.subscription import Subscription
+    from simkit import Subscription
 
 
 class _Parts(SharedByCopies):

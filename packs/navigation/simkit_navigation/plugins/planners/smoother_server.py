@@ -20,13 +20,13 @@ from simkit_navigation.plugins.navigation.planar_pose import (
     poses_of_path,
 )
 from simkit_navigation.plugins.navigation.user_classes import ServerPlugin
+from simkit_navigation.plugins.planners.path_smoothing import poses_of_result
 from simkit_navigation.plugins.planners.smoothers import (
     SavitzkyGolaySmoother,
     SavitzkyGolaySmootherOptions,
     SimpleSmoother,
     SimpleSmootherOptions,
     Smoother,
-    poses_of_result,
 )
 
 if TYPE_CHECKING:
@@ -132,8 +132,8 @@ class SmootherServer(CostmapReader, ServerPlugin):
         if poses is None or not len(poses):
             raise _SmoothingError(_INVALID_PATH, "the path is empty, or contains NaN or infinite numbers")
         grid = self._grid_in(frame)
-        smooth = poses_of_result(self.parts[name].smooth(poses, grid), float(poses[-1, 2]))
-        if smooth is None or not len(smooth):
+        smooth = poses_of_result(self.parts[name].smooth(poses, grid), float(poses[-1, 2]), "smooth")
+        if smooth is None:
             raise _SmoothingError(_FAILED_TO_SMOOTH_PATH, f"{name} returned no path")
         path = path_message(smooth, msgs.header(self.sim.time_ns, frame))
         self._plan.publish(path)
