@@ -25,12 +25,15 @@ from simkit import msgs
 from simkit_navigation.navigation_nodes import MAP_MODEL, navigation_nodes, topics_of_robot
 
 CLEARANCE = 0.45  # [m] of a goal from a wall
+LINE_CLEARANCE = 0.25  # [m] of the straight lines of --in-sight from a wall
 APART = 2.0  # [m] between two goals
 LONGEST = 300.0  # [s] for one goal
 
 
-def goals_of(grid: msgs.OccupancyGrid, start: tuple[float, float], count: int, seed: int) -> npt.NDArray[np.float64]:
-    """Return places in the map [m], shape (count, 2)."""
+def goals_of(
+    grid: msgs.OccupancyGrid, start: tuple[float, float], count: int, seed: int, in_sight: bool = False
+) -> npt.NDArray[np.float64]:
+    """Return places in the map [m], shape (count, 2); with `in_sight`, straight lines lead from each to the next."""
     cells = np.asarray(grid.data).reshape(grid.info.height, grid.info.width)
     step, origin = float(f"{grid.info.resolution:.7g}"), grid.info.origin.position
     distance = cv2.distanceTransform((cells == 0).astype(np.uint8), cv2.DIST_L2, 5) * step
@@ -41,7 +44,11 @@ def goals_of(grid: msgs.OccupancyGrid, start: tuple[float, float], count: int, s
     places = np.column_stack((columns + 0.5, rows + 0.5)) * step + (origin.x, origin.y)
     generator, found = np.random.default_rng(seed), [np.array(start)]
     while len(found) <= count:
-        far = places[np.hypot(*(places - found[-1]).T) > APART]
+        far = places[np.hypot(*(places - found[-1]).T) > (0.5 if in_sight else APART)]
+        if in_sight:
+            parts = np.linspace(0.0, 1.0, 100)[:, None, None]
+            lines = ((found[-1] + parts * (far - found[-1]) - (origin.x, origin.y)) / step).astype(np.intp)
+            far = far[(distance[lines[..., 1], lines[..., 0]] > LINE_CLEARANCE).all(axis=0)]
         found.append(far[generator.integers(len(far))])
     return np.array(found[1:])
 
@@ -124,6 +131,7 @@ def main() -> None:
     parser.add_argument("--params-file", default=None)
     parser.add_argument("--tolerance", type=float, default=0.4)
     parser.add_argument("--picture", default="")
+    parser.add_argument("--in-sight", action="store_true", help="straight lines lead from each goal to the next")
     parser.add_argument("--spawn", action="append", default=[], metavar="MODEL:x,y,yaw")
     parser.add_argument("--remap", action="append", default=[], metavar="OLD:=NEW")
     parser.add_argument("--motion", default="", help="motion to play first, such as home")
@@ -139,7 +147,7 @@ def main() -> None:
         if options.motion:
             play(sim, options.motion)
         x, y, _ = sim.model(options.robot).pose.position
-        goals = goals_of(maps.messages[-1], (x, y), options.goals, options.seed)
+        goals = goals_of(maps.messages[-1], (x, y), options.goals, options.seed, options.in_sight)
         begun, cpu = sim.time, time.process_time()
         reached, track, plan = drive(sim, goals, options.robot, options.tolerance)
         cpu, simulated = time.process_time() - cpu, sim.time - begun

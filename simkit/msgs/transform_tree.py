@@ -215,10 +215,10 @@ class TransformTree:
             found = self._found[names] = self._latest(*names)
         return found
 
-    def _latest(self, *names: str) -> tuple[Pose, int]:
-        up, down = self._path(*names, None)
+    def _latest(self, target: str, source: str) -> tuple[Pose, int]:
+        up, down = self._path(target, source, None)
         stamp = min((step.frame.stamps[-1] for step in (*up, *down) if not step.frame.is_static), default=0)
-        up, down = self._path(*names, stamp)
+        up, down = self._path(target, source, stamp)
         return self._chain(up, stamp).inverse() @ self._chain(down, stamp), stamp
 
     def _chain(self, steps: list[_Step], stamp: int) -> Pose:

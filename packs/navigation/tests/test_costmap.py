@@ -194,6 +194,14 @@ def test_topics_of_another_type_are_reported_once(tmp_path: Path) -> None:
     ]
 
 
+def test_one_point_is_in_the_same_cell_as_among_many() -> None:
+    grid = CostGrid(np.zeros((8, 13), np.uint8), 0.05, PlanarPose(-0.3, 1.7, 0.4), "map")
+    points = grid.centres(*np.mgrid[-1.5:9:0.5, -1.5:14:0.5].reshape(2, -1))  # centres, edges and corners of cells
+    for (x, y), *cell, is_inside in zip(points.tolist(), *grid.indices(points), strict=True):
+        assert grid.to_cell(x, y) == (tuple(cell) if is_inside else None)
+    assert grid.to_cell(math.nan, 0.0) is grid.to_cell(math.inf, 0.0) is None
+
+
 def test_a_ray_ends_at_the_border_of_the_costmap(tmp_path: Path) -> None:
     """A range of 10¹² m is checked in the cells of the costmap only."""
     source = "<scan><inf_is_valid>true</inf_is_valid><raytrace_max_range>1e12</raytrace_max_range></scan>"

@@ -13,11 +13,11 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit_navigation.plugins.controllers.dwb_options import DwbCriticOptions
-from simkit_navigation.plugins.controllers.footprint_costs import costs_of_cells, edge_points, footprint_costs
+from simkit_navigation.plugins.controllers.footprint_costs import costs_of_cells, footprint_costs
 from simkit_navigation.plugins.controllers.sample_arithmetic import cosine, sine, wrapped
 from simkit_navigation.plugins.controllers.velocity_samples import Speeds3, Trajectories
 from simkit_navigation.plugins.costmaps.cost_grid import INSCRIBED, LETHAL, UNKNOWN, CostGrid
-from simkit_navigation.plugins.costmaps.footprint import Footprint
+from simkit_navigation.plugins.costmaps.footprint import Footprint, edge_points
 from simkit_navigation.plugins.navigation.planar_pose import Floats, PlanarPose
 
 Mask = npt.NDArray[np.bool_]
@@ -134,7 +134,7 @@ class ObstacleFootprintCritic(BaseObstacleCritic):
         yaw = samples.yaw.reshape(-1)
         costs = footprint_costs(
             grid,
-            edge_points(situation.footprint, grid.resolution),
+            edge_points(situation.footprint.corners, grid.resolution),
             samples.x.reshape(-1),
             samples.y.reshape(-1),
             cosine(yaw),

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from simkit_navigation.plugins.costmaps.cost_grid import UNKNOWN, Cells, CostGrid
-from simkit_navigation.plugins.costmaps.footprint import Footprint
 from simkit_navigation.plugins.navigation.planar_pose import Floats
 
 Numbers = npt.NDArray[np.floating[Any]]
@@ -26,23 +24,12 @@ def costs_of_cells(cells: Cells, resolution: float, x: Numbers, y: Numbers) -> C
     return found
 
 
-def edge_points(footprint: Footprint, resolution: float) -> Floats:
-    """Return points on the edges of an outline, at most one cell apart, shape (n, 2) [m]."""
-    begins, ends = footprint.corners, np.roll(footprint.corners, -1, axis=0)
-    points = []
-    for begin, end in zip(begins, ends, strict=True):
-        count = max(1, math.ceil(math.hypot(*(end - begin).tolist()) / resolution))
-        parts = (np.arange(count) / count)[:, None]
-        points.append(begin + parts * (end - begin))
-    return np.concatenate(points)
-
-
 def footprint_costs(grid: CostGrid, points: Floats, x: Numbers, y: Numbers, cos: Numbers, sin: Numbers) -> Cells:
     """Return the largest cost on the outline at each pose.
 
     Args:
         grid: costs; the poses are given in the frame of its cells.
-        points: points of the outline, from `edge_points`.
+        points: points of the outline, from `edge_points`, at most one cell apart.
         x: places of the robot [m], shape (n,).
         y: places of the robot [m], shape (n,).
         cos: cosines of its headings, shape (n,).

@@ -15,10 +15,11 @@ from simkit import Params
 from simkit.elementary_functions import arctan2
 from simkit.pose import wrap_angle
 from simkit_navigation.plugins.controllers import mppi_options as options
-from simkit_navigation.plugins.controllers.footprint_costs import costs_of_cells, edge_points, footprint_costs
+from simkit_navigation.plugins.controllers.footprint_costs import costs_of_cells, footprint_costs
 from simkit_navigation.plugins.controllers.mppi_samples import Floats32, Samples
 from simkit_navigation.plugins.controllers.sample_arithmetic import sum_over_steps, wrapped
 from simkit_navigation.plugins.costmaps.cost_grid import INSCRIBED, LETHAL, UNKNOWN, Cells
+from simkit_navigation.plugins.costmaps.footprint import edge_points
 
 Mask = npt.NDArray[np.bool_]
 
@@ -107,7 +108,7 @@ class _ObstacleCritic(Critic):
             looked_up = (costs >= max(1.0, self._least_cost(samples))) & (costs != UNKNOWN)
             places = [array[::stride][looked_up] for array in (samples.x, samples.y, samples.cos, samples.sin)]
             checked = costs.copy()
-            checked[looked_up] = footprint_costs(grid, edge_points(outline, grid.resolution), *places)
+            checked[looked_up] = footprint_costs(grid, edge_points(outline.corners, grid.resolution), *places)
         collides = checked == LETHAL
         if not has_outline:
             collides |= checked == INSCRIBED

@@ -10,11 +10,12 @@ import numpy as np
 from simkit import Params
 from simkit.extend import Options, boolean, number, text
 from simkit.pose import wrap_angle
-from simkit_navigation.plugins.controllers.footprint_costs import edge_points, footprint_costs
+from simkit_navigation.plugins.controllers.footprint_costs import footprint_costs
 from simkit_navigation.plugins.controllers.primary_controllers import PRIMARY_CONTROLLERS
 from simkit_navigation.plugins.controllers.pure_pursuit import PurePursuit
 from simkit_navigation.plugins.controllers.sample_arithmetic import cosine, sine
 from simkit_navigation.plugins.costmaps.cost_grid import LETHAL, UNKNOWN, CostGrid
+from simkit_navigation.plugins.costmaps.footprint import edge_points
 from simkit_navigation.plugins.navigation.planar_pose import Floats, PlanarPose
 
 if TYPE_CHECKING:
@@ -143,7 +144,7 @@ class RotationShim:
         place = grid.origin.inverse().compose(pose)
         yaw = turned + place.yaw
         x, y = np.full(len(yaw), place.x), np.full(len(yaw), place.y)
-        points = edge_points(self._node.footprint, grid.resolution)
+        points = edge_points(self._node.footprint.corners, grid.resolution)
         costs = footprint_costs(grid, points, x, y, cosine(yaw), sine(yaw))
         is_unknown = costs == UNKNOWN
         hits = (costs >= options.max_cost_threshold) & ~is_unknown

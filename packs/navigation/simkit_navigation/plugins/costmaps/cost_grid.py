@@ -65,8 +65,12 @@ class CostGrid:
 
     def to_cell(self, x: float, y: float) -> tuple[int, int] | None:
         """Return row and column of a point [m]; None outside of the grid."""
-        rows, columns, inside = self.indices(np.array([[x, y]]))
-        return (int(rows[0]), int(columns[0])) if inside[0] else None
+        inverse = self.origin.inverse()  # as `indices`, with the same bits, without arrays
+        cos, sin = math.cos(inverse.yaw), math.sin(inverse.yaw)
+        row = (x * sin + y * cos + inverse.y) / self.resolution
+        column = (x * cos + y * -sin + inverse.x) / self.resolution
+        is_inside = 0.0 <= row < self.cells.shape[0] and 0.0 <= column < self.cells.shape[1]
+        return (int(row), int(column)) if is_inside else None
 
     def centres(self, rows: npt.ArrayLike, columns: npt.ArrayLike) -> Floats:
         """Return the centres of cells [m], shape (n, 2)."""

@@ -98,7 +98,7 @@ def cells_within(grid: CostGrid, outline: Footprint, robot: PlanarPose) -> tuple
         rows, columns, inside = grid.indices(around[np.hypot(*around.T) <= radius] + (robot.x, robot.y))
         return rows[inside], columns[inside]
     corners = robot.transform(outline.corners)
-    rows, columns, inside = grid.indices(_edge_points(corners, grid.resolution / 2))
+    rows, columns, inside = grid.indices(edge_points(corners, grid.resolution / 2))
     mask = np.zeros(grid.cells.shape, np.bool_)
     mask[rows[inside], columns[inside]] = True
     low = [max(int(axis.min()), 0) for axis in (rows, columns)]
@@ -115,13 +115,19 @@ def cells_within(grid: CostGrid, outline: Footprint, robot: PlanarPose) -> tuple
     return found_rows, found_columns
 
 
-def _edge_points(corners: Floats, step: float) -> Floats:
-    """Return points on the edges of a polygon whose distance is at most a step [m]."""
-    ends = np.roll(corners, -1, axis=0)
-    count = max(2, math.ceil(float(np.hypot(*(ends - corners).T).max()) / step) + 1)
-    parts = np.linspace(0.0, 1.0, count)[:, None, None]
-    points: Floats = (corners + parts * (ends - corners)).reshape(-1, 2)
-    return points
+def edge_points(corners: Floats, spacing: float) -> Floats:
+    """Return points on the edges of a polygon, at most a distance apart [m], shape (n, 2) [m].
+
+    Args:
+        corners: corners of the polygon in their order, shape (m, 2) [m].
+        spacing: largest distance between two neighbouring points [m].
+    """
+    points = []
+    for begin, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        count = max(1, math.ceil(math.hypot(*(end - begin).tolist()) / spacing))
+        parts = (np.arange(count) / count)[:, None]
+        points.append(begin + parts * (end - begin))
+    return np.concatenate(points)
 
 
 def padded(outline: Footprint, padding: float) -> Footprint:

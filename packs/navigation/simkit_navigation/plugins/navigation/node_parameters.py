@@ -35,11 +35,6 @@ class NodeParameters(Plugin):
         """
         return NodeValues(dict(values))
 
-    @property
-    def node_names(self) -> tuple[str, ...]:
-        """Full names of the nodes whose parameters the plugin has; the first one with parameters is used."""
-        return (f"{self.ros.namespace}/{self.ros.node}",)
-
     def join_simulation(self, sim: Simulation) -> None:
         """Connect the plugin to its simulation, and read its parameter files."""
         super().join_simulation(sim)

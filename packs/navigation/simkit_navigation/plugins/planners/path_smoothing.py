@@ -141,3 +141,25 @@ def is_reversed(poses: Floats) -> bool:
         return False
     x, y = (poses[2, :2] - poses[1, :2]).tolist()
     return abs(wrap_angle(float(poses[1, 2]) - math.atan2(y, x))) > math.pi / 2
+
+
+def poses_of_result(result: object, last: float, method: str) -> Floats | None:
+    """Return what a method of a planner or smoother has returned as poses, shape (n, 3) [m, rad]; None for no path.
+
+    Args:
+        result: result of the method, which may be in a class of a user; poses without yaw look at their next pose.
+        last: yaw of the last pose, if the result has no yaw [rad].
+        method: name of the method, for the message.
+
+    Raises:
+        ValueError: the result is something else.
+    """
+    try:
+        poses = np.array([] if result is None else [tuple(pose) for pose in result], np.float64)  # type: ignore[attr-defined]
+    except (TypeError, ValueError):
+        poses = np.zeros((1, 0))
+    if not len(poses):
+        return None
+    if poses.ndim != 2 or poses.shape[1] not in (2, 3) or not np.isfinite(poses).all():
+        raise ValueError(f"{method} must return finite (x, y) or (x, y, yaw) for each pose of the path, or None")
+    return poses if poses.shape[1] == 3 else facing_poses(poses, last)

@@ -22,7 +22,7 @@ from simkit_navigation.plugins.navigation.planar_pose import (
 )
 from simkit_navigation.plugins.navigation.user_classes import ServerPlugin
 from simkit_navigation.plugins.planners.grid_planner import GridPlanner, GridPlannerOptions
-from simkit_navigation.plugins.planners.path_smoothing import facing_poses
+from simkit_navigation.plugins.planners.path_smoothing import poses_of_result
 from simkit_navigation.plugins.planners.planning_error import PlanningError, Reason
 from simkit_navigation.plugins.planners.smac_planner_2d import (
     SmacPlanner2D,
@@ -227,7 +227,7 @@ class PlannerServer(CostmapReader, ServerPlugin):
         ):
             if grid.to_cell(pose.x, pose.y) is None:
                 raise PlanningError(reason, f"the {title} ({pose.x:.4g}, {pose.y:.4g}) is outside of the costmap")
-        poses = _as_poses(self.parts[name].create_plan(grid, start, end), end.yaw)
+        poses = poses_of_result(self.parts[name].create_plan(grid, start, end), end.yaw, "create_plan")
         if poses is None:
             raise PlanningError(Reason.NO_VALID_PATH, f"{name} found no path to ({end.x:.4g}, {end.y:.4g})")
         return poses
@@ -247,22 +247,3 @@ class PlannerServer(CostmapReader, ServerPlugin):
         invalid = np.flatnonzero(grid.is_blocked(points) | ~is_inside)
         invalid = invalid[invalid >= first]
         return {"is_valid": not len(invalid), "invalid_pose_indices": invalid.astype(np.int32)}
-
-
-def _as_poses(path: PlannedPath | None, last: float) -> Floats | None:
-    """Return what a planner has returned as poses, shape (n, 3) [m, rad]; None if there is no path.
-
-    Poses without yaw look at their next pose, and the last one has a given yaw.
-
-    Raises:
-        ValueError: the planner returned something else.
-    """
-    try:
-        poses = np.array([] if path is None else [tuple(pose) for pose in path], np.float64)
-    except (TypeError, ValueError):
-        poses = np.zeros((1, 0))
-    if not len(poses):
-        return None
-    if poses.ndim != 2 or poses.shape[1] not in (2, 3) or not np.isfinite(poses).all():
-        raise ValueError("create_plan must return finite (x, y) or (x, y, yaw) for each pose of the path")
-    return poses if poses.shape[1] == 3 else facing_poses(poses, last)

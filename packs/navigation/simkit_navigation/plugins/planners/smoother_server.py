@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -11,6 +10,7 @@ from simkit import Params, msgs
 from simkit.extend import Options, OptionsOf, listens, text, texts
 from simkit_navigation.plugins.costmaps.cost_grid import LETHAL, CostGrid
 from simkit_navigation.plugins.costmaps.costmap_reader import COSTMAP, CostmapReader
+from simkit_navigation.plugins.costmaps.footprint import edge_points
 from simkit_navigation.plugins.navigation.node_values import NodeValues, Values, names_of
 from simkit_navigation.plugins.navigation.planar_pose import (
     Floats,
@@ -20,13 +20,13 @@ from simkit_navigation.plugins.navigation.planar_pose import (
     poses_of_path,
 )
 from simkit_navigation.plugins.navigation.user_classes import ServerPlugin
+from simkit_navigation.plugins.planners.path_smoothing import poses_of_result
 from simkit_navigation.plugins.planners.smoothers import (
     SavitzkyGolaySmoother,
     SavitzkyGolaySmootherOptions,
     SimpleSmoother,
     SimpleSmootherOptions,
     Smoother,
-    poses_of_result,
 )
 
 if TYPE_CHECKING:
@@ -132,8 +132,8 @@ class SmootherServer(CostmapReader, ServerPlugin):
         if poses is None or not len(poses):
             raise _SmoothingError(_INVALID_PATH, "the path is empty, or contains NaN or infinite numbers")
         grid = self._grid_in(frame)
-        smooth = poses_of_result(self.parts[name].smooth(poses, grid), float(poses[-1, 2]))
-        if smooth is None or not len(smooth):
+        smooth = poses_of_result(self.parts[name].smooth(poses, grid), float(poses[-1, 2]), "smooth")
+        if smooth is None:
             raise _SmoothingError(_FAILED_TO_SMOOTH_PATH, f"{name} returned no path")
         path = path_message(smooth, msgs.header(self.sim.time_ns, frame))
         self._plan.publish(path)
@@ -167,9 +167,7 @@ class SmootherServer(CostmapReader, ServerPlugin):
             text = f"the frame {outline.header.frame_id!r} of {topic} is not known in {base!r}"
             raise _SmoothingError(_SMOOTHED_PATH_IN_COLLISION, text)
         corners = frame.transform(np.array([(point.x, point.y) for point in outline.polygon.points], np.float64))
-        edges = np.roll(corners, -1, axis=0) - corners
-        count = max(2, math.ceil(float(np.hypot(*edges.T).max()) / grid.resolution) + 1)
-        outside = (corners + np.linspace(0.0, 1.0, count)[:, None, None] * edges).reshape(-1, 2)
+        outside = edge_points(corners, grid.resolution)
         for x, y, yaw in poses.tolist():
             if (grid.costs(PlanarPose(x, y, yaw).transform(outside)) >= LETHAL).any():
                 text = (

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol
 
-import numpy as np
-
 from simkit import Params
 from simkit.extend import Options, boolean, integer, number
 from simkit_navigation.plugins.costmaps.cost_grid import CostGrid
@@ -114,24 +112,3 @@ class SavitzkyGolaySmoother:
                 points = filtered(part[:, :2], self._repetitions)
                 smooth[first : last + 1] = facing_poses(points, float(part[-1, 2]), is_reversed(part))
         return smooth
-
-
-def poses_of_result(result: object, last: float) -> Floats | None:
-    """Return what `smooth` has returned as poses, shape (n, 3) [m, rad]; None for no path.
-
-    Args:
-        result: result of a class of a user.
-        last: yaw of the last pose, if the result has no yaw [rad].
-
-    Raises:
-        ValueError: the result is something else.
-    """
-    if result is None:
-        return None
-    try:
-        poses = np.array([tuple(pose) for pose in result], np.float64)  # type: ignore[attr-defined]
-    except (TypeError, ValueError):
-        poses = np.zeros(0)
-    if poses.ndim != 2 or poses.shape[1] not in (2, 3) or not np.isfinite(poses).all():
-        raise ValueError("smooth must return finite (x, y) or (x, y, yaw) for each pose of the path, or None")
-    return poses if poses.shape[1] == 3 else facing_poses(poses, last)
