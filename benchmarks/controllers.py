@@ -19,10 +19,10 @@ from measure import arguments
 
 from simkit.params import Params
 from simkit.runtime.engine.random_streams import RandomStreams
-from simkit_navigation.plugins.navigation.cost_grid import CostGrid
-from simkit_navigation.plugins.navigation.dwb_controller import DwbController
-from simkit_navigation.plugins.navigation.footprint import round_footprint
-from simkit_navigation.plugins.navigation.mppi_controller import MppiController
+from simkit_navigation.plugins.controllers.dwb_controller import DwbController
+from simkit_navigation.plugins.controllers.mppi_controller import MppiController
+from simkit_navigation.plugins.costmaps.cost_grid import CostGrid
+from simkit_navigation.plugins.costmaps.footprint import round_footprint
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose
 
 MPPI = {

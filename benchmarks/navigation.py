@@ -19,11 +19,11 @@ from measure import arguments
 
 import simkit
 from simkit.params import Params
+from simkit_navigation.plugins.costmaps.cost_grid import CostGrid
 from simkit_navigation.plugins.maps.map_server import MapServer
-from simkit_navigation.plugins.navigation.cost_grid import CostGrid
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose
-from simkit_navigation.plugins.navigation.planner_server import PLANNERS
-from simkit_navigation.plugins.navigation.smoother_server import SMOOTHERS
+from simkit_navigation.plugins.planners.planner_server import PLANNERS
+from simkit_navigation.plugins.planners.smoother_server import SMOOTHERS
 
 NAVFN = "nav2_navfn_planner::NavfnPlanner"
 COSTMAP = """<sdf version="1.9"><model name="costmap"><static>true</static><link name="link"/>

@@ -3,7 +3,9 @@
     python benchmarks/navigation_goals.py turtlebot3_house --goals 10 --params-file nav2_params.yaml --picture house.png
 
 A goal is a free cell of the true map at least 0.45 m from walls, 2 m from the goal before and connected with the
-start. A goal is reached if the action succeeds and the true position is within the tolerance of it.
+start. A goal is reached if the action succeeds and the true position is within the tolerance of it. The least distance
+is that of the robot's centre from an occupied cell of the true map. `--motion home` plays a motion of `play_motion2`
+first, for a TIAGo whose arm is stretched out at the start.
 """
 
 from __future__ import annotations
@@ -23,12 +25,15 @@ from simkit import msgs
 from simkit_navigation.navigation_nodes import MAP_MODEL, navigation_nodes, topics_of_robot
 
 CLEARANCE = 0.45  # [m] of a goal from a wall
+LINE_CLEARANCE = 0.25  # [m] of the straight lines of --in-sight from a wall
 APART = 2.0  # [m] between two goals
 LONGEST = 300.0  # [s] for one goal
 
 
-def goals_of(grid: msgs.OccupancyGrid, start: tuple[float, float], count: int, seed: int) -> npt.NDArray[np.float64]:
-    """Return places in the map [m], shape (count, 2)."""
+def goals_of(
+    grid: msgs.OccupancyGrid, start: tuple[float, float], count: int, seed: int, in_sight: bool = False
+) -> npt.NDArray[np.float64]:
+    """Return places in the map [m], shape (count, 2); with `in_sight`, straight lines lead from each to the next."""
     cells = np.asarray(grid.data).reshape(grid.info.height, grid.info.width)
     step, origin = float(f"{grid.info.resolution:.7g}"), grid.info.origin.position
     distance = cv2.distanceTransform((cells == 0).astype(np.uint8), cv2.DIST_L2, 5) * step
@@ -39,7 +44,11 @@ def goals_of(grid: msgs.OccupancyGrid, start: tuple[float, float], count: int, s
     places = np.column_stack((columns + 0.5, rows + 0.5)) * step + (origin.x, origin.y)
     generator, found = np.random.default_rng(seed), [np.array(start)]
     while len(found) <= count:
-        far = places[np.hypot(*(places - found[-1]).T) > APART]
+        far = places[np.hypot(*(places - found[-1]).T) > (0.5 if in_sight else APART)]
+        if in_sight:
+            parts = np.linspace(0.0, 1.0, 100)[:, None, None]
+            lines = ((found[-1] + parts * (far - found[-1]) - (origin.x, origin.y)) / step).astype(np.intp)
+            far = far[(distance[lines[..., 1], lines[..., 0]] > LINE_CLEARANCE).all(axis=0)]
         found.append(far[generator.integers(len(far))])
     return np.array(found[1:])
 
@@ -66,6 +75,23 @@ def drive(sim: simkit.Simulation, goals: npt.NDArray[np.float64], robot: str, to
             task.cancel()
             sim.run(1.0)
     return reached, np.array(track), plans.messages[-1] if plans.messages else None
+
+
+def least_distance(grid: msgs.OccupancyGrid, track: npt.NDArray[np.float64]) -> float:
+    """Return the least distance of places from the middle of an occupied cell [m]."""
+    cells = np.asarray(grid.data).reshape(grid.info.height, grid.info.width)
+    step, origin = float(f"{grid.info.resolution:.7g}"), grid.info.origin.position
+    distance = cv2.distanceTransform((cells != 100).astype(np.uint8), cv2.DIST_L2, 5) * step
+    columns, rows = np.floor((track - (origin.x, origin.y)) / step).astype(np.intp).T
+    return float(distance[rows, columns].min())
+
+
+def play(sim: simkit.Simulation, motion: str) -> None:
+    """Play a motion of `play_motion2`."""
+    task = sim.send_goal("/play_motion2", {"motion_name": motion, "skip_planning": True})
+    while not task.is_done and sim.time < LONGEST:
+        sim.run(0.2)
+    print(f"  motion {motion}: {task.status.name if task.is_done else 'NOT DONE'} at {sim.time:.1f} s")
 
 
 def draw(file: str, grid: msgs.OccupancyGrid, track: Any, goals: Any, plan: Any, costs: Any) -> None:
@@ -105,8 +131,10 @@ def main() -> None:
     parser.add_argument("--params-file", default=None)
     parser.add_argument("--tolerance", type=float, default=0.4)
     parser.add_argument("--picture", default="")
+    parser.add_argument("--in-sight", action="store_true", help="straight lines lead from each goal to the next")
     parser.add_argument("--spawn", action="append", default=[], metavar="MODEL:x,y,yaw")
     parser.add_argument("--remap", action="append", default=[], metavar="OLD:=NEW")
+    parser.add_argument("--motion", default="", help="motion to play first, such as home")
     options = parser.parse_args()
     files = [options.params_file] if options.params_file else []
     rules = dict(rule.split(":=") for rule in options.remap)
@@ -116,8 +144,10 @@ def main() -> None:
             sim.add_node(**node)
         maps, costs = sim.subscribe("/map", keep=1), sim.subscribe("/global_costmap/costmap", keep=1)
         sim.step()
+        if options.motion:
+            play(sim, options.motion)
         x, y, _ = sim.model(options.robot).pose.position
-        goals = goals_of(maps.messages[-1], (x, y), options.goals, options.seed)
+        goals = goals_of(maps.messages[-1], (x, y), options.goals, options.seed, options.in_sight)
         begun, cpu = sim.time, time.process_time()
         reached, track, plan = drive(sim, goals, options.robot, options.tolerance)
         cpu, simulated = time.process_time() - cpu, sim.time - begun
@@ -127,6 +157,7 @@ def main() -> None:
         length = float(np.hypot(*np.diff(track, axis=0).T).sum())
         name = Path(options.params_file).name if options.params_file else "default parameters"
         print(f"{options.world}, {name}: {reached} of {len(goals)} goals, {length:.1f} m, {simulated:.0f} s")
+        print(f"{least_distance(maps.messages[-1], track):.2f} m from a wall at least")
         print(f"{simulated / cpu:.1f} × real time of CPU")
         if options.picture:
             draw(options.picture, maps.messages[-1], track, goals, plan, costs.messages[-1] if costs.messages else None)

@@ -59,7 +59,7 @@ if TYPE_CHECKING:
     from simkit.pose import Pose
     from simkit.recording.export.data_frames import to_dataframe
     from simkit.run_spec import Check, RunSpec
-    from simkit.runtime import Joint, Light, Link, Model, Simulation, Visual
+    from simkit.runtime import Joint, Light, Link, Model, Publisher, Simulation, Subscription, Visual
     from simkit.runtime.world_variation import apply_overrides
     from simkit.sensors.cameras.overview_image import render_view
 
@@ -80,12 +80,14 @@ __all__ = [
     "Plugin",
     "PluginError",
     "Pose",
+    "Publisher",
     "RenderError",
     "RunSpec",
     "SensorPlugin",
     "SimkitError",
     "Simulation",
     "SimulationDiverged",
+    "Subscription",
     "Visual",
     "VisualPlugin",
     "WorldPlugin",
@@ -104,7 +106,7 @@ __all__ = [
 # for either (`simkit.pytest_plugin`).
 _MODULES = {
     "simkit.build": ("load", "describe", "check"),
-    "simkit.runtime": ("Joint", "Light", "Link", "Model", "Simulation", "Visual"),
+    "simkit.runtime": ("Joint", "Light", "Link", "Model", "Publisher", "Simulation", "Subscription", "Visual"),
     "simkit.diagnostics": ("Diagnostic",),
     "simkit.errors": (
         "InputError",

@@ -20,10 +20,13 @@ import simkit.testing
 
 ROOT = Path(__file__).resolve().parents[1]
 BY_THEIR_NAMES = {
+    "input_file",
     "install_command",
     "lifecycle",
     "loaders.resources.bundled_models",
+    "msgs.goal_status",
     "sensors.presets",
+    "yaml_reader",
 }
 """Public modules that are not attributes of simkit after `import simkit`."""
 
@@ -32,23 +35,22 @@ PUBLIC_MODULES = {f"simkit.{name}" for name in (*simkit._PUBLIC_MODULES, *BY_THE
 PRIVATE_IMPORTS = {
     "actors": 8,
     "authoring": 19,
-    "control": 26,
-    "fuel": 19,
-    "gz_python": 15,
-    "launch": 31,
-    "learning": 46,
-    "motion": 16,
-    "navigation": 25,
-    "nodes": 32,
+    "control": 24,
+    "fuel": 18,
+    "gz_python": 14,
+    "launch": 29,
+    "learning": 45,
+    "motion": 15,
+    "navigation": 20,
+    "nodes": 30,
     "open_rmf": 5,
-    "robots": 22,
-    "ros": 10,
+    "robots": 21,
+    "ros": 9,
     "special_cameras": 18,
-    "terminal": 15,
-    "turtlesim": 1,
-    "verification": 68,
-    "view": 48,
-    "water_and_air": 25,
+    "terminal": 13,
+    "verification": 65,
+    "view": 45,
+    "water_and_air": 23,
 }
 """Number of private modules of the core that each pack imports. A number may only shrink."""
 

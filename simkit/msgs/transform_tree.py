@@ -127,6 +127,7 @@ class TransformTree:
         self.ignored = 0
         self._frames: dict[str, _Frame] = {}
         self._received_ns: dict[str, int] = {}
+        self._found: dict[tuple[str, str], tuple[Pose, int]] = {}  # results of `latest` until the next change
 
     @property
     def length(self) -> float:
@@ -139,6 +140,7 @@ class TransformTree:
 
     def take(self, message: Message, *, is_static: bool) -> None:
         """Store the transforms of a `tf2_msgs/msg/TFMessage`; others are ignored, because any process may send them."""
+        self._found.clear()
         for stamped in getattr(message, "transforms", ()):
             position, rotation, stamp = stamped.transform.translation, stamped.transform.rotation, stamped.header.stamp
             child, parent = stamped.child_frame_id.lstrip("/"), stamped.header.frame_id.lstrip("/")
@@ -165,6 +167,7 @@ class TransformTree:
         """
         if now_ns < self._received_ns.get(topic, now_ns):
             self._frames = {name: frame for name, frame in self._frames.items() if frame.is_static}
+            self._found.clear()
             self.since_ns = now_ns
         self._received_ns[topic] = now_ns
 
@@ -205,10 +208,17 @@ class TransformTree:
 
     def latest(self, target: str, source: str) -> tuple[Pose, int]:
         """Return the pose at the latest time at which all transforms are known, and this time [ns]; see `lookup`."""
-        names = self._known_names(target, source)
-        up, down = self._path(*names, None)
+        names = self._checked_names(target, source)
+        found = self._found.get(names)
+        if found is None:
+            self._check_known(names)
+            found = self._found[names] = self._latest(*names)
+        return found
+
+    def _latest(self, target: str, source: str) -> tuple[Pose, int]:
+        up, down = self._path(target, source, None)
         stamp = min((step.frame.stamps[-1] for step in (*up, *down) if not step.frame.is_static), default=0)
-        up, down = self._path(*names, stamp)
+        up, down = self._path(target, source, stamp)
         return self._chain(up, stamp).inverse() @ self._chain(down, stamp), stamp
 
     def _chain(self, steps: list[_Step], stamp: int) -> Pose:
@@ -256,11 +266,14 @@ class TransformTree:
 
     def _known_names(self, target: str, source: str) -> tuple[str, str]:
         """Return the names of two frames without leading slashes; raise TransformError for an unknown frame."""
-        for frame, name in ((target, "the target frame"), (source, "the source frame")):
-            check_text(frame, name)
-        names = target.lstrip("/"), source.lstrip("/")
+        names = self._checked_names(target, source)
         self._check_known(names)
         return names
+
+    def _checked_names(self, target: str, source: str) -> tuple[str, str]:
+        for frame, name in ((target, "the target frame"), (source, "the source frame")):
+            check_text(frame, name)
+        return target.lstrip("/"), source.lstrip("/")
 
     def _check_known(self, names: Collection[str]) -> None:
         known: Collection[str] = self._frames.keys() | {frame.parent(None) for frame in self._frames.values()}
@@ -301,6 +314,7 @@ class TransformTree:
     def replace(self, state: TreeState) -> None:
         """Replace all transforms."""
         self._frames.clear()
+        self._found.clear()
         for name, is_static, stamps, samples in state:
             frame = self._frames[name] = _Frame(is_static)
             frame.stamps, frame.samples = list(stamps), list(samples)

@@ -77,6 +77,21 @@ def test_a_time_is_seconds_or_a_stamp_and_none_is_the_latest_common_time() -> No
     assert tree.lookup("odom", "new") == Pose.from_rpy(1, 2, 0, 0, 0, 1.2) @ Pose((7.0, 0.0, 0.0))
 
 
+def test_the_latest_pose_is_computed_once_until_the_transforms_change() -> None:
+    tree = filled()
+    first = tree.lookup("map", "lidar")
+    assert tree.lookup("map", "lidar") is first
+    state = tree.copied()
+    put(tree, "odom", "base", Pose((4.0, 0.0, 0.0)), 3.0)
+    assert tree.lookup("map", "lidar").position == pytest.approx([9.1, 0.0, 0.3])
+    tree.replace(state)
+    assert tree.lookup("map", "lidar") == first
+    tree.advance("tf", 5)
+    tree.advance("tf", 1)  # a reset: only fixed frames stay
+    with pytest.raises(TransformError):
+        tree.lookup("map", "lidar")
+
+
 def test_late_and_repeated_transforms_are_put_in_order() -> None:
     tree = TransformTree()
     for at, x in ((1.0, 1.0), (3.0, 3.0), (2.0, 5.0), (3.0, 4.0)):

@@ -20,8 +20,8 @@ from simkit_gz_python.msgs.ros_conversion import call_service, from_ros, to_ros,
 
 if TYPE_CHECKING:
     from simkit import Plugin, Simulation
+    from simkit import Publisher as TopicPublisher
     from simkit.runtime.communication.publisher import Listener
-    from simkit.runtime.communication.publisher import Publisher as TopicPublisher
 
 __all__ = ["AdvertiseMessageOptions", "AdvertiseServiceOptions", "Node", "Publisher", "SubscribeOptions"]
 

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path, PurePath
 from typing import Final
 
-from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import InputError
+from simkit.extend import Diagnostics, Where
 from simkit.input_file import read_failure, read_input_text
 from simkit.loaders import Resolver, find_document
 from simkit.run_files import PackagePaths

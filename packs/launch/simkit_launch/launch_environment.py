@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable, Iterator
 from typing import Final
 
-from simkit.diagnostics import Diagnostics, Where
+from simkit.extend import Diagnostics, Where
 from simkit_launch.launch_packages import LaunchPackages
 
 DEFAULT_VARIABLE: Final = "SK-LAUNCH-021"

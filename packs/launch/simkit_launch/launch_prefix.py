@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from simkit.diagnostics import Diagnostics, Where
+from simkit.extend import Diagnostics, Where
 
 WITHOUT_EFFECT: Final = "SK-LAUNCH-029"
 

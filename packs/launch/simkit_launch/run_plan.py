@@ -12,8 +12,8 @@ from typing import Any, Final, cast
 import yaml
 
 from simkit.code_requests import CodeRequest
-from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError
+from simkit.extend import Diagnostics
 from simkit.input_file import read_input_text
 from simkit.run_files import PackagePaths
 from simkit.run_nodes import ROS_ARGUMENTS

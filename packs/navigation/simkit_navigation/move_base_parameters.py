@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Final
 
-from simkit_navigation.nav2_parameters import SERVER_NODES, PluginOfNode, Values
-from simkit_navigation.plugins.navigation.fake_localization import FakeLocalization
+from simkit_navigation.nav2_parameters import SERVER_NODES, PluginOfNode
+from simkit_navigation.plugins.localisation.fake_localization import FakeLocalization
+from simkit_navigation.plugins.navigation.node_values import NodeValues, Values, block_of
 
 _OF_AMCL: Final = {
     **{f"odom_alpha{n}": f"alpha{n}" for n in range(1, 6)},
@@ -46,7 +47,7 @@ def fake_localization_plugins(values: Values) -> list[PluginOfNode]:
     """Return the plugin of `fake_localization`."""
     names = {"global_frame_id": "global_frame_id", "odom_frame_id": "odom_frame_id", "base_frame_id": "base_frame_id"}
     found = {new: values[old] for old, new in names.items() if old in values}
-    return [PluginOfNode(FakeLocalization, "fake_localization", {"base_frame_id": "base_link", **found})]
+    return [PluginOfNode(FakeLocalization, "fake_localization", NodeValues({"base_frame_id": "base_link", **found}))]
 
 
 def ekf_plugins(values: Values) -> list[PluginOfNode]:
@@ -68,18 +69,20 @@ def pose_ekf_plugins(values: Values) -> list[PluginOfNode]:
     if values.get("imu_used", True):
         found |= {"imu0": "imu_data", "imu0_config": [*false[:11], True, *false[:3]]}
     plugins = SERVER_NODES["ekf_node"].plugins(found, {})
-    plugins[0].told.append("the filter of ekf_node replaces that of robot_pose_ekf; visual odometry is not used")
+    plugins[0].parameters.told.append(
+        "the filter of ekf_node replaces that of robot_pose_ekf; visual odometry is not used"
+    )
     return plugins
 
 
 def move_base_plugins(values: Values) -> list[PluginOfNode]:
     """Return the plugins of `move_base`: both costmaps, planner, controller, behaviours and navigator."""
-    costmaps = {name: _costmap(_block(values, name)) for name in _COSTMAPS}
+    costmaps = {name: _costmap(block_of(values, name)) for name in _COSTMAPS}
     told = []
     planner = str(values.get("base_global_planner", _PLANNERS[0]))
     if planner not in _PLANNERS:
         told.append(f"the planner {_PLANNERS[0]} replaces {planner}")
-    settings = _block(values, planner.rpartition("/")[2])
+    settings = block_of(values, planner.rpartition("/")[2])
     grid_based: Values = {"plugin": "nav2_navfn_planner::NavfnPlanner"}
     _take(settings, ("default_tolerance",), grid_based, "tolerance")
     grid_based |= {name: settings[name] for name in ("allow_unknown",) if name in settings}
@@ -88,7 +91,7 @@ def move_base_plugins(values: Values) -> list[PluginOfNode]:
     planners: Values = {"planner_plugins": ["GridBased"], "GridBased": grid_based}
     name = str(values.get("base_local_planner", "base_local_planner/TrajectoryPlannerROS"))
     told.append(f"the controller RegulatedPurePursuitController replaces {name}")
-    local = _block(values, name.rpartition("/")[2])
+    local = block_of(values, name.rpartition("/")[2])
     pursuit: Values = {"plugin": "nav2_regulated_pure_pursuit_controller::RegulatedPurePursuitController"}
     _take(local, ("max_vel_x", "max_vel_trans"), pursuit, "desired_linear_vel")
     _take(local, ("max_vel_theta", "max_rot_vel", "max_rotational_vel"), pursuit, "rotate_to_heading_angular_vel")
@@ -115,7 +118,7 @@ def move_base_plugins(values: Values) -> list[PluginOfNode]:
         *server["behavior_server"].plugins(behaviors, costmaps["local_costmap"]),
         *server["bt_navigator"].plugins(frames, {}),
     ]
-    plugins[0].told += told
+    plugins[0].parameters.told += told
     return plugins
 
 
@@ -144,7 +147,7 @@ def _costmap(values: Values) -> Values:
             layers.insert(0, ("static_layer", "StaticLayer"))
     found["plugins"] = [name for name, _ in layers]
     for name, kind in layers:
-        own = {**values, **_block(values, name)}
+        own = {**values, **block_of(values, name)}
         found[name] = {"plugin": f"nav2_costmap_2d::{kind}", **_LAYER_SETTINGS.get(kind, _no_settings)(own)}
     return found
 
@@ -180,7 +183,7 @@ def _obstacles(values: Values) -> Values:
     sources = str(values.get("observation_sources", "")).split()
     found: Values = {"observation_sources": sources, **{key: values[key] for key in _OF_LAYER if key in values}}
     for name in sources:
-        source = _block(values, name)
+        source = block_of(values, name)
         settings: Values = {"max_obstacle_height": 2.0}  # default of ROS 1
         settings |= {key: source[key] for key in _OF_SOURCE if key in source}
         settings["obstacle_max_range"] = source.get("obstacle_range", values.get("obstacle_range", 2.5))
@@ -197,11 +200,6 @@ _LAYER_SETTINGS: Final[Mapping[str, Callable[[Values], Values]]] = {
     "VoxelLayer": _obstacles,
     "InflationLayer": _inflation,
 }
-
-
-def _block(values: Values, name: str) -> Values:
-    block = values.get(name)
-    return dict(block) if isinstance(block, dict) else {}
 
 
 def _take(values: Values, names: tuple[str, ...], target: Values, name: str) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.bridges.teleop import find_targets
-from simkit.diagnostics import NOWHERE, Diagnostics
+from simkit.extend import Diagnostics
 from simkit.loaders.resources.bundled_models import bundled_folders
 from simkit.plugins.ros_parameter_files import read_parameter_file
 
@@ -132,7 +132,7 @@ def report_missing_topics(sim: Simulation, diagnostics: Diagnostics, *, navigate
     if missing:
         option, text = "--nav" if navigates else "--slam", " and no ".join(missing)
         hint = "choose a world with a robot, such as turtlebot3_world, or add one: --spawn turtlebot3_burger"
-        diagnostics.warning("SK-NAV-021", f"{option}: the world has no {text}", NOWHERE, hint)
+        diagnostics.warning("SK-NAV-021", f"{option}: the world has no {text}", hint=hint)
 
 
 def _node(package: str, executable: str, **more: Any) -> dict[str, Any]:

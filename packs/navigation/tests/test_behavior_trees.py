@@ -195,6 +195,8 @@ def test_a_default_tree_is_found_by_its_name_and_by_the_folder_of_its_package(tm
     ):
         assert default_trees.find_tree_file(text, ()) == default_trees.FOLDER / version / name
     assert default_trees.find_tree_file(f"/elsewhere/{name}", ()) is None
+    name_in_foxy = "navigate_w_replanning_and_recovery.xml"  # in turtlebot3_navigation2/param/humble/burger.yaml
+    assert default_trees.find_tree_file(name_in_foxy, ()) == default_trees.FOLDER / "humble" / default_trees.TO_POSE
     (tmp_path / name).write_text("<root/>")
     assert default_trees.find_tree_file(name, (tmp_path,)) == tmp_path / name
 

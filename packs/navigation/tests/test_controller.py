@@ -14,10 +14,10 @@ from navigation_worlds import DRIVE, WALL, pose, run_until_done, world
 import simkit
 from simkit import Params
 from simkit.errors import LoadError
-from simkit_navigation.plugins.navigation.cost_grid import INSCRIBED, CostGrid
-from simkit_navigation.plugins.navigation.footprint import round_footprint
+from simkit_navigation.plugins.controllers.pure_pursuit import PurePursuit
+from simkit_navigation.plugins.costmaps.cost_grid import INSCRIBED, CostGrid
+from simkit_navigation.plugins.costmaps.footprint import round_footprint
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose
-from simkit_navigation.plugins.navigation.pure_pursuit import PurePursuit
 
 
 def pursuit(path: Any, **options: float | str) -> PurePursuit:

@@ -13,19 +13,19 @@ from navigation_worlds import pose, run_until_done, world
 
 import simkit
 from simkit import Params
-from simkit_navigation.nav2_parameters import is_class_of_user, nested
-from simkit_navigation.plugins.navigation.controller_parameters import controller_parameters
-from simkit_navigation.plugins.navigation.cost_grid import LETHAL
-from simkit_navigation.plugins.navigation.goal_checkers import (
+from simkit_navigation.plugins.controllers.controller_parameters import controller_parameters
+from simkit_navigation.plugins.controllers.goal_checkers import (
     PositionGoalChecker,
     SimpleGoalChecker,
     StoppedGoalChecker,
 )
-from simkit_navigation.plugins.navigation.graceful_controller import GracefulController
+from simkit_navigation.plugins.controllers.graceful_controller import GracefulController
+from simkit_navigation.plugins.controllers.progress_checkers import PoseProgressChecker, SimpleProgressChecker
+from simkit_navigation.plugins.controllers.pure_pursuit import PurePursuit
+from simkit_navigation.plugins.controllers.rotation_shim import RotationShim
+from simkit_navigation.plugins.costmaps.cost_grid import LETHAL
+from simkit_navigation.plugins.navigation.node_values import nested
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose
-from simkit_navigation.plugins.navigation.progress_checkers import PoseProgressChecker, SimpleProgressChecker
-from simkit_navigation.plugins.navigation.pure_pursuit import PurePursuit
-from simkit_navigation.plugins.navigation.rotation_shim import RotationShim
 
 BEGIN, STOPPED = PlanarPose(0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
 PURSUIT = "nav2_regulated_pure_pursuit_controller::RegulatedPurePursuitController"
@@ -127,7 +127,7 @@ def test_the_parameters_of_humble_keep_controller_critics_and_checkers() -> None
     )
     costmap = {"plugins": ["inflation"], "inflation": {"plugin": "nav2_costmap_2d::InflationLayer",
                "inflation_radius": 0.7}, "robot_radius": 0.22, "robot_base_frame": "base_link"}  # fmt: skip
-    found = controller_parameters(values, costmap, is_class_of_user)
+    found = controller_parameters(values, costmap)
     assert found.values["FollowPath"] == {**values["FollowPath"], "critics": ["RotateToGoal", "PathDist"]}
     assert found.values["Other"] == {"plugin": SHIM, "primary_controller": PURSUIT, "desired_linear_vel": 0.4}
     assert found.values["Own"] == {"plugin": "my_controllers::Creep"}
@@ -153,7 +153,7 @@ def test_the_path_handler_and_the_motion_model_of_rolling_are_those_of_the_contr
         "controller_plugins": ["FollowPath"],
         "FollowPath": {**mppi, "car": {"plugin": "mppi::AckermannMotionModel", "min_turning_r": 0.4}},
     }
-    found = controller_parameters(values, {}, is_class_of_user)
+    found = controller_parameters(values, {})
     own = {"motion_model": "Ackermann", "AckermannConstraints": {"min_turning_r": 0.4}, "prune_distance": 2.0}
     assert found.values["FollowPath"] == {**mppi, **own}
     assert "PathHandler" not in found.values and found.told == ["PathHandler: reject_unit_path has no effect"]

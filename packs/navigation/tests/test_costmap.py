@@ -12,9 +12,9 @@ from navigation_worlds import WALL, place
 
 import simkit
 from simkit.errors import LoadError, PluginError
-from simkit_navigation.plugins.navigation.cost_grid import FREE, INSCRIBED, LETHAL, UNKNOWN, CostGrid, grid_of_message
-from simkit_navigation.plugins.navigation.footprint import read_footprint, round_footprint
-from simkit_navigation.plugins.navigation.obstacle_layer import shifted
+from simkit_navigation.plugins.costmaps.cost_grid import FREE, INSCRIBED, LETHAL, UNKNOWN, CostGrid, grid_of_message
+from simkit_navigation.plugins.costmaps.footprint import read_footprint, round_footprint
+from simkit_navigation.plugins.costmaps.obstacle_layer import shifted
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose
 
 COSTMAP = '<plugin filename="libsimkit_costmap_2d.so" name="global_costmap">{}</plugin>'
@@ -192,6 +192,14 @@ def test_topics_of_another_type_are_reported_once(tmp_path: Path) -> None:
     assert sorted(found) == [
         f"messages of the type {given} are ignored; expected {expected}" for given, expected in wrong.items()
     ]
+
+
+def test_one_point_is_in_the_same_cell_as_among_many() -> None:
+    grid = CostGrid(np.zeros((8, 13), np.uint8), 0.05, PlanarPose(-0.3, 1.7, 0.4), "map")
+    points = grid.centres(*np.mgrid[-1.5:9:0.5, -1.5:14:0.5].reshape(2, -1))  # centres, edges and corners of cells
+    for (x, y), *cell, is_inside in zip(points.tolist(), *grid.indices(points), strict=True):
+        assert grid.to_cell(x, y) == (tuple(cell) if is_inside else None)
+    assert grid.to_cell(math.nan, 0.0) is grid.to_cell(math.inf, 0.0) is None
 
 
 def test_a_ray_ends_at_the_border_of_the_costmap(tmp_path: Path) -> None:

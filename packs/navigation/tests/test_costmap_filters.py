@@ -12,7 +12,7 @@ from navigation_worlds import WALL, place, pose, run_until_done
 from PIL import Image
 
 import simkit
-from simkit_navigation.plugins.navigation.cost_grid import FREE, LETHAL, CostGrid, grid_of_message
+from simkit_navigation.plugins.costmaps.cost_grid import FREE, LETHAL, CostGrid, grid_of_message
 
 WORLD = """<sdf version="1.9"><world name="w">{models}<plugin filename="libsimkit_costmap_2d.so" name="global_costmap">
 <resolution>0.1</resolution><width>6</width><height>4</height><plugins>none</plugins>

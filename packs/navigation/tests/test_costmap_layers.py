@@ -11,9 +11,9 @@ from navigation_worlds import place
 
 import simkit
 from simkit import msgs
-from simkit_navigation.plugins.navigation.cost_grid import FREE, LETHAL, UNKNOWN, CostGrid, cost_table, grid_of_message
-from simkit_navigation.plugins.navigation.costmap_parameters import costmap_parameters
-from simkit_navigation.plugins.navigation.footprint import cells_within, padded, read_footprint, round_footprint
+from simkit_navigation.plugins.costmaps.cost_grid import FREE, LETHAL, UNKNOWN, CostGrid, cost_table, grid_of_message
+from simkit_navigation.plugins.costmaps.costmap_parameters import costmap_parameters
+from simkit_navigation.plugins.costmaps.footprint import cells_within, padded, read_footprint, round_footprint
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose
 
 WORLD = """<sdf version="1.9"><world name="w"><plugin filename="libsimkit_costmap_2d.so" name="local_costmap">
@@ -173,7 +173,7 @@ def test_a_polygon_clears_the_cells_that_it_covers() -> None:
 
 
 def test_the_costmap_node_has_the_defaults_of_nav2() -> None:
-    values, blocks, told = costmap_parameters(
+    found = costmap_parameters(
         {
             "plugins": ["voxel_layer", "odd_layer"],
             "voxel_layer": {"plugin": "nav2_costmap_2d/VoxelLayer", "observation_sources": "scan camera radar"}
@@ -182,6 +182,7 @@ def test_the_costmap_node_has_the_defaults_of_nav2() -> None:
             "static_layer": {"plugin": "nav2_costmap_2d::StaticLayer"},
         }
     )
+    values, blocks, told = found.values, found.blocks, found.told
     layer = values["voxel_layer"]
     assert isinstance(layer, dict) and layer["max_obstacle_height"] == 2.0
     assert layer["scan"] == {"topic": "scan", "clearing": False, "min_obstacle_height": 0.0, "max_obstacle_height": 0.0}
@@ -189,6 +190,13 @@ def test_the_costmap_node_has_the_defaults_of_nav2() -> None:
     assert (values["plugins"], values["footprint_padding"]) == (["voxel_layer"], 0.01)
     assert blocks == ["voxel_layer", "scan", "camera"] and "static_layer" not in values
     assert len(told) == 2 and "OddLayer is left out" in told[1] and "the source radar is left out" in told[0]
+
+
+def test_filters_that_the_launch_file_of_nav2_enables_are_enabled() -> None:
+    block = {"plugin": "nav2_costmap_2d::KeepoutFilter", "enabled": "KEEPOUT_ZONE_ENABLED"}
+    found = costmap_parameters({"filters": ["zones"], "zones": block})
+    values, told = found.values, found.told
+    assert values["zones"] == {**block, "enabled": True} and not told
 
 
 def test_heights_of_a_laser_scan_are_checked() -> None:

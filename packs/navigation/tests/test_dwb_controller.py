@@ -11,12 +11,12 @@ import pytest
 from controller_nodes import controller_node, empty_grid, straight_path
 
 from simkit import Params
-from simkit_navigation.plugins.navigation.cost_grid import INSCRIBED
-from simkit_navigation.plugins.navigation.dwb_controller import DwbController
-from simkit_navigation.plugins.navigation.dwb_critics import _distances
-from simkit_navigation.plugins.navigation.dwb_options import DwbOptions
+from simkit_navigation.plugins.controllers.dwb_controller import DwbController
+from simkit_navigation.plugins.controllers.dwb_critics import _distances
+from simkit_navigation.plugins.controllers.dwb_options import DwbOptions
+from simkit_navigation.plugins.controllers.velocity_samples import Axis, VelocitySampler
+from simkit_navigation.plugins.costmaps.cost_grid import INSCRIBED
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose
-from simkit_navigation.plugins.navigation.velocity_samples import Axis, VelocitySampler
 
 WAFFLE: dict[str, Any] = {
     "max_vel_x": 0.26,

@@ -12,12 +12,12 @@ from controller_nodes import controller_node, empty_grid, straight_path
 
 from simkit import Params
 from simkit.diagnostics import Diagnostics
-from simkit_navigation.plugins.navigation.cost_grid import LETHAL, CostGrid
-from simkit_navigation.plugins.navigation.local_path import LocalPath, first_inversion
-from simkit_navigation.plugins.navigation.mppi_controller import MppiController
-from simkit_navigation.plugins.navigation.mppi_samples import AxisLimits, trajectories
+from simkit_navigation.plugins.controllers.local_path import LocalPath, first_inversion
+from simkit_navigation.plugins.controllers.mppi_controller import MppiController
+from simkit_navigation.plugins.controllers.mppi_samples import AxisLimits, trajectories
+from simkit_navigation.plugins.controllers.sample_arithmetic import cosine, sine, sum_over_samples, wrapped
+from simkit_navigation.plugins.costmaps.cost_grid import LETHAL, CostGrid
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose
-from simkit_navigation.plugins.navigation.sample_arithmetic import cosine, sine, sum_over_samples, wrapped
 
 CRITICS = (
     "ConstraintCritic CostCritic GoalCritic GoalAngleCritic PathAlignCritic PathFollowCritic PathAngleCritic "

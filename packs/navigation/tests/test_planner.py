@@ -14,11 +14,11 @@ from scipy.ndimage import distance_transform_edt
 import simkit
 from simkit import Params
 from simkit.errors import PluginError
+from simkit_navigation.plugins.costmaps.cost_grid import INSCRIBED, LETHAL, CostGrid
 from simkit_navigation.plugins.maps.map_server import MapServer
-from simkit_navigation.plugins.navigation.cost_grid import INSCRIBED, LETHAL, CostGrid
-from simkit_navigation.plugins.navigation.grid_planner import GridPlanner
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose
-from simkit_navigation.plugins.navigation.planning_error import PlanningError
+from simkit_navigation.plugins.planners.grid_planner import GridPlanner
+from simkit_navigation.plugins.planners.planning_error import PlanningError
 
 
 def planned(
@@ -99,7 +99,7 @@ def test_a_path_through_the_house_is_short_and_clear_of_walls() -> None:
 
 
 PLANNER = """
-from simkit_navigation.plugins.navigation.planning_error import PlanningError, Reason
+from simkit_navigation.plugins.planners.planning_error import PlanningError, Reason
 
 
 class Straight:

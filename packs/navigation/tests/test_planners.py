@@ -12,13 +12,13 @@ from navigation_worlds import place, pose, world
 
 import simkit
 from simkit import Params
-from simkit_navigation.plugins.navigation.cost_grid import INSCRIBED, LETHAL, CostGrid
-from simkit_navigation.plugins.navigation.grid_planner import GridPlanner
-from simkit_navigation.plugins.navigation.grid_search import search
+from simkit_navigation.plugins.costmaps.cost_grid import INSCRIBED, LETHAL, CostGrid
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose
-from simkit_navigation.plugins.navigation.planning_error import PlanningError, Reason
-from simkit_navigation.plugins.navigation.smac_planner_2d import SmacPlanner2D
-from simkit_navigation.plugins.navigation.theta_star_planner import ThetaStarPlanner
+from simkit_navigation.plugins.planners.grid_planner import GridPlanner
+from simkit_navigation.plugins.planners.grid_search import search
+from simkit_navigation.plugins.planners.planning_error import PlanningError, Reason
+from simkit_navigation.plugins.planners.smac_planner_2d import SmacPlanner2D
+from simkit_navigation.plugins.planners.theta_star_planner import ThetaStarPlanner
 
 START, GOAL = PlanarPose(0.55, 0.55, 0.0), PlanarPose(4.05, 4.35, 1.0)
 

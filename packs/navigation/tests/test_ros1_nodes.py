@@ -70,7 +70,8 @@ def test_move_base_drives_a_robot_to_the_goal_of_a_client(tmp_path: Path, monkey
 
 
 def test_a_costmap_without_a_list_of_layers_has_those_of_its_parameters() -> None:
-    global_costmap, _, local_costmap, *_ = move_base_plugins(dict(MOVE_BASE))
+    plugins = [plugin.parameters for plugin in move_base_plugins(dict(MOVE_BASE))]
+    global_costmap, _, local_costmap, *_ = plugins
     assert global_costmap.values["plugins"] == ["static_layer", "obstacle_layer", "inflation_layer"]
     assert global_costmap.values["global_frame"] == "map"
     assert local_costmap.values["plugins"] == ["obstacle_layer", "inflation_layer"]
@@ -80,14 +81,14 @@ def test_a_costmap_without_a_list_of_layers_has_those_of_its_parameters() -> Non
 
 
 def test_speeds_and_tolerances_of_the_local_planner_are_those_of_the_controller() -> None:
-    controller = move_base_plugins(dict(MOVE_BASE))[3].values
+    controller = move_base_plugins(dict(MOVE_BASE))[3].parameters.values
     assert controller["FollowPath"]["desired_linear_vel"] == 0.4  # type: ignore[index]
     assert controller["general_goal_checker"]["xy_goal_tolerance"] == 0.1  # type: ignore[index]
 
 
 def test_amcl_has_the_names_of_ros_1() -> None:
     values = {"odom_model_type": "diff-corrected", "odom_alpha1": 0.1, "laser_max_beams": 30, "initial_pose_a": 1.0}
-    found = amcl_plugins(dict(values))[0].values
+    found = amcl_plugins(dict(values))[0].parameters.values
     assert found["robot_model_type"] == "nav2_amcl::DifferentialMotionModel"
     assert (found["alpha1"], found["max_beams"], found["initial_pose"]) == (0.1, 30, {"yaw": 1.0})
     assert found["set_initial_pose"] is True
@@ -95,13 +96,15 @@ def test_amcl_has_the_names_of_ros_1() -> None:
 
 def test_robot_pose_ekf_reads_odometry_and_imu() -> None:
     (plugin,) = pose_ekf_plugins({"freq": 20.0, "imu_used": False})
-    assert plugin.values["odom0"] == "odom" and "imu0" not in plugin.values and plugin.values["frequency"] == 20.0
+    values = plugin.parameters.values
+    assert values["odom0"] == "odom" and "imu0" not in values and values["frequency"] == 20.0
 
 
 def test_move_base_searches_as_its_planner() -> None:
     planner = {"allow_unknown": False, "use_dijkstra": False, "default_tolerance": 0.2}
     values = {**MOVE_BASE, "base_global_planner": "global_planner/GlobalPlanner", "GlobalPlanner": planner}
-    settings = move_base_plugins(values)[1].values["GridBased"]
+    settings = move_base_plugins(values)[1].parameters.values["GridBased"]
     expected = {"use_astar": True, "allow_unknown": False, "tolerance": 0.2}
     assert settings == {"plugin": "nav2_navfn_planner::NavfnPlanner", **expected}
-    assert "use_astar" not in move_base_plugins(dict(MOVE_BASE))[1].values["GridBased"]  # type: ignore[operator]
+    settings = move_base_plugins(dict(MOVE_BASE))[1].parameters.values["GridBased"]
+    assert "use_astar" not in settings  # type: ignore[operator]

@@ -12,10 +12,10 @@ from navigation_worlds import pose, world
 
 import simkit
 from simkit import Params
-from simkit_navigation.plugins.navigation.cost_grid import LETHAL, CostGrid
-from simkit_navigation.plugins.navigation.path_smoothing import Relaxation, directional_segments, filtered, relax
+from simkit_navigation.plugins.costmaps.cost_grid import LETHAL, CostGrid
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose
-from simkit_navigation.plugins.navigation.smoothers import SavitzkyGolaySmoother, SimpleSmoother
+from simkit_navigation.plugins.planners.path_smoothing import Relaxation, directional_segments, filtered, relax
+from simkit_navigation.plugins.planners.smoothers import SavitzkyGolaySmoother, SimpleSmoother
 
 SERVER = '<plugin filename="libsimkit_smoother_server.so" name="smoother_server">{}</plugin>'
 

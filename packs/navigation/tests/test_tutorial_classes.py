@@ -12,9 +12,9 @@ from navigation_worlds import place, pose, run_until_done, world
 
 import simkit
 from simkit.errors import LoadError
-from simkit_navigation.plugins.navigation.cost_grid import CostGrid
+from simkit_navigation.plugins.costmaps.cost_grid import CostGrid
+from simkit_navigation.plugins.costmaps.update_window import Bounds, Window, window_of
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose
-from simkit_navigation.plugins.navigation.update_window import Bounds, Window, window_of
 
 LINE = """<planner_plugins>GridBased</planner_plugins><GridBased><plugin>nav2_straightline_planner/StraightLine</plugin>
   <interpolation_resolution>0.25</interpolation_resolution></GridBased>"""

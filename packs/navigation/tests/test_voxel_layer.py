@@ -11,8 +11,8 @@ from point_clouds import place_camera, send
 
 import simkit
 from simkit import msgs
-from simkit_navigation.plugins.navigation.cost_grid import FREE, LETHAL, CostGrid, grid_of_message
-from simkit_navigation.plugins.navigation.ray_cells import RayTracer
+from simkit_navigation.plugins.costmaps.cost_grid import FREE, LETHAL, CostGrid, grid_of_message
+from simkit_navigation.plugins.costmaps.ray_cells import RayTracer
 
 WORLD = """<sdf version="1.9"><world name="w"><plugin filename="libsimkit_costmap_2d.so" name="local_costmap">
 <resolution>0.05</resolution><origin_x>-1</origin_x><origin_y>-1</origin_y><width>3</width><height>2</height>

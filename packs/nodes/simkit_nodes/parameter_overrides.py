@@ -13,8 +13,8 @@ from typing import Any, Final
 
 import yaml
 
-from simkit.diagnostics import Where
 from simkit.errors import InputError
+from simkit.extend import Where
 from simkit.input_file import read_failure, read_input_text
 from simkit.plugins.ros_parameter_files import node_matches
 from simkit_nodes.names import RosArguments

@@ -6,12 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
-from simkit import msgs
+from simkit import Publisher, Subscription, msgs
 from simkit.errors import MessageError
 from simkit.msgs.topic_names import absolute_name
 from simkit.runtime.communication.node_names import node_of
-from simkit.runtime.communication.publisher import Listener, Publisher
-from simkit.runtime.communication.subscription import NO_MESSAGE, LazyMessage, Subscription
+from simkit.runtime.communication.publisher import Listener
+from simkit.runtime.communication.subscription import NO_MESSAGE, LazyMessage
 
 if TYPE_CHECKING:
     from simkit import Simulation

@@ -349,6 +349,7 @@ def use_parameter_server(request: SimulationRequest) -> object:
     """
     server, action, name = request.sim.ros1_parameters(), request.arg("action", str), request.arg("name", str)
     value = request.args.get("value")
+    changes = {"set": server.set, "add": server.add}
     try:
         if action == "get":
             return [server.get(name)]
@@ -356,8 +357,11 @@ def use_parameter_server(request: SimulationRequest) -> object:
             return [server.search(request.arg("node", str), name)]
         if action == "names":
             return server.names()
-        if action in ("set", "add", "delete"):
-            getattr(server, action)(*((name,) if action == "delete" else (name, value)))
+        if action == "delete":
+            server.delete(name)
+            return [None]
+        if action in changes:
+            changes[action](name, value)
             return [None]
     except KeyError:
         return []

@@ -21,8 +21,8 @@ from simkit_control.plugins.ros2_control.joint_pids import JointPids
 from simkit_control.plugins.ros2_control.stiff_loops import StiffLoops
 
 if TYPE_CHECKING:
+    from simkit import Publisher
     from simkit.msgs import JointControllerState
-    from simkit.runtime.communication.publisher import Publisher
 
 COMMANDS: Final = "std_msgs/msg/Float64MultiArray"
 COMMAND: Final = "std_msgs/msg/Float64"

@@ -28,9 +28,9 @@ from simkit_control.plugins.ros2_control.trajectory_goals import TrajectoryRules
 from simkit_control.plugins.ros2_control.trajectory_options import LiveTolerances, StopRule, read_pids, read_timeout
 
 if TYPE_CHECKING:
+    from simkit import Publisher
     from simkit.extend import GoalHandle
     from simkit.msgs import JointTrajectory, QueryTrajectoryState_Request, SpeedScalingFactor
-    from simkit.runtime.communication.publisher import Publisher
 
 FOLLOW: Final = "control_msgs/action/FollowJointTrajectory"
 QUERY: Final = "control_msgs/srv/QueryTrajectoryState"

@@ -13,8 +13,7 @@ from simkit_gz_python.msgs.ros_conversion import to_ros
 from simkit_gz_python.plugins.message_elements import message_kind, read_message, ros_type_of, topic_attribute
 
 if TYPE_CHECKING:
-    from simkit import Simulation
-    from simkit.runtime import Publisher
+    from simkit import Publisher, Simulation
 
 _NANOSECONDS: Final = 1_000_000_000
 _LATEST: Final = 1e9  # [s]

@@ -24,9 +24,8 @@ from simkit_gz_python.plugins.message_elements import (
 )
 
 if TYPE_CHECKING:
-    from simkit import Simulation
+    from simkit import Publisher, Simulation
     from simkit.msgs import PerformerStatus
-    from simkit.runtime import Publisher
 
 _MS: Final = 1_000_000  # [ns]
 

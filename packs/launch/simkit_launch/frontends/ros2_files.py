@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
-from simkit.diagnostics import Diagnostics
 from simkit.errors import LoadError
+from simkit.extend import Diagnostics
 from simkit_launch.frontends.launch_actions import read_actions
 from simkit_launch.frontends.launch_element import xml_launch_element, yaml_launch_element
 from simkit_launch.launch_modules.launch.launch_description import LaunchDescription

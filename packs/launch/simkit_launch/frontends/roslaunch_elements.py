@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from simkit import Params
-from simkit.diagnostics import Diagnostics
+from simkit.extend import Diagnostics
 from simkit.loaders.resources.xml_reader import parse_file
 
 _NODE: Final = (

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
-from simkit.diagnostics import Where
+from simkit.extend import Where
 from simkit_launch.frontends.roslaunch_substitutions import AnonymousNames
 from simkit_launch.frontends.roslaunch_values import canonical_name, convert_text, join_names
 

@@ -11,6 +11,8 @@ FOLDER: Final = Path(__file__).parent / "default_trees"
 TO_POSE: Final = "navigate_to_pose_w_replanning_and_recovery.xml"
 THROUGH_POSES: Final = "navigate_through_poses_w_replanning_and_recovery.xml"
 _VERSION: Final = "jazzy"
+_FOXY_NAMES: Final = {"navigate_w_replanning_and_recovery.xml": TO_POSE}
+"""Names in Foxy, which turtlebot3_navigation2/param/humble still has; Humble reads no parameter with this name."""
 _OLD_VERSIONS: Final = ("foxy", "galactic", "humble")
 
 
@@ -33,9 +35,9 @@ def find_tree_file(text: str, folders: Sequence[Path]) -> Path | None:
             return candidate
     parts = text.replace("\\", "/").split("/")
     if len(parts) == 1 or parts[-2] == "behavior_trees":
-        is_old = any(version in parts for version in _OLD_VERSIONS)
+        is_old = parts[-1] in _FOXY_NAMES or any(version in parts for version in _OLD_VERSIONS)
         for version in ("humble", _VERSION) if is_old else (_VERSION, "humble"):
-            shipped = FOLDER / version / parts[-1]
+            shipped = FOLDER / version / _FOXY_NAMES.get(parts[-1], parts[-1])
             if shipped.is_file():
                 return shipped
     return None

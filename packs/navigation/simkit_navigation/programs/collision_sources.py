@@ -13,6 +13,7 @@ from sensor_msgs_py.point_cloud2 import read_points
 from tf2_ros import Buffer, TransformException, TransformListener
 from visualization_msgs.msg import Marker, MarkerArray
 
+from simkit.pose import quat_to_matrix
 from simkit_navigation.plugins.navigation.collision_zones import ACTIONS, CollisionZone, VelocityRange
 
 NO_POINTS = np.zeros((0, 2))
@@ -295,14 +296,7 @@ class ZoneNode(ServerNode):
             except TransformException:
                 continue
             at, q = found.translation, found.rotation
-            rotation = np.array(
-                [
-                    [1 - 2 * (q.y**2 + q.z**2), 2 * (q.x * q.y - q.w * q.z), 2 * (q.x * q.z + q.w * q.y)],
-                    [2 * (q.x * q.y + q.w * q.z), 1 - 2 * (q.x**2 + q.z**2), 2 * (q.y * q.z - q.w * q.x)],
-                    [2 * (q.x * q.z - q.w * q.y), 2 * (q.y * q.z + q.w * q.x), 1 - 2 * (q.x**2 + q.y**2)],
-                ]
-            )
-            return rotation, np.array([at.x, at.y, at.z])
+            return quat_to_matrix((q.w, q.x, q.y, q.z)), np.array([at.x, at.y, at.z])
         if frame == self._base:
             return np.eye(3), np.zeros(3)
         return None

@@ -14,6 +14,7 @@ from sensor_msgs.msg import Imu, NavSatFix, NavSatStatus
 from tf2_ros import Buffer, StaticTransformBroadcaster, TransformException, TransformListener
 
 from simkit_navigation.plugins.localisation.utm_projection import UtmZone
+from simkit_navigation.plugins.navigation.planar_pose import yaw_of
 
 DEFAULTS = {
     "frequency": 10.0,
@@ -70,13 +71,13 @@ class NavSatTransform(Node):
     # ------------------------------------------------------------------ messages
 
     def _on_imu(self, message):
-        self._yaw = _yaw(message.orientation)
+        self._yaw = yaw_of(message.orientation)
 
     def _on_odometry(self, message):
         self._odometry = message
         self._world_frame, self._base_frame = message.header.frame_id, message.child_frame_id
         if self._values["use_odometry_yaw"]:
-            self._yaw = _yaw(message.pose.pose.orientation)
+            self._yaw = yaw_of(message.pose.pose.orientation)
 
     def _on_fix(self, message):
         is_valid = message.status.status != NavSatStatus.STATUS_NO_FIX and all(
@@ -108,7 +109,7 @@ class NavSatTransform(Node):
             at = pose.position
             heading = self._yaw + float(self._values["yaw_offset"])
             heading += float(self._values["magnetic_declination_radians"])
-            robot = (at.x, at.y, at.z, _yaw(pose.orientation))
+            robot = (at.x, at.y, at.z, yaw_of(pose.orientation))
             lever = self._lever(fix)
             cosine, sine = math.cos(robot[3]), math.sin(robot[3])
             x, y = robot[0] + cosine * lever[0] - sine * lever[1], robot[1] + sine * lever[0] + cosine * lever[1]
@@ -176,7 +177,7 @@ class NavSatTransform(Node):
         message = Odometry()
         message.header.stamp, message.header.frame_id = fix.header.stamp, self._world_frame
         x, y, z = self._in_world(fix.latitude, fix.longitude, fix.altitude)
-        yaw = _yaw(self._odometry.pose.pose.orientation) if self._odometry is not None else 0.0
+        yaw = yaw_of(self._odometry.pose.pose.orientation) if self._odometry is not None else 0.0
         lever = self._lever(fix)
         x -= math.cos(yaw) * lever[0] - math.sin(yaw) * lever[1]
         y -= math.sin(yaw) * lever[0] + math.cos(yaw) * lever[1]
@@ -203,7 +204,7 @@ class NavSatTransform(Node):
 
     def _on_datum(self, request, response):
         at = request.geo_pose.position
-        heading = _yaw(request.geo_pose.orientation)
+        heading = yaw_of(request.geo_pose.orientation)
         self._set_origin(at.latitude, at.longitude, at.altitude, heading, (0.0, 0.0, 0.0, 0.0))
         return response
 
@@ -219,10 +220,6 @@ class NavSatTransform(Node):
             at, point = request.ll_point, response.map_point
             point.x, point.y, point.z = self._in_world(at.latitude, at.longitude, at.altitude)
         return response
-
-
-def _yaw(q):
-    return math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y**2 + q.z**2))
 
 
 def main():

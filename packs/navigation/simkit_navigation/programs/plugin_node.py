@@ -11,7 +11,8 @@ from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.node import Node
 
 from simkit.errors import SimkitError
-from simkit_navigation.nav2_parameters import ModelOfPlugins, nested, server_node, shortened
+from simkit_navigation.nav2_parameters import ModelOfPlugins, server_node
+from simkit_navigation.plugins.navigation.node_values import nested, shortened
 from simkit_nodes.host import current_host, current_program
 from simkit_nodes.parameter_overrides import parameter_overrides, parameter_places
 
@@ -52,7 +53,7 @@ class PluginHost:
         if missing:
             self.remove()
             return False
-        self._tell([sentence for plugin in plugins for sentence in plugin.told], model.unused)
+        self._tell([sentence for plugin in plugins for sentence in plugin.parameters.told], model.unused)
         return True
 
     def _spawned(self, model, names):

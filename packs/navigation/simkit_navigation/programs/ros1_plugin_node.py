@@ -14,7 +14,8 @@ from simkit.errors import SimkitError
 from simkit.extend import Where
 from simkit.msgs.goal_status import GoalStatus
 from simkit_navigation.move_base_parameters import ROS1_NODES
-from simkit_navigation.nav2_parameters import ModelOfPlugins, shortened
+from simkit_navigation.nav2_parameters import ModelOfPlugins
+from simkit_navigation.plugins.navigation.node_values import shortened
 from simkit_nodes.host import current_host
 
 PERIOD = 0.05  # [s] between two looks at a goal
@@ -45,7 +46,7 @@ def add_plugins(executable):
     except SimkitError as error:
         sys.exit(str(error))
     reports, where = simulation.engine.reports, Where(sys.argv[0])
-    for sentence in (sentence for plugin in plugins for sentence in plugin.told):
+    for sentence in (sentence for plugin in plugins for sentence in plugin.parameters.told):
         reports.warning("SK-NAV-001", f"{name}: {sentence}", where)
     if model.unused:
         reports.warning("SK-NAV-002", f"{name}: no effect here: {shortened(model.unused)}", where)

@@ -16,7 +16,7 @@ from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 from rclpy.time import Time
 from sensor_msgs.msg import LaserScan
-from slam_graph_markers import GraphMarkers
+from slam_graph_markers import GraphMarkers, set_pose
 from slam_parameters import MISSING_OF_OTHERS, settings_of, values_of
 from slam_toolbox.srv import DeserializePoseGraph, Pause, Reset, SaveMap, SerializePoseGraph
 from std_srvs.srv import Empty, SetBool
@@ -25,7 +25,7 @@ from tf2_ros import Buffer, TransformBroadcaster, TransformException, TransformL
 from simkit_navigation.plugins.maps.map_saver import MapNotSaved, write_map
 from simkit_navigation.plugins.maps.pose_graph_file import PoseGraphFault, read_pose_graph, write_pose_graph
 from simkit_navigation.plugins.maps.scan_mapper import MapScan, ScanMapper
-from simkit_navigation.plugins.navigation.planar_pose import PlanarPose
+from simkit_navigation.plugins.navigation.planar_pose import PlanarPose, yaw_of
 from simkit_navigation.plugins.navigation.robot_link import links_of_frame
 from simkit_nodes.host import current_host
 
@@ -200,7 +200,7 @@ class Slam(LifecycleNode):
             self.get_logger().error("a pose on initialpose is used only in localization mode")
             return
         pose = message.pose.pose
-        self._begin_at(_planar_of(pose.position, pose.orientation)[0])
+        self._begin_at(PlanarPose(pose.position.x, pose.position.y, yaw_of(pose.orientation)))
         self.get_logger().info(f"Localizing to: ({pose.position.x:.2f} {pose.position.y:.2f})")
 
     def _begin_at(self, pose):
@@ -209,23 +209,17 @@ class Slam(LifecycleNode):
     # ------------------------------------------------------------------ output
 
     def _broadcast(self):
-        message, correction = TransformStamped(), self._correction
+        message = TransformStamped()
         tolerance = Duration(seconds=self._values["transform_timeout"])
         message.header.stamp = (self.get_clock().now() + tolerance).to_msg()
         message.header.frame_id, message.child_frame_id = self._values["map_frame"], self._values["odom_frame"]
-        message.transform.translation.x, message.transform.translation.y = correction.x, correction.y
-        message.transform.rotation.z = math.sin(correction.yaw / 2)
-        message.transform.rotation.w = math.cos(correction.yaw / 2)
+        set_pose(message.transform.translation, message.transform.rotation, self._correction)
         self._broadcaster.sendTransform(message)
 
     def _publish_pose(self, pose, stamp):
         message, values = PoseWithCovarianceStamped(), self._values
         message.header.frame_id, message.header.stamp = values["map_frame"], stamp
-        message.pose.pose.position.x, message.pose.pose.position.y = pose.x, pose.y
-        message.pose.pose.orientation.z, message.pose.pose.orientation.w = (
-            math.sin(pose.yaw / 2),
-            math.cos(pose.yaw / 2),
-        )
+        set_pose(message.pose.pose.position, message.pose.pose.orientation, pose)
         xx, xy, yy, yaw = self._mapper.covariance
         covariance, scale = [0.0] * 36, values["position_covariance_scale"]
         covariance[0], covariance[1], covariance[6], covariance[7] = xx * scale, xy * scale, xy * scale, yy * scale
@@ -367,12 +361,8 @@ class Slam(LifecycleNode):
 
 def _planar(stamped):
     """Return the pose in the plane of a transform, and whether its z axis points down."""
-    return _planar_of(stamped.transform.translation, stamped.transform.rotation)
-
-
-def _planar_of(at, q):
-    yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y**2 + q.z**2))
-    return PlanarPose(at.x, at.y, yaw), q.x**2 + q.y**2 > q.z**2 + q.w**2
+    at, q = stamped.transform.translation, stamped.transform.rotation
+    return PlanarPose(at.x, at.y, yaw_of(q)), q.x**2 + q.y**2 > q.z**2 + q.w**2
 
 
 def main():

@@ -19,7 +19,7 @@ from visualization_msgs.msg import (
 )
 from visualization_msgs.srv import GetInteractiveMarkers
 
-from simkit_navigation.plugins.navigation.planar_pose import PlanarPose
+from simkit_navigation.plugins.navigation.planar_pose import PlanarPose, yaw_of
 
 EDGES = {False: ((0.0, 0.0, 1.0), 0), True: ((0.0, 1.0, 1.0), 1)}
 """Colour and number of the lines of edges; those of loops are apart."""
@@ -132,9 +132,9 @@ class GraphMarkers:
         is_number = message.marker_name.isdecimal() and self._mapper is not None
         if not self._is_interactive or not is_number or int(message.marker_name) >= len(self._mapper.scans):
             return
-        index, q = int(message.marker_name), message.pose.orientation
+        index = int(message.marker_name)
         scan = self._mapper.scans[index]
-        turn = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y**2 + q.z**2)) if q.w or q.z else 0.0
+        turn = yaw_of(message.pose.orientation)
         x, y = message.pose.position.x, message.pose.position.y
         if not all(map(math.isfinite, (x, y, turn))):
             return
@@ -148,8 +148,7 @@ class GraphMarkers:
         """Publish a scan at a pose of its sensor while a user moves it."""
         place, stamp = TransformStamped(), self._node.get_clock().now().to_msg()
         place.header.frame_id, place.header.stamp, place.child_frame_id = self._frame, stamp, "scan_visualization"
-        place.transform.translation.x, place.transform.translation.y = pose.x, pose.y
-        place.transform.rotation.z, place.transform.rotation.w = math.sin(pose.yaw / 2), math.cos(pose.yaw / 2)
+        set_pose(place.transform.translation, place.transform.rotation, pose)
         self._broadcaster.sendTransform(place)
         message = LaserScan(range_max=scan.limit, ranges=np.where(scan.is_hit, scan.ranges, np.inf).tolist())
         message.header.frame_id, message.header.stamp = "scan_visualization", stamp
@@ -182,3 +181,9 @@ class GraphMarkers:
         if self._mapper is not None:
             self.publish(self._mapper)
         return response
+
+
+def set_pose(place, turn, pose):
+    """Set the position and the quaternion of a message to a pose in the plane."""
+    place.x, place.y = pose.x, pose.y
+    turn.z, turn.w = math.sin(pose.yaw / 2), math.cos(pose.yaw / 2)

@@ -7,6 +7,7 @@ from node_support import warn
 
 from simkit_navigation.plugins.maps.correlation_matcher import SearchRules
 from simkit_navigation.plugins.maps.scan_mapper import MapperSettings
+from simkit_navigation.plugins.navigation.node_values import shortened
 from simkit_nodes.host import current_host
 
 SETTINGS = {f.name: f.default for kind in (MapperSettings, SearchRules) for f in fields(kind) if f.name != "rules"}
@@ -146,8 +147,7 @@ def values_of(node, executable):
     known = set(values) | SILENT | set(OF_GMAPPING if executable.startswith("gmapping/") else ())
     unused = sorted(name for name in given if name.partition(".")[0] not in known)
     if unused:
-        listed = ", ".join(unused[:12]) + (f" and {len(unused) - 12} others" if len(unused) > 12 else "")
-        warn(node, "SK-NAV-002", f"no effect here: {listed}")
+        warn(node, "SK-NAV-002", f"no effect here: {shortened(unused)}")
     return found
 
 

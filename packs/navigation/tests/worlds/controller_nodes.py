@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from simkit.runtime.engine.random_streams import RandomStreams
-from simkit_navigation.plugins.navigation.cost_grid import CostGrid
-from simkit_navigation.plugins.navigation.footprint import round_footprint
+from simkit_navigation.plugins.costmaps.cost_grid import CostGrid
+from simkit_navigation.plugins.costmaps.footprint import round_footprint
 from simkit_navigation.plugins.navigation.planar_pose import PlanarPose
 
 

@@ -17,9 +17,8 @@ from simkit.linear_algebra import matmul
 from simkit.pose import wrap_angle
 
 if TYPE_CHECKING:
-    from simkit import Model, Simulation
+    from simkit import Model, Publisher, Simulation
     from simkit.extend import GoalHandle
-    from simkit.runtime.communication.publisher import Publisher
 
 Argument = TypeVar("Argument")
 

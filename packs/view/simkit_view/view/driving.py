@@ -9,8 +9,7 @@ from simkit.bridges.teleop import Teleop, TeleopTarget, find_targets
 from simkit.run_spec import JsonObject
 
 if TYPE_CHECKING:
-    from simkit import Simulation
-    from simkit.runtime import Publisher
+    from simkit import Publisher, Simulation
 
 _POSES: Final = {
     "goal": ("/goal_pose", "geometry_msgs/msg/PoseStamped"),

@@ -12,8 +12,7 @@ from simkit.run_spec import JsonObject
 from simkit_view.displays.interactive_marker_display import FEEDBACK, UPDATE, InteractiveMarkerDisplay, control_for
 
 if TYPE_CHECKING:
-    from simkit import Simulation
-    from simkit.runtime import Publisher
+    from simkit import Publisher, Simulation
 
 TYPE: Final = "visualization_msgs/msg/InteractiveMarkerFeedback"
 EVENTS: Final[Mapping[str, int]] = MappingProxyType(

@@ -23,9 +23,8 @@ from simkit_view.view.packet import Arrays, Stream, make_packet
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
-    from simkit import Simulation
+    from simkit import Simulation, Subscription
     from simkit.msgs import Message
-    from simkit.runtime import Subscription
 
 PERIOD: Final = 0.1
 """Least wall time between two packets of a stream [s]."""

@@ -19,9 +19,8 @@ from simkit_view.displays.kinds import DISPLAYS, SimulationTools
 from simkit_view.view.packet import make_packet
 
 if TYPE_CHECKING:
-    from simkit import Simulation
+    from simkit import Simulation, Subscription
     from simkit.runtime.communication.service_server import ServiceCall
-    from simkit.runtime.communication.subscription import Subscription
 
 _PERIOD: Final = 0.1  # [s] of wall time between two drawings of a topic
 _INITIAL: Final = "visualization_msgs/srv/GetInteractiveMarkers_Request"

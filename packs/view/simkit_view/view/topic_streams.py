@@ -19,9 +19,8 @@ from simkit_view.view.packet import Stream, make_packet
 from simkit_view.view.series_stream import TRUTH, field_paths
 
 if TYPE_CHECKING:
-    from simkit import Simulation
+    from simkit import Simulation, Subscription
     from simkit.msgs import Message
-    from simkit.runtime import Subscription
 
 _SLOW: Final = 1.0  # [s] of wall time between two looks at lists
 _QUICK: Final = 0.2  # [s] of wall time between two packets about messages

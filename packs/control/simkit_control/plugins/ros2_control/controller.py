@@ -17,10 +17,10 @@ from simkit.topic_logger import TopicLogger
 from simkit_control.plugins.ros2_control.hardware_interfaces import InterfaceSelection
 
 if TYPE_CHECKING:
-    from simkit import Plugin, Simulation
+    from simkit import Plugin, Publisher, Simulation
     from simkit.extend import GoalHandle
     from simkit.runtime.communication.action_server import Action
-    from simkit.runtime.communication.publisher import Listener, Publisher
+    from simkit.runtime.communication.publisher import Listener
     from simkit.runtime.communication.service_server import Service
     from simkit_control.plugins.ros2_control.hardware import Hardware
 

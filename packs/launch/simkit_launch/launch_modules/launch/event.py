@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
-from simkit.diagnostics import Where
+from simkit.extend import Where
 
 __all__ = ["Event"]
 

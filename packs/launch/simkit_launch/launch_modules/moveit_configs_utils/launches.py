@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from simkit.diagnostics import Diagnostics
+from simkit.extend import Diagnostics
 from simkit.loaders.resources.xml_reader import parse_text
 from simkit_launch.launch_modules.launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
 from simkit_launch.launch_modules.launch.conditions import IfCondition

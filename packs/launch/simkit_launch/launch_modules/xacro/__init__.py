@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import IO, Any
 from xml.dom.minidom import Document, parseString
 
-from simkit.diagnostics import Diagnostics
+from simkit.extend import Diagnostics
 from simkit.input_file import read_input_text
 from simkit_launch.action_places import calling_place
 from simkit_launch.command_output import xacro_output

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from simkit.cli.run_part import fill_in_value
 from simkit.errors import InputError
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from simkit import RunSpec, Simulation
-    from simkit.run_nodes import Node
 
 _NAV_HELP = "Navigate with Nav2's servers on a map, or on the true map; goals: /navigate_to_pose, /goal_pose."
 _SLAM_HELP = "Make the map with slam_toolbox while the robot moves."
@@ -54,7 +53,7 @@ class Navigation(RunPart):
 
         return replace(spec, spawn=(*spec.spawn, {"model": MAP_MODEL}))
 
-    def added_nodes(self, spec: RunSpec, sim: Simulation) -> Sequence[Node]:
+    def added_nodes(self, spec: RunSpec, sim: Simulation) -> Sequence[dict[str, Any]]:
         """Return the nodes that navigate or make a map."""
         if self.nav is None and not self.slam:
             return ()

@@ -21,7 +21,7 @@ from simkit_navigation.plugins.localisation import localization_measurements as 
 from simkit_navigation.plugins.localisation.localization_measurements import Flags, MeasuredBlock, PreviousPose
 
 if TYPE_CHECKING:
-    from simkit.runtime.communication.subscription import Subscription
+    from simkit import Subscription
 
 _INPUTS: Final = {
     "odom": ODOMETRY,

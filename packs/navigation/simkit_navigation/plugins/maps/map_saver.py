@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import json
-import math
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +17,7 @@ from simkit.errors import SimkitError
 from simkit.extend import Options, OptionsOf, SharedByCopies, listens, number, offers, text
 from simkit.input_file import open_input
 from simkit.save_path import SAVE_PATH_VARIABLE, allowed_folder
+from simkit_navigation.plugins.navigation.planar_pose import yaw_of
 
 if TYPE_CHECKING:
     from simkit import Params, Simulation, msgs
@@ -153,15 +153,10 @@ def _cells(message: msgs.OccupancyGrid) -> npt.NDArray[np.int8]:
     data = np.asarray(message.data, np.int8)
     if not data.size or data.size != info.height * info.width:
         raise MapNotSaved(f"the map has {data.size} cells; its size is {info.width} × {info.height}")
-    numbers = (info.resolution, origin.position.x, origin.position.y, _yaw(origin.orientation))
+    numbers = (info.resolution, origin.position.x, origin.position.y, yaw_of(origin.orientation))
     if not np.isfinite(numbers).all() or info.resolution <= 0.0:
         raise MapNotSaved(f"resolution {info.resolution:g} and origin must be finite, the resolution above 0 [m]")
     return data.reshape(info.height, info.width)
-
-
-def _yaw(turn: msgs.Quaternion) -> float:
-    """Return the yaw of a quaternion [rad]; 0 for one that is not set."""
-    return math.atan2(2 * (turn.w * turn.z + turn.x * turn.y), 1 - 2 * (turn.y**2 + turn.z**2))
 
 
 def _target(url: str) -> Path:
@@ -203,7 +198,7 @@ def _description(info: msgs.MapMetaData, image: str, mode: str, free: float, occ
 
     A trinary image has only three values; the limit of free cells in its file keeps the unknown ones unknown.
     """
-    position, yaw = info.origin.position, _yaw(info.origin.orientation)
+    position, yaw = info.origin.position, yaw_of(info.origin.orientation)
     limit = min(free, _READ_AS_UNKNOWN) if mode == "trinary" else free
     return (
         f"image: {_yaml_text(image)}\nmode: {mode}\nresolution: {info.resolution:.9g}\n"

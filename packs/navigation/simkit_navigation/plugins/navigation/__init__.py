@@ -1,1 +1,1 @@
-"""Navigation of mobile robots, with the names, topics, actions and parameters of ROS 2's Nav2."""
+"""Common to the servers of Nav2: parameters, classes of users, velocity commands and planar poses."""

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from importlib import import_module
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from simkit import Params, Plugin
-from simkit.diagnostics import Where
+from simkit.extend import Where
 from simkit.plugins.ros_parameter_block import ParameterBlock
+from simkit_navigation.plugins.navigation.node_values import NodeValues, Values, nested, shortened
 
 if TYPE_CHECKING:
     from simkit import Simulation
@@ -20,16 +20,20 @@ class NodeParameters(Plugin):
     A value of a parameter file replaces the element of the same name in the world.
 
     Attributes:
-        executable: executable of the node, a row of `SERVER_NODES`; "" for a costmap.
+        costmap: name of the costmap whose parameters the plugin needs, too; empty without one.
     """
 
-    executable: ClassVar[str] = ""
+    costmap: ClassVar[str] = ""
 
-    @property
-    def node_names(self) -> tuple[str, ...]:
-        """Full names of the nodes whose parameters the plugin has."""
-        space, node = self.ros.namespace, self.ros.node
-        return (f"{space}/{node}",) if self.executable else (f"{space}/{node}/{node}", f"{space}/{node}")
+    @classmethod
+    def translate_parameters(cls, values: Values, costmap: Values, /) -> NodeValues:  # noqa: ARG003  subclasses use it
+        """Return the parameters of a node of Nav2 as those of the plugin.
+
+        Args:
+            values: parameters of the node; blocks are dictionaries.
+            costmap: parameters of its costmap.
+        """
+        return NodeValues(dict(values))
 
     def join_simulation(self, sim: Simulation) -> None:
         """Connect the plugin to its simulation, and read its parameter files."""
@@ -37,16 +41,11 @@ class NodeParameters(Plugin):
         values, places = self._values_of(self.node_names)
         if not values:
             return
-        tables = _tables()
-        if self.executable:
-            row = tables.SERVER_NODES[self.executable]
-            costmap = f"{self.ros.namespace}/{row.costmap}"
-            of_costmap = self._values_of((f"{costmap}/{row.costmap}", costmap))[0] if row.costmap else {}
-            plugin = row.plugins(values, of_costmap)[-1]
-        else:
-            plugin = tables.costmap_plugin(self.ros.node, values)
+        costmap = f"{self.ros.namespace}/{self.costmap}"
+        of_costmap = self._values_of((f"{costmap}/{self.costmap}", costmap))[0] if self.costmap else {}
+        translated = self.translate_parameters(values, of_costmap)
         unused: list[str] = []
-        of_file = plugin.params(places, unused, self.params.diagnostics)
+        of_file = translated.elements(type(self), places, unused, self.params.diagnostics)
         in_world = {child.name for child in self.params.children}
         # a default of Nav2, which is not in the file, replaces no element
         used = [child for child in of_file.children if child.name in values or child.name not in in_world]
@@ -57,10 +56,10 @@ class NodeParameters(Plugin):
             self.params.name, self.params.value, self.params.attributes, [*used, *others], self.where,
             diagnostics,
         )  # fmt: skip
-        for sentence in plugin.told:
+        for sentence in translated.told:
             diagnostics.warning("SK-NAV-001", f"plugin {self.name!r}: {sentence}", where)
         if unused:
-            text = f"plugin {self.name!r}: no effect here: {tables.shortened(unused)}"
+            text = f"plugin {self.name!r}: no effect here: {shortened(unused)}"
             diagnostics.warning("SK-NAV-002", text, places.get(unused[0], where))
 
     def _values_of(self, names: tuple[str, ...]) -> tuple[dict[str, object], dict[str, Where]]:
@@ -70,13 +69,8 @@ class NodeParameters(Plugin):
             block = self.ros.values_of_node(name, None, builder)
             if block is not None:
                 places: dict[str, Where] = {}
-                return _tables().nested(_plain(block, "", places)), places
+                return nested(_plain(block, "", places)), places
         return {}, {}
-
-
-def _tables() -> Any:
-    """Return the module with the tables of nodes, which imports the classes of all plugins."""
-    return import_module("simkit_navigation.nav2_parameters")
 
 
 def _plain(block: ParameterBlock, prefix: str, places: dict[str, Where]) -> dict[str, object]:

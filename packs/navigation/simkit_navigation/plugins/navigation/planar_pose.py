@@ -64,6 +64,11 @@ def pose_of_message(message: msgs.Pose) -> PlanarPose | None:
     return PlanarPose(float(place.x), float(place.y), yaw)
 
 
+def yaw_of(turn: msgs.Quaternion) -> float:
+    """Return the yaw of a quaternion [rad]; 0 for one whose numbers are all 0."""
+    return math.atan2(2 * (turn.w * turn.z + turn.x * turn.y), 1 - 2 * (turn.y**2 + turn.z**2))
+
+
 def stamped_pose(pose: PlanarPose, header: msgs.Header) -> msgs.PoseStamped:
     """Return a `geometry_msgs/msg/PoseStamped`."""
     return msgs.PoseStamped(header, pose_message(pose))

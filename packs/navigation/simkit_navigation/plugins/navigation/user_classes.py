@@ -14,9 +14,10 @@ from simkit.plugins.attribute_state import copy_attributes, restore_attributes
 from simkit.plugins.discovery.user_plugins import find_user_class, find_user_class_by_name
 from simkit.scene import ScenePlugin
 from simkit_navigation.plugins.navigation.node_parameters import NodeParameters
+from simkit_navigation.plugins.navigation.node_values import split_names
 
 if TYPE_CHECKING:
-    from simkit.runtime.communication.subscription import Subscription
+    from simkit import Subscription
 
 
 class _Parts(SharedByCopies):
@@ -61,7 +62,7 @@ class ServerPlugin(NodeParameters):
                 replaces it, and what the replacement changes.
         """
         self._parts = _Parts()
-        for name in _split(names) or defaults:
+        for name in split_names(names) or defaults:
             block = self.params.block(name)
             wanted = block.text("plugin", "") or defaults.get(name, "")
             cls = _class(self, ScenePlugin(name, wanted, self.scoped, block, block.where), known, replaced)
@@ -118,11 +119,6 @@ class ServerPlugin(NodeParameters):
         super().set_state(state)
         for name, part in self.parts.items():
             restore_attributes(part, (), self._part_states[name])
-
-
-def _split(texts: tuple[str, ...]) -> list[str]:
-    """Return the names in repeated elements; an element may contain several names."""
-    return [name for text in texts for name in text.replace(",", " ").split()]
 
 
 def _class(

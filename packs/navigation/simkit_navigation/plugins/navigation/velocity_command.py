@@ -8,7 +8,7 @@ from simkit import Plugin, msgs
 from simkit.extend import SharedByCopies
 
 if TYPE_CHECKING:
-    from simkit.runtime.communication.publisher import Publisher
+    from simkit import Publisher
 
 _TWIST: Final = "geometry_msgs/msg/Twist"
 _STAMPED: Final = "geometry_msgs/msg/TwistStamped"

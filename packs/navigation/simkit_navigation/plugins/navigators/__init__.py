@@ -1,1 +1,1 @@
-"""Plugins that bring a robot to goals and waypoints."""
+"""Plugins that bring a robot to goals and waypoints, and behaviours such as turning in place."""

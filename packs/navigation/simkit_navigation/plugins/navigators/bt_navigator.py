@@ -34,6 +34,7 @@ from simkit_navigation.behavior_trees.tree_node import RUNNING, SUCCESS, Tree, T
 from simkit_navigation.behavior_trees.tree_reader import build_tree, read_tree_file
 from simkit_navigation.plugins.lifecycle_state import GET_STATE, answer_active
 from simkit_navigation.plugins.navigation.node_parameters import NodeParameters
+from simkit_navigation.plugins.navigation.node_values import NodeValues, Values
 from simkit_navigation.plugins.navigation.planar_pose import (
     PlanarPose,
     look_up,
@@ -41,6 +42,7 @@ from simkit_navigation.plugins.navigation.planar_pose import (
     pose_of_message,
     stamped_pose,
 )
+from simkit_navigation.plugins.navigators.navigator_parameters import navigator_parameters
 
 if TYPE_CHECKING:
     from simkit import Model, Simulation
@@ -132,10 +134,13 @@ class BtNavigator(NodeParameters):
     filenames = ("libsimkit_bt_navigator.so",)
     names = ("simkit::BtNavigator", "nav2_bt_navigator::BtNavigator")
     parent_kind = ("world", "model")
-    executable = "bt_navigator"
     options = OptionsOf(BtNavigatorOptions)
     endpoints = (offers("~/get_state", GET_STATE), publishes("behavior_tree_log", _LOG))
     before_step_rate = NEVER
+
+    @classmethod
+    def translate_parameters(cls, values: Values, _: Values, /) -> NodeValues:
+        return navigator_parameters(values)
 
     def load(self, parent: Simulation | Model, params: Params) -> None:
         options = self.options.read_all()

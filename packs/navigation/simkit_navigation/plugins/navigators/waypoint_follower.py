@@ -11,6 +11,7 @@ from simkit.extend import NEVER, Options, OptionsOf, boolean, number, offers, te
 from simkit.msgs.goal_status import GoalStatus
 from simkit_navigation.plugins.lifecycle_state import GET_STATE, answer_active
 from simkit_navigation.plugins.navigation.node_parameters import NodeParameters
+from simkit_navigation.plugins.navigation.node_values import NodeValues, Values
 
 if TYPE_CHECKING:
     from simkit import Model, Simulation
@@ -68,10 +69,13 @@ class WaypointFollower(NodeParameters):
     filenames = ("libsimkit_waypoint_follower.so",)
     names = ("simkit::WaypointFollower", "nav2_waypoint_follower::WaypointFollower")
     parent_kind = ("world", "model")
-    executable = "waypoint_follower"
     options = OptionsOf(WaypointFollowerOptions)
     endpoints = (offers("~/get_state", GET_STATE),)
     before_step_rate = NEVER
+
+    @classmethod
+    def translate_parameters(cls, values: Values, _: Values, /) -> NodeValues:
+        return NodeValues(dict(values), [str(values.get("waypoint_task_executor_plugin", "wait_at_waypoint"))])
 
     def load(self, parent: Simulation | Model, params: Params) -> None:
         options = self.options.read_all()

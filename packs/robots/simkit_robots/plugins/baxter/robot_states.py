@@ -25,9 +25,8 @@ from simkit_robots.controllers.baxter_controllers import (
 )
 
 if TYPE_CHECKING:
-    from simkit import Link, Model, Simulation
+    from simkit import Link, Model, Publisher, Simulation
     from simkit.msgs import Message
-    from simkit.runtime import Publisher
     from simkit_control.plugins.ros2_control.controller_manager import ControllerManager
     from simkit_control.plugins.ros2_control.hardware import Hardware
 

@@ -33,9 +33,8 @@ from simkit.sensors.environment.geodesy import WorldOnPlanet
 from simkit_robots.plugins.classic.hector_error import HectorError
 
 if TYPE_CHECKING:
-    from simkit import Model
+    from simkit import Model, Publisher
     from simkit.extend import SceneModel, SpecBuilder
-    from simkit.runtime import Publisher
     from simkit.sensors.rays.lidar import Lidar
 
 IMU: Final = "sensor_msgs/msg/Imu"

@@ -28,9 +28,8 @@ from simkit.runtime.contact.collision_contacts import Bools, collision_table, fi
 from simkit_robots.plugins.classic.kobuki_docking import CHARGING, RECEIVERS, KobukiDockOptions, is_docked, signals
 
 if TYPE_CHECKING:
-    from simkit import Model, Pose
+    from simkit import Model, Pose, Publisher
     from simkit.extend import SceneModel, Sensor
-    from simkit.runtime import Publisher
     from simkit.sensors.rays.lidar_measurement import LidarMeasurement
 
 PACKAGES: Final = ("kobuki_ros_interfaces", "kobuki_msgs")

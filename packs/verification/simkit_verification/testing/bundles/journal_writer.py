@@ -20,8 +20,7 @@ from simkit_verification.testing.bundles.direct_changes import DirectChanges
 from simkit_verification.testing.bundles.journal_values import DEFERRED, NotEncodable, encode_message, encode_value
 
 if TYPE_CHECKING:
-    from simkit import Simulation
-    from simkit.runtime import Publisher
+    from simkit import Publisher, Simulation
     from simkit.runtime.communication.action_server import Action
     from simkit.runtime.communication.journal import ResultStore
     from simkit.runtime.communication.parameter import Parameter

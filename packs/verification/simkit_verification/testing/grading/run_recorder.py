@@ -9,9 +9,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Final
 
-from simkit import Joint, RunSpec, Simulation
+from simkit import Joint, RunSpec, Simulation, Subscription
 from simkit.msgs import absolute_name
-from simkit.runtime import Subscription
 from simkit.runtime.contact.collision_contacts import collision_table
 from simkit.testing.conditions.check_list import CheckList
 from simkit.testing.conditions.syntax_tree import Span, UndecidedValue

@@ -51,9 +51,8 @@ from simkit_water_and_air.plugins.gz.multicopter_motor_model import MulticopterM
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from simkit import Model
+    from simkit import Model, Publisher
     from simkit.extend import SceneModel, SpecBuilder, Vector
-    from simkit.runtime.communication.publisher import Publisher
     from simkit_water_and_air.plugins.autopilots.mavlink import Value
     from simkit_water_and_air.plugins.classic.px4_sensors import AnySensor
 

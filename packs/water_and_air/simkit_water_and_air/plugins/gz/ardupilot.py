@@ -42,9 +42,8 @@ from simkit_water_and_air.plugins.autopilots.servo_packet import ServoPacket, en
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from simkit import Model
+    from simkit import Model, Publisher
     from simkit.extend import SceneModel, SpecBuilder
-    from simkit.runtime.communication.publisher import Publisher
 
 _SCAN: Final = "sensor_msgs/msg/LaserScan"
 _HALF_TURN: Final = Pose.from_rpy(0, 0, 0, math.pi, 0, 0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, ClassVar, Final
 
-from simkit.diagnostics import Where
+from simkit.extend import Where
 from simkit_launch.launch_modules.launch.event import Event
 from simkit_launch.planner import Moment
 

@@ -1,0 +1,1 @@
+"""Costmaps of Nav2, with their layers and filters."""
