@@ -365,6 +365,7 @@ class ControllerServer(ControllerTopics, CostmapReader, ServerPlugin):
 
     def _fail(self, goal: GoalHandle, code: int, reason: str) -> None:
         self._stop()
+        self.log.warning("path not followed: %s", reason)
         goal.abort({"error_code": code, "error_msg": reason}, reason)
 
     def _stop(self) -> None:
