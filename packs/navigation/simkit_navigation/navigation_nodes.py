@@ -117,6 +117,24 @@ def topics_of_robot(sim: Simulation) -> dict[str, str]:
     return names
 
 
+def report_missing_topics(sim: Simulation, diagnostics: Diagnostics, *, navigates: bool) -> None:
+    """Warn about what navigation needs and no robot of the world has: a laser scan, an odometry and a drive.
+
+    Args:
+        sim: simulation.
+        diagnostics: collector of the warning.
+        navigates: True if the servers drive a robot.
+    """
+    kinds = set(sim.topics().values())
+    missing = [text for kind, text in ((_SCAN, "laser scan"), (_ODOMETRY, "odometry")) if kind not in kinds]
+    if navigates and not find_targets(sim):
+        missing.append("drive with a velocity topic")
+    if missing:
+        option, text = "--nav" if navigates else "--slam", " and no ".join(missing)
+        hint = "choose a world with a robot, such as turtlebot3_world, or add one: --spawn turtlebot3_burger"
+        diagnostics.warning("SK-NAV-021", f"{option}: the world has no {text}", hint=hint)
+
+
 def _node(package: str, executable: str, **more: Any) -> dict[str, Any]:
     return {"program": f"{package}/{executable}", **{key: value for key, value in more.items() if value}}
 

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 from geometry_msgs.msg import Point, Point32, PolygonInstanceStamped, PolygonStamped
-from node_support import ServerNode, warn
+from node_support import ServerNode, warn, warn_of_type
 from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 from rclpy.time import Time
 from sensor_msgs.msg import LaserScan, PointCloud2, Range
@@ -28,10 +28,19 @@ class ZoneNode(ServerNode):
     def __init__(self, name):
         super().__init__(name, automatically_declare_parameters_from_overrides=True)
         self.zones, self._opened, self._drawings = {}, [], {}
+        self._invalid = set()  # parameters with a value of another type
 
     def value(self, name, default):
-        """Return a parameter, or a default."""
-        return self.get_parameter(name).value if self.has_parameter(name) else default
+        """Return a parameter, or a default, which replaces a value of another type."""
+        value = self.get_parameter(name).value if self.has_parameter(name) else default
+        is_number = isinstance(value, int | float) and not isinstance(value, bool) and not math.isnan(value)
+        wants_number = isinstance(default, int | float) and not isinstance(default, bool)
+        if is_number if wants_number else isinstance(value, type(default)):
+            return value
+        if name not in self._invalid:
+            self._invalid.add(name)
+            warn_of_type(self, name, value, default)
+        return default
 
     def configure_zones(self):
         """Read the sources and the zones, and open their topics."""
