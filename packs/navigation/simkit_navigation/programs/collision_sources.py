@@ -120,7 +120,7 @@ class ZoneNode(ServerNode):
     def _velocity_ranges(self, name):
         """Read the polygons of a `velocity_polygon`."""
         is_holonomic = self.value(f"{name}.holonomic", False)
-        found = []
+        ranges = []
         for part in self._names(f"{name}.velocity_polygons"):
 
             def value(parameter, default, prefix=f"{name}.{part}"):
@@ -133,8 +133,8 @@ class ZoneNode(ServerNode):
             direction = None
             if is_holonomic:
                 direction = value("direction_start_angle", -math.pi), value("direction_end_angle", math.pi)
-            found.append(VelocityRange(corners_of(value("points", "")), *limits, direction))
-        return tuple(found)
+            ranges.append(VelocityRange(corners_of(value("points", "")), *limits, direction))
+        return tuple(ranges)
 
     def _on_footprint(self, name, message):
         corners = np.array([(point.x, point.y, 0.0) for point in message.polygon.points])
@@ -268,7 +268,7 @@ class ZoneNode(ServerNode):
         """Return points on the edges of polygons, at a distance of `sampling_distance` at most."""
         for number in [number for number, polygon in polygons.items() if self._is_old(name, polygon)]:
             del polygons[number]
-        spacing, found = max(float(self.value(f"{name}.sampling_distance", 0.1)), 1e-3), [NO_POINTS]
+        spacing, parts = max(float(self.value(f"{name}.sampling_distance", 0.1)), 1e-3), [NO_POINTS]
         for message in polygons.values():
             pose = self._pose_of(message.header.frame_id, message.header.stamp, self._fixed)
             if pose is None:
@@ -276,8 +276,8 @@ class ZoneNode(ServerNode):
             corners = moved(pose, np.array([(p.x, p.y, 0.0) for p in message.polygon.polygon.points]).reshape(-1, 3))
             for start, end in zip(corners[:, :2], np.roll(corners[:, :2], -1, axis=0), strict=True):
                 count = max(math.ceil(math.dist(start, end) / spacing), 1)
-                found.append(start + np.arange(count + 1)[:, None] / count * (end - start))
-        return np.concatenate(found)
+                parts.append(start + np.arange(count + 1)[:, None] / count * (end - start))
+        return np.concatenate(parts)
 
     def _pose_of(self, frame, stamp, fixed):
         """Return rotation (3, 3) and position of a frame in that of the robot; None if it is not known.
@@ -292,10 +292,10 @@ class ZoneNode(ServerNode):
         for words in arguments:
             try:
                 look_up = self._buffer.lookup_transform_full if len(words) == 5 else self._buffer.lookup_transform
-                found = look_up(*words).transform
+                transform = look_up(*words).transform
             except TransformException:
                 continue
-            at, q = found.translation, found.rotation
+            at, q = transform.translation, transform.rotation
             return quat_to_matrix((q.w, q.x, q.y, q.z)), np.array([at.x, at.y, at.z])
         if frame == self._base:
             return np.eye(3), np.zeros(3)

@@ -241,15 +241,15 @@ class Slam(LifecycleNode):
         self._poses.publish(message)
 
     def _map(self):
-        found, message = self._mapper.occupancy(), OccupancyGrid()
+        occupancy, message = self._mapper.occupancy(), OccupancyGrid()
         message.header.frame_id = self._values["map_frame"]
         message.header.stamp = message.info.map_load_time = self.get_clock().now().to_msg()
-        message.info.height, message.info.width = found.cells.shape
-        message.info.resolution = found.resolution
-        x, y, _ = found.origin.position
+        message.info.height, message.info.width = occupancy.cells.shape
+        message.info.resolution = occupancy.resolution
+        x, y, _ = occupancy.origin.position
         message.info.origin.position.x, message.info.origin.position.y = float(x), float(y)
         message.info.origin.orientation.w = 1.0
-        message.data = found.cells.reshape(-1).tolist()
+        message.data = occupancy.cells.reshape(-1).tolist()
         return message
 
     def _publish_map(self):
