@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.bridges.teleop import find_targets
-from simkit.extend import Diagnostics
+from simkit.extend import Diagnostics, Where
 from simkit.loaders.resources.bundled_models import bundled_folders
-from simkit.plugins.ros_parameter_files import read_parameter_file
+from simkit.plugins.ros_parameter_files import node_matches, read_parameter_file
 
 if TYPE_CHECKING:
     from simkit import Simulation
@@ -152,7 +152,21 @@ def _manager(part: str, names: Sequence[str]) -> dict[str, Any]:
 def _nodes_named_in(files: Sequence[str | os.PathLike[str]]) -> set[str]:
     """Return the plain names of the nodes in parameter files; a file with errors is reported when the run reads it."""
     read = (read_parameter_file(Path(file), Diagnostics()) for file in files if Path(file).is_file())
-    return {pattern.rpartition("/")[2] for file in read if file is not None for pattern, _ in file.nodes}
+    patterns = [pattern for file in read if file is not None for pattern, _ in file.nodes]
+    return {name for pattern in patterns if node_matches(pattern, f"/{(name := pattern.rpartition('/')[2])}")}
+
+
+def report_other_namespaces(files: Sequence[str | os.PathLike[str]], diagnostics: Diagnostics) -> None:
+    """Warn about parameters of servers in a namespace, because the servers of a run have none."""
+    servers = {*_SERVERS, *_LOCALIZATION, _MONITOR}
+    for path in files:
+        read = read_parameter_file(Path(path), Diagnostics()) if Path(path).is_file() else None
+        for pattern, _ in () if read is None else read.nodes:
+            name = pattern.rpartition("/")[2]
+            if name in servers and not node_matches(pattern, f"/{name}"):
+                text = f"the parameters of {pattern} are not used: the servers of --nav and --slam have no namespace"
+                hint = f"write {name} without a namespace, or start the servers with a launch file"
+                diagnostics.warning("SK-NAV-022", text, Where(str(path)), hint)
 
 
 def default_parameters() -> Path:

@@ -200,3 +200,12 @@ def test_a_reset_of_a_run_with_servers_repeats_it_bit_for_bit(folder: Path) -> N
         first = messages()
         sim.reset()
         assert messages() == first
+
+
+def test_blocks_that_no_server_reads_are_told(folder: Path) -> None:
+    other = "robot1:\n  planner_server:\n    ros__parameters: {planner_plugins: [A]}\n"
+    (folder / "nav2.yaml").write_text(other + parameters(local_costmap="    width: 5\n"), "utf-8")
+    found = run("rooms.sdf", "--nav", "--params-file", "nav2.yaml", "--duration", "0.3")
+    assert "nav2.yaml: warning SK-NAV-022: the parameters of /robot1/planner_server are not used" in found.output
+    text = "no effect here: width of local_costmap; write local_costmap: {local_costmap: {ros__parameters: …}}"
+    assert "nav2.yaml:6: warning SK-NAV-002" in found.output and text in found.output

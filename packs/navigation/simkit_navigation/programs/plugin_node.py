@@ -41,6 +41,8 @@ class PluginHost:
         costmap = self._server.costmap
         name_of_costmap = f"{space}/{costmap}/{costmap}"
         of_costmap = parameter_overrides(name_of_costmap, arguments, params) if costmap else {}
+        if costmap:
+            self._tell_of_single_block(f"{space}/{costmap}", name_of_costmap)
         plugins = self._server.plugins(values, nested(of_costmap))
         plugins[-1].name = node.get_name()
         model = ModelOfPlugins(self._model, self._names(arguments, space))
@@ -55,6 +57,16 @@ class PluginHost:
             return False
         self._tell([sentence for plugin in plugins for sentence in plugin.parameters.told], model.unused)
         return True
+
+    def _tell_of_single_block(self, name, name_of_costmap):
+        """Warn of parameters of a costmap that are one level too high, where Nav2 does not read them either."""
+        arguments = self._node.context.arguments
+        used = set(parameter_places(name_of_costmap, arguments).values())
+        others = {key: where for key, where in parameter_places(name, arguments).items() if where not in used}
+        if others and not self._has_told:
+            short = name.rpartition("/")[2]
+            text = f"{shortened(list(others))} of {short}; write {short}: {{{short}: {{ros__parameters: …}}}}"
+            warn(self._node, "SK-NAV-002", f"no effect here: {text}", next(iter(others.values())))
 
     def _spawned(self, model, names):
         """Add the model to the world; return the reasons why one of its plugins is not there."""

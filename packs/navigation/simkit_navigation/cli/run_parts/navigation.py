@@ -57,12 +57,18 @@ class Navigation(RunPart):
         """Return the nodes that navigate or make a map."""
         if self.nav is None and not self.slam:
             return ()
-        from simkit_navigation.navigation_nodes import navigation_nodes, report_missing_topics, topics_of_robot
+        from simkit_navigation.navigation_nodes import (
+            navigation_nodes,
+            report_missing_topics,
+            report_other_namespaces,
+            topics_of_robot,
+        )
 
         report_missing_topics(sim, sim.engine.reports, navigates=self.nav is not None)
         given = spec.options.get("params_files", ())
         given = [given] if isinstance(given, (str, os.PathLike)) else given
         files = [file for model, file in map(model_and_file, given) if not model]
+        report_other_namespaces(files, sim.engine.reports)
         return navigation_nodes(
             self._map,
             navigates=self.nav is not None,
