@@ -3,9 +3,9 @@
     python benchmarks/navigation_goals.py turtlebot3_house --goals 10 --params-file nav2_params.yaml --picture house.png
 
 A goal is a free cell of the true map at least 0.45 m from walls, 2 m from the goal before and connected with the
-start. A goal is reached if the action succeeds and the true position is within the tolerance of it. The least distance
-is that of the robot's centre from an occupied cell of the true map. `--motion home` plays a motion of `play_motion2`
-first, for a TIAGo whose arm is stretched out at the start.
+start by a way that is 0.35 m from walls. A goal is reached if the action succeeds and the true position is within the
+tolerance of it. The least distance is that of the robot's centre from an occupied cell of the true map.
+`--motion home` plays a motion of `play_motion2` first, for a TIAGo whose arm is stretched out at the start.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from simkit import msgs
 from simkit_navigation.navigation_nodes import MAP_MODEL, navigation_nodes, topics_of_robot
 
 CLEARANCE = 0.45  # [m] of a goal from a wall
+WAY_CLEARANCE = 0.35  # [m] of a way to a goal from a wall; a place under a desk beside a chair is no goal
 LINE_CLEARANCE = 0.25  # [m] of the straight lines of --in-sight from a wall
 APART = 2.0  # [m] between two goals
 LONGEST = 300.0  # [s] for one goal
@@ -37,7 +38,7 @@ def goals_of(
     cells = np.asarray(grid.data).reshape(grid.info.height, grid.info.width)
     step, origin = float(f"{grid.info.resolution:.7g}"), grid.info.origin.position
     distance = cv2.distanceTransform((cells == 0).astype(np.uint8), cv2.DIST_L2, 5) * step
-    _, labels = cv2.connectedComponents((distance > 0.3).astype(np.uint8))
+    _, labels = cv2.connectedComponents((distance > WAY_CLEARANCE).astype(np.uint8))
     row, column = int((start[1] - origin.y) / step), int((start[0] - origin.x) / step)
     is_good = (distance > CLEARANCE) & (labels == labels[row, column])
     rows, columns = np.nonzero(is_good)
