@@ -163,6 +163,7 @@ def test_another_word_is_bad_usage(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="has other signals")
+@pytest.mark.slow
 def test_a_second_interrupt_stops_in_the_middle_of_a_hook_and_the_recording_is_whole(tmp_path: Path) -> None:
     trouble(tmp_path, "hang")
     bag = tmp_path / "out.mcap"

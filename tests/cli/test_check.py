@@ -174,6 +174,7 @@ def test_options_say_how_a_file_is_read(here: Path) -> None:
 
 
 @pytest.mark.needs_packs
+@pytest.mark.slow
 def test_a_reader_that_ends_does_not_change_the_exit_code(tmp_path: Path) -> None:
     (tmp_path / "bad.sdf").write_text('<sdf version="1.9"><world name="w"><model/></world></sdf>')
     for words, code in ((["plugin", "list"], 0), (["check", str(tmp_path / "bad.sdf")], 2)):

@@ -240,6 +240,7 @@ def test_a_folder_is_a_table_with_a_summary() -> None:
     assert "3 of 3 run as they are" in with_argument.stdout
 
 
+@pytest.mark.slow
 def test_the_table_of_a_folder_is_json_and_a_page_and_does_not_depend_on_the_number_of_jobs() -> None:
     write({f"m{i}/{name}.sdf": MODEL for i in range(3) for name in "ab"})
     one = json.loads(run("repository", "--json", "--jobs", "1").stdout)
@@ -254,6 +255,7 @@ def test_the_table_of_a_folder_is_json_and_a_page_and_does_not_depend_on_the_num
     assert len(list(root.iter("{http://www.w3.org/1999/xhtml}section"))) == 6
 
 
+@pytest.mark.slow
 def test_a_file_that_takes_too_long_does_not_end_the_walk() -> None:
     """A world of 3000 different boxes takes seconds to check; the limit of 1 ms is for the second file of a process."""
     box = (
@@ -296,6 +298,7 @@ def test_a_folder_of_mjcf_is_checked_as_a_model() -> None:
     assert run("repository").stdout.splitlines()[-1] == "0 errors, 0 warnings, 0 notes"
 
 
+@pytest.mark.slow
 def test_files_named_sdf_and_urdf_without_xml_are_in_the_table_and_a_name_stays_in_its_line() -> None:
     write({"a\nb.sdf": MODEL, "empty.urdf": "", "stage.world": "resolution 0.02"})
     lines = run("repository").stdout.splitlines()

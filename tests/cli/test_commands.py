@@ -266,6 +266,7 @@ def test_doctor_names_versions_and_the_renderer_with_its_speed() -> None:
     assert "ImportError: cannot import name" not in result.stdout, "the drawing process uses the modules of today"
 
 
+@pytest.mark.slow
 def test_a_missing_opengl_is_a_note_of_doctor_and_a_problem_only_if_it_is_requested(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

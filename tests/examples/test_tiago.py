@@ -214,18 +214,21 @@ def test_it_lifts_the_bottle_by_0_3_m(carried: Any) -> None:
     assert np.hypot(*(after - before)[:2]) < 0.01
 
 
+@pytest.mark.slow
 def test_held_in_the_air_it_does_not_slip(carried: Any) -> None:
     assert carried.slips["held"] < 5e-4
     assert carried.slips["carried"] < 2e-3  # with the drive and the turn
     assert carried.fingers < 1e-3
 
 
+@pytest.mark.slow
 def test_it_carries_it_to_the_other_table(carried: Any) -> None:
     way = carried.places["carried"] - carried.places["held"]
     assert np.hypot(*way[:2]) > 1.0
     assert abs(way[2]) < 0.005
 
 
+@pytest.mark.slow
 def test_it_puts_it_down_upright_and_lets_go(carried: Any) -> None:
     end = carried.places["let go"]
     assert end[2] == pytest.approx(0.55 + 0.075, abs=1e-3)

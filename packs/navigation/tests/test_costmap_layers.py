@@ -195,7 +195,7 @@ def test_the_costmap_node_has_the_defaults_of_nav2() -> None:
 def test_filters_that_the_launch_file_of_nav2_enables_are_enabled() -> None:
     block = {"plugin": "nav2_costmap_2d::KeepoutFilter", "enabled": "KEEPOUT_ZONE_ENABLED"}
     found = costmap_parameters({"filters": ["zones"], "zones": block})
-        values, told = found.values, found.told
+    values, told = found.values, found.told
     assert values["zones"] == {**block, "enabled": True} and not told
 
 

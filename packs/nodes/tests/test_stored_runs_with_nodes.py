@@ -144,6 +144,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.slow
 def test_the_example_of_the_page_about_ci_passes_with_a_package_of_this_layout(tmp_path: Path) -> None:
     """The public package is not here; a package with the same names and a node for the same task takes its place."""
     page = (ROOT / "docs" / "ci.md").read_text(encoding="utf-8")

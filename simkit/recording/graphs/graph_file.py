@@ -15,7 +15,7 @@ def check_graph_file(output: Path) -> None:
     """Check that a graph can be written to a file.
 
     Raises:
-        InputError: SK-CLI-016 the suffix of the file is none of a graph.
+        InputError: SK-CLI-016 the suffix of the file is not .svg or .pdf.
     """
     if output.suffix.lower() not in (".svg", ".pdf"):
         suffix = output.suffix or "no suffix"

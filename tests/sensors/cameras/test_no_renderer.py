@@ -68,6 +68,7 @@ def test_other_sensors_continue_and_the_camera_reports_the_missing_renderer() ->
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.slow
 def test_an_egl_without_a_library_of_functions_is_reported_with_the_name_of_the_library() -> None:
     done = run(
         """
@@ -107,6 +108,7 @@ def test_opengl_can_be_switched_off() -> None:
     assert "MUJOCO_GL=disabled" in done.stdout
 
 
+@pytest.mark.slow
 def test_nothing_is_printed_at_the_end_of_the_process() -> None:
     done = run(
         """
@@ -214,6 +216,7 @@ plot w.sdf /world/w/model/m/link/l/sensor/c/image.width --duration 0.02 -o a.svg
 
 
 @pytest.mark.needs_packs
+@pytest.mark.slow
 def test_every_command_that_asks_for_images_ends_before_the_run(tmp_path: Path) -> None:
     (tmp_path / "w.sdf").write_text(WORLD)
     done = run(
@@ -252,6 +255,7 @@ def test_no_command_fails_for_a_renderer_that_it_does_not_need(command: str, tmp
     assert done.stderr.count("MUJOCO_GL=foo: unknown renderer") == (command == "run")
 
 
+@pytest.mark.slow
 def test_an_error_of_all_cameras_is_logged_once_and_reported_for_each() -> None:
     cameras = "".join(sensor("camera", CAMERA, name=f"c{n}") for n in range(3))
     done = run(

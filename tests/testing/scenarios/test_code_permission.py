@@ -124,7 +124,13 @@ GOLDEN: dict[str, dict[str, Any]] = {
     "golden check of a golden run of a scenario in Python": {"file": "../code/evil.py"},
 }
 
-SLOW = {"certify", "grade without a hand-in", "grade with the exercise's own plugin", "sweep with a function"}
+SLOW = {
+    "certify",
+    "grade with a hand-in",
+    "grade without a hand-in",
+    "grade with the exercise's own plugin",
+    "sweep with a function",
+}
 """Commands that other tests here cover in part, and that start several processes."""
 
 

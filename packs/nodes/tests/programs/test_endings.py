@@ -212,6 +212,7 @@ def test_a_thread_that_never_waits_ends_its_program(sim: Simulation, add_program
     assert node.done and "computes for more than 0.2 s" in str(node.error) and sim.time == pytest.approx(0.3)
 
 
+@pytest.mark.slow
 def test_a_loop_that_catches_everything_and_calls_nothing_is_abandoned(sim: Simulation, add_program: Add) -> None:
     node = add_program(
         """

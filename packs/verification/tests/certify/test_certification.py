@@ -137,6 +137,7 @@ def test_a_certificate_names_the_plugin_that_every_run_leaves_out(tmp_path: Path
 
 
 @pytest.mark.leaves_out
+@pytest.mark.slow
 def test_a_plugin_that_only_one_process_leaves_out_fails_the_certificate(tmp_path: Path) -> None:
     fault = (
         "        if os.environ['PYTHONHASHSEED'] != '0':\n            params.error('SK-MINE-001', 'another process')\n"
@@ -208,11 +209,13 @@ def test_a_process_that_exits_is_a_difference_with_its_code_position(tmp_path: P
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows does not have this signal")
+@pytest.mark.slow
 def test_a_process_that_the_system_kills_is_no_difference(tmp_path: Path) -> None:
     with pytest.raises(OutOfMemory, match="SK-CORE-008 .*killed the process of the run 'not received'"):
         certified(tmp_path, "if not self.out.wanted:\n    os.kill(os.getpid(), 9)", "not received", apart=True)
 
 
+@pytest.mark.slow
 def test_a_run_without_enough_memory_is_no_difference(tmp_path: Path) -> None:
     body = "from simkit.memory_error import OutOfMemory\nif not self.out.wanted:\n    raise OutOfMemory('no map')"
     with pytest.raises(OutOfMemory, match="SK-CORE-008 .*the run 'not received' did not fit"):

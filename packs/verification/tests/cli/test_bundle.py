@@ -247,6 +247,7 @@ with simkit.load("sled.sdf") as sim:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="it has no SIGKILL")
+@pytest.mark.slow
 def test_a_process_killed_while_packing_leaves_no_partial_bundle(folder: Path) -> None:
     """At many moments, counted by what is done with files: there is no bundle, or a whole one; the next tidies up."""
     done = subprocess.run([sys.executable, "-c", KILLED], check=True, capture_output=True, text=True)

@@ -165,6 +165,7 @@ for one in gc.get_objects():
 """
 
 
+@pytest.mark.slow
 def test_an_end_with_values_of_wrong_types_is_no_error_of_the_judge(graded):
     found = graded(before=FORGED_END, one=ONE_RUN)
     assert found.points == 0.0 and found.outcomes[0].error == "x"

@@ -44,6 +44,7 @@ def run(script: str, **environment: str) -> subprocess.CompletedProcess[str]:
     )
 
 
+@pytest.mark.slow
 def test_an_interrupt_after_images_from_several_threads_is_the_only_message() -> None:
     done = run(
         """
@@ -63,6 +64,7 @@ def test_an_interrupt_after_images_from_several_threads_is_the_only_message() ->
 
 @NEEDS_GL
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
+@pytest.mark.slow
 def test_a_forked_child_reports_that_opengl_cannot_draw_and_continues() -> None:
     done = run(
         """

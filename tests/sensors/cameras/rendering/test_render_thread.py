@@ -270,6 +270,7 @@ def run(script: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.parametrize("end", ["sys.exit(3)", "raise KeyboardInterrupt", "threading.Thread(target=more).start()"])
+@pytest.mark.slow
 def test_the_interpreter_ends_while_images_are_being_drawn(end: str) -> None:
     done = run(
         f"""
