@@ -110,6 +110,7 @@ def execute(spec: RunSpec, parts: Sequence[RunPart], *, verbose: bool, quiet: bo
         from simkit.build import load
         from simkit.cli.run_session import Session
         from simkit.cli.run_verdict import RunVerdict
+        from simkit.plugins.run_parameter_files import nodes_read_files
         from simkit.testing.scenarios.scenario_run import add_nodes
 
     for part in parts:
@@ -122,7 +123,10 @@ def execute(spec: RunSpec, parts: Sequence[RunPart], *, verbose: bool, quiet: bo
         for part in parts:
             stack.enter_context(part.around_run(spec, verdict))
         blocked = stack.enter_context(BlockedPlugins(print_status))
-        with load(spec.world, **spec.load_arguments()) as sim:
+        has_nodes = bool(spec.nodes) or any(part.adds_nodes for part in parts)
+        with nodes_read_files(has_nodes):
+            loaded = load(spec.world, **spec.load_arguments())
+        with loaded as sim:
             try:
                 try:
                     nodes = [node for part in parts for node in part.added_nodes(spec, sim)]

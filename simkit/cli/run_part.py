@@ -87,6 +87,11 @@ class RunPart:
         """True if somebody watches the run, which then has at most the speed of real time."""
         return False
 
+    @property
+    def adds_nodes(self) -> bool:
+        """True if the part adds nodes to the run."""
+        return False
+
     def extended(self, spec: RunSpec) -> RunSpec:
         """Return the run with the models and files that the part adds to it; called before `around_run`.
 

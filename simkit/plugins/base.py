@@ -184,7 +184,9 @@ class Plugin(abc.ABC):
         name = self.ros.topic(topic)
         guarded = callback and self.sim.engine.faults.guard(self, f"its callback for {name!r}", callback)
         with self.sim.communication.bus.owned_by(self):
-            return self.sim.subscribe(name, guarded, keep)
+            subscription = self.sim.subscribe(name, guarded, keep)
+        subscription.owner = self  # one that is removed with its model receives nothing
+        return subscription
 
     def offer(self, service: str, type_name: str, handler: Callable[[Message], object]) -> Service:
         """Open a service.

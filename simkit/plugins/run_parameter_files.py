@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -21,6 +23,7 @@ _PLUGIN_EXAMPLE: Final = (
     '<gazebo><plugin filename="gz_ros2_control-system" name="gz_ros2_control::GazeboSimROS2ControlPlugin">'
     "<parameters>FILE.yaml</parameters></plugin></gazebo>"
 )
+_NODES_READ_FILES: ContextVar[bool] = ContextVar("nodes_read_files", default=False)
 ParameterFileArgument = str | os.PathLike[str] | tuple[str, str | os.PathLike[str]]
 """Path of a file, text `MODEL=FILE`, or a pair of model name and path."""
 
@@ -105,6 +108,20 @@ def _closest_file_name(text: str) -> str:
         return ""
 
 
+@contextmanager
+def nodes_read_files(has_nodes: bool) -> Iterator[None]:
+    """Within the context, a parameter file of ROS 2 for all models may be one for the nodes of the run.
+
+    Args:
+        has_nodes: True if the run has nodes, which are added after the world is loaded.
+    """
+    token = _NODES_READ_FILES.set(has_nodes)
+    try:
+        yield
+    finally:
+        _NODES_READ_FILES.reset(token)
+
+
 def report_unused_control(
     parameter_files: Iterable[RunParameterFile],
     plugins: Sequence[AttachedPlugin],
@@ -124,6 +141,8 @@ def report_unused_control(
     with_hosts = {plugin.scoped for plugin in plugins if plugin.reads_parameter_files}
     hosts = [model for model in models if model.scoped in with_hosts]
     for file in parameter_files:
+        if _NODES_READ_FILES.get() and not file.model and file.file.root is None:
+            continue
         if any(file.is_for(model) for model in hosts) or _is_read(file, plugins):
             continue
         name, where = file.file.path.name, Where(str(file.file.path), 1)
@@ -134,6 +153,8 @@ def report_unused_control(
             owner = f"model {file.model!r}" if file.model else "no model"
             message = f"no plugin reads {name}: {owner} has {'no' if file.model else 'a'} control plugin"
             hint = "add libgazebo_ros_control.so, libgazebo_ros2_control.so or gz_ros2_control to the robot"
+            if file.file.root is not None:
+                hint += "; a file for nodes has the form NODE: {ros__parameters: {NAME: VALUE}}"
         diagnostics.warning("SK-CONTROL-060", message, where, hint)
 
 

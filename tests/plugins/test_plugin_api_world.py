@@ -400,3 +400,32 @@ def test_unread_attributes_are_reported_with_the_closest_name(tmp_path: Path) ->
         assert ["'unti' of <gain>" in found[0][0], "'unit'" in found[0][1]] == [True, True]
         assert "'lower' of <limits>" in found[1][0] and len(found) == 2
         assert not unread(sim)
+
+
+def test_a_plugin_of_a_removed_model_receives_nothing_until_a_restore_brings_it_back(tmp_path: Path) -> None:
+    (tmp_path / "ear.py").write_text(
+        "from simkit import ModelPlugin\n"
+        "class Ear(ModelPlugin):\n"
+        "    def load(self, parent, params):\n"
+        "        answers = self.advertise('answers', 'std_msgs/msg/String')\n"
+        "        self.subscribe('questions', lambda m: answers.publish({'data': m.data}), keep=0)\n"
+    )
+    model = ball("ear").replace("</model>", "<plugin name='p' filename='ear.py'/></model>")
+    with simkit.load(world(GROUND), plugin_paths=[tmp_path]) as sim:
+        questions, answers = sim.advertise("/questions", "std_msgs/msg/String"), sim.subscribe("/answers")
+
+        def ask(text: str) -> list[str]:
+            questions.publish({"data": text})
+            return [message.data for message in answers.messages]
+
+        sim.spawn(file(model))
+        assert ask("spawned") == ["spawned"]
+        with_model = sim.snapshot()
+        sim.remove("ear")
+        assert ask("removed") == ["spawned"] and questions.subscribers == 0
+        sim.restore(with_model)
+        assert ask("restored") == ["spawned", "restored"]
+        sim.reset()
+        assert ask("reset") == ["spawned", "restored"]
+        sim.spawn(file(model))
+        assert ask("again") == ["spawned", "restored", "again"]

@@ -26,7 +26,7 @@ _PLANNERS: Final = ("navfn/NavfnROS", "global_planner/GlobalPlanner")
 
 def amcl_plugins(values: Values) -> list[PluginOfNode]:
     """Return the plugin of `amcl`, which starts at the pose (0, 0, 0) without other parameters."""
-    found: Values = {"set_initial_pose": True, "base_frame_id": "base_link"}
+    result: Values = {"set_initial_pose": True, "base_frame_id": "base_link"}
     pose: Values = {}
     for name, value in values.items():
         if name in ("initial_pose_x", "initial_pose_y"):
@@ -35,19 +35,19 @@ def amcl_plugins(values: Values) -> list[PluginOfNode]:
             pose["yaw"] = value
         elif name == "odom_model_type":
             kind = str(value).removesuffix("-corrected")
-            found["robot_model_type"] = _MODELS.get(kind, kind)
+            result["robot_model_type"] = _MODELS.get(kind, kind)
         else:
-            found[_OF_AMCL.get(name, name)] = value
+            result[_OF_AMCL.get(name, name)] = value
     if pose:
-        found["initial_pose"] = pose
-    return SERVER_NODES["amcl"].plugins(found, {})
+        result["initial_pose"] = pose
+    return SERVER_NODES["amcl"].plugins(result, {})
 
 
 def fake_localization_plugins(values: Values) -> list[PluginOfNode]:
     """Return the plugin of `fake_localization`."""
     names = {"global_frame_id": "global_frame_id", "odom_frame_id": "odom_frame_id", "base_frame_id": "base_frame_id"}
-    found = {new: values[old] for old, new in names.items() if old in values}
-    return [PluginOfNode(FakeLocalization, "fake_localization", NodeValues({"base_frame_id": "base_link", **found}))]
+    frames = {new: values[old] for old, new in names.items() if old in values}
+    return [PluginOfNode(FakeLocalization, "fake_localization", NodeValues({"base_frame_id": "base_link", **frames}))]
 
 
 def ekf_plugins(values: Values) -> list[PluginOfNode]:
@@ -58,17 +58,17 @@ def ekf_plugins(values: Values) -> list[PluginOfNode]:
 def pose_ekf_plugins(values: Values) -> list[PluginOfNode]:
     """Return the plugin of `ekf_node` in place of `robot_pose_ekf`, with odometry and IMU."""
     false = [False] * 15
-    found: Values = {
+    result: Values = {
         "two_d_mode": True,
         "frequency": values.get("freq", 30.0),
         "odom_frame": values.get("output_frame", "odom_combined"),
         "base_link_frame": values.get("base_footprint_frame", "base_footprint"),
     }
     if values.get("odom_used", True):
-        found |= {"odom0": "odom", "odom0_config": [*false[:6], True, True, False, False, False, True, *false[:3]]}
+        result |= {"odom0": "odom", "odom0_config": [*false[:6], True, True, False, False, False, True, *false[:3]]}
     if values.get("imu_used", True):
-        found |= {"imu0": "imu_data", "imu0_config": [*false[:11], True, *false[:3]]}
-    plugins = SERVER_NODES["ekf_node"].plugins(found, {})
+        result |= {"imu0": "imu_data", "imu0_config": [*false[:11], True, *false[:3]]}
+    plugins = SERVER_NODES["ekf_node"].plugins(result, {})
     plugins[0].parameters.told.append(
         "the filter of ekf_node replaces that of robot_pose_ekf; visual odometry is not used"
     )
@@ -129,15 +129,15 @@ _OF_COSTMAP: Final = frozenset(
 
 def _costmap(values: Values) -> Values:
     """Return the parameters of a costmap of Nav2."""
-    found: Values = {"robot_base_frame": "base_link", "global_frame": "map", "resolution": 0.05}
-    found |= {name: value for name, value in values.items() if name in _OF_COSTMAP}
+    costmap: Values = {"robot_base_frame": "base_link", "global_frame": "map", "resolution": 0.05}
+    costmap |= {name: value for name, value in values.items() if name in _OF_COSTMAP}
     for name in ("global_frame", "robot_base_frame"):
-        found[name] = str(found[name]).lstrip("/")
-    if found.get("publish_frequency", 0.0) in (0, 0.0):
-        found["publish_frequency"] = 2.0  # the other servers receive the costmap from its topic
+        costmap[name] = str(costmap[name]).lstrip("/")
+    if costmap.get("publish_frequency", 0.0) in (0, 0.0):
+        costmap["publish_frequency"] = 2.0  # the other servers receive the costmap from its topic
     outline = values.get("footprint")
-    if outline and "robot_radius" not in found:
-        found["footprint"] = outline if isinstance(outline, str) else str([list(point) for point in _points(outline)])
+    if outline and "robot_radius" not in costmap:
+        costmap["footprint"] = outline if isinstance(outline, str) else str([list(point) for point in _points(outline)])
     listed = values.get("plugins")
     if isinstance(listed, list):
         layers = [(str(item["name"]), str(item["type"]).rpartition("::")[2]) for item in listed]
@@ -145,11 +145,11 @@ def _costmap(values: Values) -> Values:
         layers = [("obstacle_layer", "ObstacleLayer"), ("inflation_layer", "InflationLayer")]
         if values.get("static_map", not values.get("rolling_window", False)):
             layers.insert(0, ("static_layer", "StaticLayer"))
-    found["plugins"] = [name for name, _ in layers]
+    costmap["plugins"] = [name for name, _ in layers]
     for name, kind in layers:
         own = {**values, **block_of(values, name)}
-        found[name] = {"plugin": f"nav2_costmap_2d::{kind}", **_LAYER_SETTINGS.get(kind, _no_settings)(own)}
-    return found
+        costmap[name] = {"plugin": f"nav2_costmap_2d::{kind}", **_LAYER_SETTINGS.get(kind, _no_settings)(own)}
+    return costmap
 
 
 def _points(outline: object) -> list[list[object]]:
@@ -181,17 +181,17 @@ _OF_LAYER: Final = (
 def _obstacles(values: Values) -> Values:
     """Return the settings of an obstacle layer: its sources, with the ranges of the layer."""
     sources = str(values.get("observation_sources", "")).split()
-    found: Values = {"observation_sources": sources, **{key: values[key] for key in _OF_LAYER if key in values}}
+    layer: Values = {"observation_sources": sources, **{key: values[key] for key in _OF_LAYER if key in values}}
     for name in sources:
         source = block_of(values, name)
         settings: Values = {"max_obstacle_height": 2.0}  # default of ROS 1
         settings |= {key: source[key] for key in _OF_SOURCE if key in source}
         settings["obstacle_max_range"] = source.get("obstacle_range", values.get("obstacle_range", 2.5))
         settings["raytrace_max_range"] = source.get("raytrace_range", values.get("raytrace_range", 3.0))
-        found[name] = settings
+        layer[name] = settings
     if not sources:
-        found["enabled"] = False
-    return found
+        layer["enabled"] = False
+    return layer
 
 
 _LAYER_SETTINGS: Final[Mapping[str, Callable[[Values], Values]]] = {

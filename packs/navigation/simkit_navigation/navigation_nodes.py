@@ -104,17 +104,35 @@ def topics_of_robot(sim: Simulation) -> dict[str, str]:
 
     The velocity topic is that of the only drive. The odometry is that in its namespace, and the scan the only one.
     """
-    types, found = sim.topics(), dict[str, str]()
+    types, names = sim.topics(), dict[str, str]()
     drives = {target.model: target.topic for target in find_targets(sim)}
     if "/cmd_vel" not in drives.values() and len(drives) == 1:
-        found["cmd_vel"] = next(iter(drives.values()))
-    space = found.get("cmd_vel", "/").rpartition("/")[0]
+        names["cmd_vel"] = next(iter(drives.values()))
+    space = names.get("cmd_vel", "/").rpartition("/")[0]
     odometries = [topic for topic, kind in types.items() if kind == _ODOMETRY and topic.startswith(f"{space}/")]
     scans = [topic for topic, kind in types.items() if kind == _SCAN]
     for name, topics in (("odom", odometries), ("scan", scans)):
         if f"/{name}" not in types and len(topics) == 1:
-            found[name] = topics[0]
-    return found
+            names[name] = topics[0]
+    return names
+
+
+def report_missing_topics(sim: Simulation, diagnostics: Diagnostics, *, navigates: bool) -> None:
+    """Warn about what navigation needs and no robot of the world has: a laser scan, an odometry and a drive.
+
+    Args:
+        sim: simulation.
+        diagnostics: collector of the warning.
+        navigates: True if the servers drive a robot.
+    """
+    kinds = set(sim.topics().values())
+    missing = [text for kind, text in ((_SCAN, "laser scan"), (_ODOMETRY, "odometry")) if kind not in kinds]
+    if navigates and not find_targets(sim):
+        missing.append("drive with a velocity topic")
+    if missing:
+        option, text = "--nav" if navigates else "--slam", " and no ".join(missing)
+        hint = "choose a world with a robot, such as turtlebot3_world, or add one: --spawn turtlebot3_burger"
+        diagnostics.warning("SK-NAV-021", f"{option}: the world has no {text}", hint=hint)
 
 
 def _node(package: str, executable: str, **more: Any) -> dict[str, Any]:

@@ -162,3 +162,41 @@ def test_the_map_of_slam_has_the_frame_of_the_world(folder: Path) -> None:
         pose = frames.lookup("map", "base_footprint")
         x, y, _ = sim.model("robot").pose.position
         assert pose.position[:2] == pytest.approx((x, y), abs=0.01) and pose.rpy[2] == pytest.approx(0.5, abs=0.01)
+
+
+def test_a_strict_run_reads_parameter_files_of_nodes_and_a_value_of_another_type_has_the_default(folder: Path) -> None:
+    lines = "    smoothing_frequency: 30\n    max_velocity: fast\n"
+    text = parameters(velocity_smoother=lines, planner_server="    planner_plugins: [GridBased]\n")
+    (folder / "nav2.yaml").write_text(text, "utf-8")
+    found = run("rooms.sdf", "--nav", "--params-file", "nav2.yaml", "--strict", "--duration", "0.1")
+    assert found.exit_code == 0 and "SK-CONTROL-060" not in found.output and "Traceback" not in found.output
+    assert "nav2.yaml:3: warning SK-NAV-005: /velocity_smoother: smoothing_frequency is 30" in found.output
+    assert "nav2.yaml:4: warning SK-NAV-005: /velocity_smoother: max_velocity is 'fast'" in found.output
+
+
+def test_a_map_with_an_invalid_value_is_an_error_before_anything_is_loaded(folder: Path) -> None:
+    (folder / "bad.yaml").write_text("image: bad.pgm\nresolution: 0\norigin: [0, 0, 0]\n", "utf-8")
+    found = run("rooms.sdf", "--nav", "bad.yaml", "--duration", "1")
+    assert found.exit_code == 2 and "SK-NAV-020 bad.yaml: resolution: found 0" in found.output
+
+
+def test_a_world_without_a_lidar_is_a_warning(folder: Path) -> None:
+    found = run("empty", "--slam", "--duration", "0.1")
+    assert "SK-NAV-021: --slam: the world has no laser scan and no odometry" in found.output
+    assert "SK-NAV-021" not in run("rooms.sdf", "--slam", "--duration", "0.1").output
+
+
+def test_a_reset_of_a_run_with_servers_repeats_it_bit_for_bit(folder: Path) -> None:
+    with simkit.load("rooms.sdf", spawn=[{"model": MAP_MODEL}]) as sim:
+        for node in navigation_nodes(navigates=False):
+            sim.add_node(**node)
+        transforms = sim.subscribe("/tf")
+
+        def messages() -> list[object]:
+            count = len(transforms.messages)
+            sim.run(0.7)
+            return transforms.messages[count:]
+
+        first = messages()
+        sim.reset()
+        assert messages() == first

@@ -141,3 +141,11 @@ def test_other_mappers_are_replaced_and_begin_where_they_do(executable: str, at:
         assert sim.tf.lookup("map", "base_footprint").position[0] == pytest.approx(at, abs=1e-3)
         assert len(maps.latest.data) > 1000
         assert "replaces" in warnings(sim, "SK-NAV-001")[0]
+
+
+def test_scans_whose_transforms_are_missing_are_told_once() -> None:
+    with simkit.load(rooms()) as sim:
+        sim.add_node(ASYNC, params={"base_frame": "base_link"})
+        sim.run(2.5)
+        (told,) = warnings(sim, "SK-SLAM-003")
+        assert "no scan of the frame 'base_scan' is used" in told and "base_link" in told

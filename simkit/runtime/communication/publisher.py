@@ -102,7 +102,8 @@ class Publisher(InProcess):
     def subscribers(self) -> int:
         """Number of subscriptions and command inputs of the topic."""
         readers = self._readers
-        return len(readers.readers) + (self._bus.count_inputs(self.topic) if readers.feeds else 0)
+        active = len([reader for reader in readers.readers if reader.active])
+        return active + (self._bus.count_inputs(self.topic) if readers.feeds else 0)
 
     def disown(self) -> None:
         """Belong to the simulation itself instead of a plugin, whose removal would disable the topic."""

@@ -130,10 +130,11 @@ class TopicReaders:
 
     def count(self) -> None:
         """Update the attributes after a change of the subscriptions."""
-        self.receivers = tuple(reader.receive for reader in self.readers)
-        self.is_called = any(reader.is_called for reader in self.readers)
-        self.is_streamed = any(type(reader) is StreamSubscription for reader in self.readers)
-        self.looks_at_all = self.is_streamed or any(reader.keeps == math.inf for reader in self.readers)
+        active = [reader for reader in self.readers if reader.active]
+        self.receivers = tuple(reader.receive for reader in active)
+        self.is_called = any(reader.is_called for reader in active)
+        self.is_streamed = any(type(reader) is StreamSubscription for reader in active)
+        self.looks_at_all = self.is_streamed or any(reader.keeps == math.inf for reader in active)
 
     @property
     def keeps(self) -> float:
@@ -153,9 +154,13 @@ class Subscription(InProcess):
         keeps: largest number of messages that the subscription keeps.
         node: name of the node of a program that subscribes; empty for any other subscription.
         type_name: ROS 2 type of the program's messages; empty for any other subscription.
+        owner: plugin that subscribes; None for any other subscription.
+        active: False while the owner is removed or disabled; nothing is received then.
     """
 
     node = type_name = ""
+    owner: object = None
+    active = True
 
     def __init__(
         self, bus: SubscribingBus, topic: str, callback: Callback | None, keep: int | None, on_error: CallbackPolicy

@@ -228,16 +228,27 @@ class TopicBus:
         self._tidy(end.topic)
 
     def set_active(self, owners: Sequence[object]) -> None:
-        """Enable the publishers and listeners of these owners and those without an owner; disable the others."""
+        """Enable what these owners publish and receive, and everything without an owner; disable the others."""
         living = {id(o) for o in owners}
         for end in self._all_ends():
             end.active = end.owner is None or id(end.owner) in living
+        for subscription in self._owned_subscriptions():
+            is_active = id(subscription.owner) in living
+            if subscription.active != is_active:
+                subscription.active = is_active
+                self._readers_of(subscription.topic).count()
 
     def forget(self, owners: Sequence[object]) -> None:
-        """Remove every publisher and listener of these owners permanently."""
+        """Remove every publisher, listener and subscription of these owners permanently."""
         removed = {id(owner) for owner in owners}
         for end in [end for end in self._all_ends() if id(end.owner) in removed]:
             self.close(end)
+        for subscription in self._owned_subscriptions():
+            if id(subscription.owner) in removed:
+                self.unsubscribe(subscription)
+
+    def _owned_subscriptions(self) -> list[Subscription]:
+        return [reader for readers in self._readers.values() for reader in readers.readers if reader.owner is not None]
 
     def _all_ends(self) -> Endpoints:
         ends: Endpoints = [*self._publishers.values(), *self._listeners.values()]

@@ -59,9 +59,11 @@ def open_scenario(scenario: RunSpec, *, allow_code: bool = False, **more: Any) -
         LoadError: The world has errors, or SK-SCEN-008 the scenario needs code that is not allowed.
     """
     from simkit.build import load
+    from simkit.plugins.run_parameter_files import nodes_read_files
 
     scenario = permit_code(scenario, allow_code, more.get("plugin_paths", ()))
-    sim = load(scenario.source, **{**scenario.load_arguments(), **more})
+    with nodes_read_files(bool(scenario.nodes)):
+        sim = load(scenario.source, **{**scenario.load_arguments(), **more})
     try:
         add_nodes(scenario, sim)
     except BaseException:

@@ -127,13 +127,13 @@ class ComputePathToPose(ActionNode):
 
     def request(self) -> dict[str, object]:
         self.goal_number = self.tree.goal_number
-        found: dict[str, object] = {"planner_id": self.text("planner_id")}
+        fields: dict[str, object] = {"planner_id": self.text("planner_id")}
         if self.input("goal") is not None:
-            found["goal"] = self.input("goal")
+            fields["goal"] = self.input("goal")
         start = self.input("start")
         if start is not None and self.boolean("use_start", True):
-            found.update(start=start, use_start=True)
-        return found
+            fields.update(start=start, use_start=True)
+        return fields
 
     def take_result(self, result: Any) -> None:
         self.output("path", result.path)
@@ -150,9 +150,9 @@ class ComputePathThroughPoses(ComputePathToPose):
     action = "compute_path_through_poses"
 
     def request(self) -> dict[str, object]:
-        found = super().request()
-        found.pop("goal", None)
-        return {**found, "goals": list(self.input("goals") or ())}
+        fields = super().request()
+        fields.pop("goal", None)
+        return {**fields, "goals": list(self.input("goals") or ())}
 
 
 class SmoothPath(ActionNode):
@@ -318,8 +318,8 @@ class NavigateToPose(ActionNode):
 
     def request(self) -> dict[str, object]:
         goal = self.input("goal")
-        found = {} if goal is None else {"pose": goal}
-        return {**found, "behavior_tree": self.text("behavior_tree")}
+        fields = {} if goal is None else {"pose": goal}
+        return {**fields, "behavior_tree": self.text("behavior_tree")}
 
 
 class NavigateThroughPoses(ActionNode):

@@ -114,8 +114,8 @@ class Parallel(ControlNode):
         self.completed: dict[int, str] = {}
 
     def _threshold(self, names: tuple[str, ...], default: int) -> int:
-        found = next((self.integer(name, default) for name in names if name in self.inputs), default)
-        return max(len(self.children) + found + 1, 0) if found < 0 else found
+        threshold = next((self.integer(name, default) for name in names if name in self.inputs), default)
+        return max(len(self.children) + threshold + 1, 0) if threshold < 0 else threshold
 
     def tick(self) -> str:
         enough = self._threshold(("success_count", "success_threshold", "threshold", "threshold_M"), -1)

@@ -271,9 +271,9 @@ class _OfGoal(DecoratorNode):
         self.goals: tuple[Any, Any] = (None, None)
 
     def _has_new_goal(self) -> bool:
-        found = (self.input_or_entry("goal"), self.input_or_entry("goals"))
-        is_new = not is_same(found, self.goals)
-        self.goals = found
+        goals = (self.input_or_entry("goal"), self.input_or_entry("goals"))
+        is_new = not is_same(goals, self.goals)
+        self.goals = goals
         return is_new
 
 

@@ -95,9 +95,9 @@ class _Reader:
         return self._tokens[self._at] if self._at < len(self._tokens) else ("end", "end")
 
     def _skip(self, sign: str) -> bool:
-        found = self._next() == ("sign", sign)
-        self._at += found
-        return found
+        is_sign = self._next() == ("sign", sign)
+        self._at += is_sign
+        return is_sign
 
     def _statement(self) -> Expression:
         kind, name = self._next()
@@ -161,11 +161,11 @@ class _Reader:
 def _tokens(text: str) -> list[tuple[str, str]]:
     tokens, at, end = [], 0, len(text.rstrip())
     while at < end:
-        found = _TOKEN.match(text, at)
-        if found is None or found.lastgroup is None:
+        token_match = _TOKEN.match(text, at)
+        if token_match is None or token_match.lastgroup is None:
             raise ScriptError(f"cannot read {text[at:].strip()!r:.40}")
-        tokens.append((found.lastgroup, found.group(found.lastgroup)))
-        at = found.end()
+        tokens.append((token_match.lastgroup, token_match.group(token_match.lastgroup)))
+        at = token_match.end()
     return tokens
 
 

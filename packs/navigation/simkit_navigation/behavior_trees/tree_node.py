@@ -178,19 +178,19 @@ class TreeNode:
         """Return the number of a port."""
         value = self.input(port, default)
         try:
-            found = float(value)
+            result = float(value)
         except (TypeError, ValueError):
-            found = math.nan
-        if math.isnan(found):
+            result = math.nan
+        if math.isnan(result):
             raise TreeError(f"<{self.tag}> {port}: found {value!r:.80}; expected a number")
-        return found
+        return result
 
     def integer(self, port: str, default: int) -> int:
         """Return the whole number of a port."""
-        found = self.number(port, default)
-        if not math.isfinite(found):
-            raise TreeError(f"<{self.tag}> {port}: found {found}; expected a whole number")
-        return int(found)
+        number = self.number(port, default)
+        if not math.isfinite(number):
+            raise TreeError(f"<{self.tag}> {port}: found {number}; expected a whole number")
+        return int(number)
 
     def boolean(self, port: str, default: bool) -> bool:
         """Return the boolean of a port."""

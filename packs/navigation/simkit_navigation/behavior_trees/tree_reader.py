@@ -54,28 +54,30 @@ class TreeFile:
 
 def read_tree_file(path: Path, diagnostics: Diagnostics) -> TreeFile | None:
     """Read the trees of a file; return None if it is not a tree. All problems are reported."""
-    found = TreeFile(path)
-    document = _read_document(path, found, diagnostics, {path.resolve()})
+    tree_file = TreeFile(path)
+    document = _read_document(path, tree_file, diagnostics, {path.resolve()})
     if document is None:
         return None
-    found.main = document.root.attribute("main_tree_to_execute")
+    tree_file.main = document.root.attribute("main_tree_to_execute")
     where = document.root.where
-    if not found.main and len(found.trees) == 1:
-        found.main = next(iter(found.trees))
-    if not found.trees:
+    if not tree_file.main and len(tree_file.trees) == 1:
+        tree_file.main = next(iter(tree_file.trees))
+    if not tree_file.trees:
         diagnostics.error("SK-BT-001", "the file has no <BehaviorTree>", where)
-    elif not found.main:
-        names = ", ".join(found.trees)
+    elif not tree_file.main:
+        names = ", ".join(tree_file.trees)
         text = f"the file has several trees ({names}), and <root> has no main_tree_to_execute"
-        diagnostics.error("SK-BT-001", text, where, f'write <root main_tree_to_execute="{next(iter(found.trees))}">')
-    elif found.main not in found.trees:
-        text = f"main_tree_to_execute: there is no tree {found.main!r}"
-        diagnostics.error("SK-BT-001", text, where, did_you_mean(found.main, found.trees))
-    for tree in found.trees.values():
+        diagnostics.error(
+            "SK-BT-001", text, where, f'write <root main_tree_to_execute="{next(iter(tree_file.trees))}">'
+        )
+    elif tree_file.main not in tree_file.trees:
+        text = f"main_tree_to_execute: there is no tree {tree_file.main!r}"
+        diagnostics.error("SK-BT-001", text, where, did_you_mean(tree_file.main, tree_file.trees))
+    for tree in tree_file.trees.values():
         _check_count(tree, 1, 1, diagnostics)
         for child in tree.children:
-            _check(child, found, diagnostics)
-    return found
+            _check(child, tree_file, diagnostics)
+    return tree_file
 
 
 def _read_document(path: Path, found: TreeFile, diagnostics: Diagnostics, files: set[Path]) -> Document | None:

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 from geometry_msgs.msg import Point, Point32, PolygonInstanceStamped, PolygonStamped
-from node_support import ServerNode, warn
+from node_support import ServerNode, warn, warn_of_type
 from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 from rclpy.time import Time
 from sensor_msgs.msg import LaserScan, PointCloud2, Range
@@ -28,10 +28,19 @@ class ZoneNode(ServerNode):
     def __init__(self, name):
         super().__init__(name, automatically_declare_parameters_from_overrides=True)
         self.zones, self._opened, self._drawings = {}, [], {}
+        self._invalid = set()  # parameters with a value of another type
 
     def value(self, name, default):
-        """Return a parameter, or a default."""
-        return self.get_parameter(name).value if self.has_parameter(name) else default
+        """Return a parameter, or a default, which replaces a value of another type."""
+        value = self.get_parameter(name).value if self.has_parameter(name) else default
+        is_number = isinstance(value, int | float) and not isinstance(value, bool) and not math.isnan(value)
+        wants_number = isinstance(default, int | float) and not isinstance(default, bool)
+        if is_number if wants_number else isinstance(value, type(default)):
+            return value
+        if name not in self._invalid:
+            self._invalid.add(name)
+            warn_of_type(self, name, value, default)
+        return default
 
     def configure_zones(self):
         """Read the sources and the zones, and open their topics."""
@@ -111,7 +120,7 @@ class ZoneNode(ServerNode):
     def _velocity_ranges(self, name):
         """Read the polygons of a `velocity_polygon`."""
         is_holonomic = self.value(f"{name}.holonomic", False)
-        found = []
+        ranges = []
         for part in self._names(f"{name}.velocity_polygons"):
 
             def value(parameter, default, prefix=f"{name}.{part}"):
@@ -124,8 +133,8 @@ class ZoneNode(ServerNode):
             direction = None
             if is_holonomic:
                 direction = value("direction_start_angle", -math.pi), value("direction_end_angle", math.pi)
-            found.append(VelocityRange(corners_of(value("points", "")), *limits, direction))
-        return tuple(found)
+            ranges.append(VelocityRange(corners_of(value("points", "")), *limits, direction))
+        return tuple(ranges)
 
     def _on_footprint(self, name, message):
         corners = np.array([(point.x, point.y, 0.0) for point in message.polygon.points])
@@ -259,7 +268,7 @@ class ZoneNode(ServerNode):
         """Return points on the edges of polygons, at a distance of `sampling_distance` at most."""
         for number in [number for number, polygon in polygons.items() if self._is_old(name, polygon)]:
             del polygons[number]
-        spacing, found = max(float(self.value(f"{name}.sampling_distance", 0.1)), 1e-3), [NO_POINTS]
+        spacing, parts = max(float(self.value(f"{name}.sampling_distance", 0.1)), 1e-3), [NO_POINTS]
         for message in polygons.values():
             pose = self._pose_of(message.header.frame_id, message.header.stamp, self._fixed)
             if pose is None:
@@ -267,8 +276,8 @@ class ZoneNode(ServerNode):
             corners = moved(pose, np.array([(p.x, p.y, 0.0) for p in message.polygon.polygon.points]).reshape(-1, 3))
             for start, end in zip(corners[:, :2], np.roll(corners[:, :2], -1, axis=0), strict=True):
                 count = max(math.ceil(math.dist(start, end) / spacing), 1)
-                found.append(start + np.arange(count + 1)[:, None] / count * (end - start))
-        return np.concatenate(found)
+                parts.append(start + np.arange(count + 1)[:, None] / count * (end - start))
+        return np.concatenate(parts)
 
     def _pose_of(self, frame, stamp, fixed):
         """Return rotation (3, 3) and position of a frame in that of the robot; None if it is not known.
@@ -283,10 +292,10 @@ class ZoneNode(ServerNode):
         for words in arguments:
             try:
                 look_up = self._buffer.lookup_transform_full if len(words) == 5 else self._buffer.lookup_transform
-                found = look_up(*words).transform
+                transform = look_up(*words).transform
             except TransformException:
                 continue
-            at, q = found.translation, found.rotation
+            at, q = transform.translation, transform.rotation
             return quat_to_matrix((q.w, q.x, q.y, q.z)), np.array([at.x, at.y, at.z])
         if frame == self._base:
             return np.eye(3), np.zeros(3)

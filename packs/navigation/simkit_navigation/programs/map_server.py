@@ -63,20 +63,20 @@ class MapServer(ServerNode):
         try:
             if not Path(path).is_file():
                 raise MapFileError(f"there is no file {path}", LoadMap.Response.RESULT_MAP_DOES_NOT_EXIST)
-            found = read_map(Path(path))
+            occupancy = read_map(Path(path))
         except MapFileError as error:
             self.get_logger().error(f"Failed to load the map: {error}")
             return error.result
-        message, (rows, columns) = OccupancyGrid(), found.cells.shape
+        message, (rows, columns) = OccupancyGrid(), occupancy.cells.shape
         message.header.frame_id = self.get_parameter("frame_id").value
         message.header.stamp = message.info.map_load_time = self.get_clock().now().to_msg()
-        message.info.resolution, message.info.width, message.info.height = found.resolution, columns, rows
+        message.info.resolution, message.info.width, message.info.height = occupancy.resolution, columns, rows
         position, turn = message.info.origin.position, message.info.origin.orientation
-        position.x, position.y, position.z = map(float, found.origin.position)
-        turn.w, turn.x, turn.y, turn.z = map(float, found.origin.quaternion)
-        message.data = found.cells.reshape(-1).tolist()
+        position.x, position.y, position.z = map(float, occupancy.origin.position)
+        turn.w, turn.x, turn.y, turn.z = map(float, occupancy.origin.quaternion)
+        message.data = occupancy.cells.reshape(-1).tolist()
         self._map = message
-        self.get_logger().info(f"Read map {path}: {columns} X {rows} map @ {found.resolution:g} m/cell")
+        self.get_logger().info(f"Read map {path}: {columns} X {rows} map @ {occupancy.resolution:g} m/cell")
         return LoadMap.Response.RESULT_SUCCESS
 
     def _on_get_map(self, request, response):

@@ -165,10 +165,10 @@ class NavSatTransform(Node):
     def _lever(self, fix):
         """Return the position of the receiver in the frame of the robot [m]; zeros if its frame is not known."""
         try:
-            found = self._buffer.lookup_transform(self._base_frame, fix.header.frame_id, Time())
+            stamped = self._buffer.lookup_transform(self._base_frame, fix.header.frame_id, Time())
         except TransformException:
             return 0.0, 0.0, 0.0
-        at = found.transform.translation
+        at = stamped.transform.translation
         return at.x, at.y, at.z
 
     # ------------------------------------------------------------------ output

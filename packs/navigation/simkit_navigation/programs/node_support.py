@@ -4,17 +4,30 @@ import contextlib
 import sys
 
 import rclpy
+from rclpy.exceptions import InvalidParameterTypeException
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
 
 from simkit.extend import Where
 from simkit_nodes.host import current_host
+from simkit_nodes.parameter_overrides import parameter_places
+
+_KINDS = {bool: "true or false", int: "an integer", float: "a number", str: "a text", list: "a list"}
 
 
 class ServerNode(LifecycleNode):
     """Node that logs the changes of its state as a server of Nav2."""
 
     _is_active = False
+
+    def declare_parameter(self, name, value=None, *arguments, **options):
+        """Declare a parameter; one of another type has its default, and a warning says so."""
+        try:
+            return super().declare_parameter(name, value, *arguments, **options)
+        except InvalidParameterTypeException:
+            given = self._parameter_overrides[name].value
+            warn_of_type(self, name, given, value)
+            return super().declare_parameter(name, value, *arguments, ignore_override=True)
 
     def on_configure(self, state):
         """Log the change."""
@@ -53,11 +66,22 @@ def run(node, executor=None):
     rclpy.try_shutdown()
 
 
-def warn(node, code, text):
-    """Report a warning; its place is the executable, because files of parameters are often temporary ones."""
+def warn_of_type(node, name, given, default):
+    """Warn that a parameter has a value of another type than its default, which is used."""
+    expected = _KINDS.get(type(default), "a list")
+    if isinstance(default, float) and isinstance(given, int) and not isinstance(given, bool):
+        expected = f"a number with a decimal point, {float(given)!r}"
+    elif isinstance(default, list) and default:
+        expected = f"a list, such as {default!r}"
+    where = parameter_places(node.get_fully_qualified_name(), node.context.arguments).get(name)
+    warn(node, "SK-NAV-005", f"{name} is {given!r:.80}; expected {expected}; the default {default!r} is used", where)
+
+
+def warn(node, code, text, where=None):
+    """Report a warning; its place is the executable, unless the line of a parameter file is known."""
     text = f"{node.get_fully_qualified_name()}: {text}"
     simulation = current_host().simulation
     if simulation is None:
         node.get_logger().warning(text)
     else:
-        simulation.engine.reports.warning(code, text, Where(sys.argv[0]))
+        simulation.engine.reports.warning(code, text, where or Where(sys.argv[0]))

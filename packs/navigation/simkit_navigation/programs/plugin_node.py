@@ -63,12 +63,12 @@ class PluginHost:
         try:
             self._sim.spawn(model.text)
         except SimkitError as error:
-            found = [model.placed(item) for item in getattr(error, "diagnostics", ())]
-            return [str(item) for item in found if item.severity == "error"] or str(error).splitlines()
+            reported = [model.placed(item) for item in getattr(error, "diagnostics", ())]
+            return [str(item) for item in reported if item.severity == "error"] or str(error).splitlines()
         self._is_added = True
-        found = [item for item in reports if item not in before]
-        reports.drop(found)
-        placed = [model.placed(item) for item in found]
+        reported = [item for item in reports if item not in before]
+        reports.drop(reported)
+        placed = [model.placed(item) for item in reported]
         reports.extend(placed)
         missing = [name for name in names if f"{self._model}::{name}" not in self._sim.plugins]
         codes = ("SK-PARAM", "SK-PLUGIN", "SK-BT", "SK-XML")

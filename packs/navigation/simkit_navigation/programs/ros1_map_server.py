@@ -19,18 +19,18 @@ def main():
     try:
         if not Path(words[0]).is_file():
             sys.exit(f"map_server could not open {words[0]}.")
-        found = read_map(Path(words[0]), is_ros_1=True)
+        occupancy = read_map(Path(words[0]), is_ros_1=True)
     except MapFileError as error:
         sys.exit(str(error))
-    message, (rows, columns) = OccupancyGrid(), found.cells.shape
+    message, (rows, columns) = OccupancyGrid(), occupancy.cells.shape
     message.header.frame_id = rospy.get_param("~frame_id", "map")
     message.header.stamp = message.info.map_load_time = rospy.Time.now()
-    message.info.resolution, message.info.width, message.info.height = found.resolution, columns, rows
+    message.info.resolution, message.info.width, message.info.height = occupancy.resolution, columns, rows
     position, turn = message.info.origin.position, message.info.origin.orientation
-    position.x, position.y, position.z = map(float, found.origin.position)
-    turn.w, turn.x, turn.y, turn.z = map(float, found.origin.quaternion)
-    message.data = found.cells.reshape(-1).tolist()
-    rospy.loginfo("Read a %d X %d map @ %.3f m/cell", columns, rows, found.resolution)
+    position.x, position.y, position.z = map(float, occupancy.origin.position)
+    turn.w, turn.x, turn.y, turn.z = map(float, occupancy.origin.quaternion)
+    message.data = occupancy.cells.reshape(-1).tolist()
+    rospy.loginfo("Read a %d X %d map @ %.3f m/cell", columns, rows, occupancy.resolution)
     publisher = rospy.Publisher("map", OccupancyGrid, queue_size=1, latch=True)
     metadata = rospy.Publisher("map_metadata", MapMetaData, queue_size=1, latch=True)
     rospy.Service("static_map", GetMap, lambda _: GetMapResponse(map=message))

@@ -32,6 +32,8 @@ from simkit_nodes.host import current_host
 THRESHOLDS = (0.25, 0.65)
 """Occupancies of free and of occupied cells in the files of `save_map`, as in `map_saver_cli`."""
 MATCH_TYPES = DeserializePoseGraph.Request
+LONGEST_WAIT = Duration(seconds=2.0)
+"""Time without the transforms of a scan after which a warning tells this."""
 LOCALIZATION, MAPPING = "localization", "mapping"
 
 
@@ -58,6 +60,7 @@ class Slam(LifecycleNode):
         self._is_far = False  # the start is only about right
         self._odometry = None  # pose of the robot in the odometry at the last scan that was used
         self._pending, self._last_ns, self._count = [], None, 0
+        self._waits_since, self._has_told_wait = None, False
         self._is_paused = values["paused_new_measurements"]
         self._buffer = Buffer(cache_time=Duration(seconds=values["tf_buffer_duration"]))
         self._listener = TransformListener(self._buffer, self)
@@ -136,7 +139,8 @@ class Slam(LifecycleNode):
             if not self._has_moved(base):
                 return True
             transform = self._buffer.lookup_transform(values["base_frame"], scan.header.frame_id, stamp)
-        except TransformException:
+        except TransformException as error:
+            self._tell_waiting(scan, error)
             return False
         sensor, is_inverted = _planar(transform)
         if self._odometry is None:
@@ -161,6 +165,15 @@ class Slam(LifecycleNode):
         if is_first:
             self._publish_map()
         return True
+
+    def _tell_waiting(self, scan, error):
+        """Warn once if no scan has been used within LONGEST_WAIT, because a transform is missing."""
+        now = self.get_clock().now()
+        self._waits_since = self._waits_since or now
+        has_waited = now - self._waits_since > LONGEST_WAIT
+        if self._odometry is None and has_waited and not self._has_told_wait:
+            self._has_told_wait = True
+            warn(self, "SK-SLAM-003", f"no scan of the frame {scan.header.frame_id!r:.100} is used: {error}")
 
     def _true_pose(self):
         """Return the true pose of the robot in the world, so that the map has the frame of the world."""
@@ -228,15 +241,15 @@ class Slam(LifecycleNode):
         self._poses.publish(message)
 
     def _map(self):
-        found, message = self._mapper.occupancy(), OccupancyGrid()
+        occupancy, message = self._mapper.occupancy(), OccupancyGrid()
         message.header.frame_id = self._values["map_frame"]
         message.header.stamp = message.info.map_load_time = self.get_clock().now().to_msg()
-        message.info.height, message.info.width = found.cells.shape
-        message.info.resolution = found.resolution
-        x, y, _ = found.origin.position
+        message.info.height, message.info.width = occupancy.cells.shape
+        message.info.resolution = occupancy.resolution
+        x, y, _ = occupancy.origin.position
         message.info.origin.position.x, message.info.origin.position.y = float(x), float(y)
         message.info.origin.orientation.w = 1.0
-        message.data = found.cells.reshape(-1).tolist()
+        message.data = occupancy.cells.reshape(-1).tolist()
         return message
 
     def _publish_map(self):

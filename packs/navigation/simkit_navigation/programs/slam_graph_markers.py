@@ -95,9 +95,9 @@ class GraphMarkers:
         markers = []
         for index, scan in enumerate(self._mapper.scans if self._is_interactive and self._mapper else ()):
             pose = self._moved.get(index, scan.pose)
-            found = InteractiveMarker(name=str(index), scale=0.3)
-            found.header.frame_id = self._frame
-            found.pose.position.x, found.pose.position.y, found.pose.orientation.w = pose.x, pose.y, 1.0
+            marker = InteractiveMarker(name=str(index), scale=0.3)
+            marker.header.frame_id = self._frame
+            marker.pose.position.x, marker.pose.position.y, marker.pose.orientation.w = pose.x, pose.y, 1.0
             sphere = self._sphere(index, PlanarPose(0.0, 0.0, 0.0))
             sphere.header.frame_id = ""  # in the frame of the interactive marker
             plane = InteractiveMarkerControl(
@@ -110,8 +110,8 @@ class GraphMarkers:
             turn = InteractiveMarkerControl(name="turn", interaction_mode=InteractiveMarkerControl.ROTATE_AXIS)
             for control in (plane, turn):  # the x axis of a control points up
                 control.orientation.w, control.orientation.y = HALF, HALF
-            found.controls = [plane, turn]
-            markers.append(found)
+            marker.controls = [plane, turn]
+            markers.append(marker)
         return markers
 
     def _publish_interactive(self):

@@ -134,21 +134,21 @@ def values_of(node, executable):
     for name, default in values.items():
         if not node.has_parameter(name):
             node.declare_parameter(name, default)
-    found = {name: _valid(node, name, default, node.get_parameter(name).value) for name, default in values.items()}
+    valid = {name: _valid(node, name, default, node.get_parameter(name).value) for name, default in values.items()}
     for size, step in SEARCHES:
-        if found[size] > MOST_STEPS * found[step]:
-            _replaced(node, size, found[size], f"at most {MOST_STEPS:g} times {step}", DEFAULTS[size])
-            found[size], found[step] = DEFAULTS[size], DEFAULTS[step]
-    if found["resolution"] < LEAST_RESOLUTION:
+        if valid[size] > MOST_STEPS * valid[step]:
+            _replaced(node, size, valid[size], f"at most {MOST_STEPS:g} times {step}", DEFAULTS[size])
+            valid[size], valid[step] = DEFAULTS[size], DEFAULTS[step]
+    if valid["resolution"] < LEAST_RESOLUTION:
         default = DEFAULTS["resolution"]
-        found["resolution"] = _replaced(
-            node, "resolution", found["resolution"], f"at least {LEAST_RESOLUTION}", default
+        valid["resolution"] = _replaced(
+            node, "resolution", valid["resolution"], f"at least {LEAST_RESOLUTION}", default
         )
     known = set(values) | SILENT | set(OF_GMAPPING if executable.startswith("gmapping/") else ())
     unused = sorted(name for name in given if name.partition(".")[0] not in known)
     if unused:
         warn(node, "SK-NAV-002", f"no effect here: {shortened(unused)}")
-    return found
+    return valid
 
 
 def settings_of(values):

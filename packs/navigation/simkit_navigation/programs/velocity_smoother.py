@@ -29,6 +29,8 @@ DEFAULTS = {
 }
 """Parameters and their defaults; vectors are for x [m/s], y [m/s] and the turning rate [rad/s]."""
 
+HIGHEST_FREQUENCY = 1e6
+"""Highest rate of the timer [Hz]: a period below one nanosecond would never let time pass."""
 VECTORS = ("max_velocity", "min_velocity", "max_accel", "max_decel", "deadband_velocity")
 SIGNS = (
     ("max_decel", 1.0, "Positive values set of deceleration! These should be negative to slow down!"),
@@ -41,6 +43,9 @@ SIGNS = (
 
 def problem_of(values):
     """Return what Nav2 reports about invalid parameters; an empty text if all are valid."""
+    numbers = [number for name in VECTORS for number in values[name]]
+    if not all(map(math.isfinite, (*numbers, values["smoothing_frequency"], values["velocity_timeout"]))):
+        return "A limit, smoothing_frequency or velocity_timeout is NaN or infinite."
     if any(len(values[name]) != len(DEFAULTS["max_velocity"]) for name in VECTORS):
         return (
             "Invalid setting of kinematic and/or deadband limits! "
@@ -49,8 +54,8 @@ def problem_of(values):
     for name, sign, sentence in SIGNS:
         if any(value * sign > 0 for value in values[name]):
             return sentence
-    if values["smoothing_frequency"] <= 0.0:
-        return "smoothing_frequency must be positive"
+    if not 0.0 < values["smoothing_frequency"] <= HIGHEST_FREQUENCY:
+        return f"smoothing_frequency must be positive, and at most {HIGHEST_FREQUENCY:g} Hz"
     if values["feedback"] not in ("OPEN_LOOP", "CLOSED_LOOP"):
         return "Invalid feedback_type, options are OPEN_LOOP and CLOSED_LOOP."
     return ""

@@ -40,14 +40,13 @@ class Navigation(RunPart):
         """Return the run with the true map of the world, if it is needed.
 
         Raises:
-            InputError: SK-NAV-020 the map is not there, or both a map and `--slam` are given.
+            InputError: SK-NAV-020 the map is not there or not valid, or both a map and `--slam` are given.
         """
         if self._map is not None and self.slam:
             text = f"found --nav {self.nav} and --slam"
             raise InputError("SK-NAV-020", text, help="--slam makes the map: write --nav without a file")
-        if self._map is not None and not Path(self._map).is_file():
-            problem = f"there is no map {self.nav}"
-            raise InputError("SK-NAV-020", problem, help="simkit map WORLD -o NAME writes the true map of a world")
+        if self._map is not None:
+            _check_map(self._map)
         if self.nav != _TRUE_MAP or self.slam:
             return spec
         from simkit_navigation.navigation_nodes import MAP_MODEL
@@ -58,8 +57,9 @@ class Navigation(RunPart):
         """Return the nodes that navigate or make a map."""
         if self.nav is None and not self.slam:
             return ()
-        from simkit_navigation.navigation_nodes import navigation_nodes, topics_of_robot
+        from simkit_navigation.navigation_nodes import navigation_nodes, report_missing_topics, topics_of_robot
 
+        report_missing_topics(sim, sim.engine.reports, navigates=self.nav is not None)
         given = spec.options.get("params_files", ())
         given = [given] if isinstance(given, (str, os.PathLike)) else given
         files = [file for model, file in map(model_and_file, given) if not model]
@@ -72,5 +72,22 @@ class Navigation(RunPart):
         )
 
     @property
+    def adds_nodes(self) -> bool:
+        return self.nav is not None or self.slam
+
+    @property
     def _map(self) -> str | None:
         return None if self.nav == _TRUE_MAP else self.nav
+
+
+def _check_map(name: str) -> None:
+    """Check whether a map can be read."""
+    if not Path(name).is_file():
+        problem = f"there is no map {name:.200}"
+        raise InputError("SK-NAV-020", problem, help="simkit map WORLD -o NAME writes the true map of a world")
+    from simkit_navigation.plugins.maps.map_server import MapFileError, read_map
+
+    try:
+        read_map(Path(name))
+    except MapFileError as error:
+        raise InputError("SK-NAV-020", str(error), help="simkit map WORLD -o NAME writes a map") from None

@@ -49,26 +49,26 @@ def controller_parameters(values: Values, costmap: Values) -> NodeValues:
     own: Values = {"robot_base_frame": costmap.get("robot_base_frame", "base_link")}
     own.update({name: costmap[name] for name in _OF_THE_COSTMAP if name in costmap})
     own["inflation_layer"] = _inflation(costmap)
-    found = NodeValues({**own, **values})
-    of_path = _path_handling(found)
+    result = NodeValues({**own, **values})
+    of_path = _path_handling(result)
     for name in names_of(values.get("controller_plugins")):
-        found.blocks.append(name)
-        found.values[name] = _controller(name, block_of(values, name), found, of_path)
+        result.blocks.append(name)
+        result.values[name] = _controller(name, block_of(values, name), result, of_path)
     for what, known, default in _CHECKERS:
-        _add_checkers(what, known, default, found)
-    return found
+        _add_checkers(what, known, default, result)
+    return result
 
 
-def _path_handling(found: NodeValues) -> Values:
+def _path_handling(result: NodeValues) -> Values:
     """Return the parameters of Rolling's path handler, which belong to the controllers in Humble and Jazzy."""
     values: Values = {}
-    for name in names_of(found.values.pop("path_handler_plugins", None)):
-        block = block_of(found.values, name)
-        found.values.pop(name, None)
+    for name in names_of(result.values.pop("path_handler_plugins", None)):
+        block = block_of(result.values, name)
+        result.values.pop(name, None)
         values = {key: block[key] for key in _OF_PATH_HANDLERS if key in block}
         for key in ("enforce_path_rotation", "reject_unit_path"):
             if block.get(key) is True:
-                found.told.append(f"{name}: {key} has no effect")
+                result.told.append(f"{name}: {key} has no effect")
     return values
 
 
@@ -97,28 +97,28 @@ def _is_known(kind: str) -> bool:
     return kind in CONTROLLERS or (is_class_of_user(kind) and kind not in _OTHERS)
 
 
-def _controller(name: str, settings: Values, found: NodeValues, of_path: Values) -> Values:
+def _controller(name: str, settings: Values, result: NodeValues, of_path: Values) -> Values:
     """Return the block of a controller; the nearest class replaces one that simkit does not have."""
     kind = str(settings.get("plugin", "")).replace("/", "::")
     if kind == _SHIM:
         primary = str(settings.get("primary_controller", "")).replace("/", "::")
         if not _is_known(primary):
-            found.told.append(f"{name}: the primary controller {_PURSUIT} replaces {primary}")
+            result.told.append(f"{name}: the primary controller {_PURSUIT} replaces {primary}")
             own = {key: value for key, value in settings.items() if key in _OF_THE_SHIM}
             return {**own, **_pursuit_settings(settings), "plugin": _SHIM, "primary_controller": _PURSUIT}
         kind = primary
     elif kind and not _is_known(kind):
-        found.told.append(f"{name}: the controller {_PURSUIT} replaces {kind}")
+        result.told.append(f"{name}: the controller {_PURSUIT} replaces {kind}")
         return _pursuit_settings(settings)
     if kind == _MPPI:
         settings.update({key: value for key, value in of_path.items() if key not in settings})
         _set_motion_model(settings)
     if kind in (_MPPI, _DWB):
-        settings["critics"] = _critics(name, kind, settings, found)
+        settings["critics"] = _critics(name, kind, settings, result)
     return settings
 
 
-def _critics(name: str, kind: str, settings: Values, found: NodeValues) -> list[str]:
+def _critics(name: str, kind: str, settings: Values, result: NodeValues) -> list[str]:
     """Return the critics that simkit has."""
     kept = []
     for critic in names_of(settings.get("critics")):
@@ -126,36 +126,36 @@ def _critics(name: str, kind: str, settings: Values, found: NodeValues) -> list[
         wanted += "Critic" if kind == _DWB and "Critic" not in wanted else ""
         if wanted in (DWB_CRITICS if kind == _DWB else MPPI_CRITICS):
             kept.append(critic)
-            found.blocks.append(critic)
+            result.blocks.append(critic)
         else:
-            found.told.append(f"{name}: the critic {critic} is left out")
+            result.told.append(f"{name}: the critic {critic} is left out")
             settings.pop(critic, None)
     return kept
 
 
-def _add_checkers(what: str, known: Mapping[str, object], default: str, found: NodeValues) -> None:
+def _add_checkers(what: str, known: Mapping[str, object], default: str, result: NodeValues) -> None:
     """Set the list and the blocks of the checkers; before Iron, one name was in a parameter without an s."""
-    values = found.values
+    values = result.values
     lists = [names_of(values.pop(key, None)) for key in (f"{what}_plugins", f"{what}_plugin")]
     names = lists[0] or lists[1] or [what]
     for name in names:
         settings = block_of(values, name)
         kind = str(settings.get("plugin", default)).replace("/", "::")
         if kind not in known:
-            found.told.append(f"{name}: the checker {default} replaces {kind}")
+            result.told.append(f"{name}: the checker {default} replaces {kind}")
             kind = default
         values[name] = {**settings, "plugin": kind}
     values[f"{what}_plugins"] = names
-    found.blocks += names
+    result.blocks += names
 
 
 def _pursuit_settings(settings: Values) -> Values:
     """Return the settings of pure pursuit with the speeds of another controller."""
     speed = next((settings[name] for name in _SPEEDS if name in settings), None)
     rate = next((settings[name] for name in _TURNING_RATES if name in settings), None)
-    found: Values = {"plugin": _PURSUIT}
+    pursuit: Values = {"plugin": _PURSUIT}
     if isinstance(speed, (int, float)) and speed > 0:
-        found["desired_linear_vel"] = speed
+        pursuit["desired_linear_vel"] = speed
     if isinstance(rate, (int, float)) and rate > 0:
-        found["rotate_to_heading_angular_vel"] = rate
-    return found
+        pursuit["rotate_to_heading_angular_vel"] = rate
+    return pursuit

@@ -215,15 +215,15 @@ class ControllerServer(ControllerTopics, CostmapReader, ServerPlugin):
             default: name of the only checker without a list.
             known: classes by their name in Nav2.
         """
-        found = {}
+        checkers = {}
         for name in split_names(texts_of_names) or [default]:
             block = self.params.block(name)
             wanted = block.text("plugin", _CHECKERS[default]).replace("/", "::")
             if wanted not in known:
                 self.params.error("SK-PARAM-002", f"{name}: found {wanted!r}", f"the classes are {', '.join(known)}")
                 continue
-            found[name] = known[wanted](block)
-        return found
+            checkers[name] = known[wanted](block)
+        return checkers
 
     # ------------------------------------------------------------------ messages
 
@@ -365,6 +365,7 @@ class ControllerServer(ControllerTopics, CostmapReader, ServerPlugin):
 
     def _fail(self, goal: GoalHandle, code: int, reason: str) -> None:
         self._stop()
+        self.log.warning("path not followed: %s", reason)
         goal.abort({"error_code": code, "error_msg": reason}, reason)
 
     def _stop(self) -> None:

@@ -189,15 +189,15 @@ def _distances(shape: tuple[int, ...], sources: Indices) -> Indices | None:
         return None
     row, column = np.indices(shape)
     if len(sources) == 1:
-        found: Indices = np.abs(row - sources[0] // shape[1]) + np.abs(column - sources[0] % shape[1])
-        return found.reshape(-1)
+        distances: Indices = np.abs(row - sources[0] // shape[1]) + np.abs(column - sources[0] % shape[1])
+        return distances.reshape(-1)
     is_far = np.ones(shape, np.bool_)
     is_far.reshape(-1)[sources] = False
     from scipy.ndimage import distance_transform_edt  # 40 ms
 
     rows, columns = distance_transform_edt(is_far, return_distances=False, return_indices=True)
-    found = np.abs(rows - row) + np.abs(columns - column)
-    return found.reshape(-1)
+    distances = np.abs(rows - row) + np.abs(columns - column)
+    return distances.reshape(-1)
 
 
 def _distance_of_goal(situation: Situation, path_cells: Indices) -> Indices | None:
@@ -212,23 +212,23 @@ def _distance_of_goal(situation: Situation, path_cells: Indices) -> Indices | No
     blocked = grid.cells >= INSCRIBED
     if straight is None or robot is None or not blocked.any():
         return straight
-    found = np.full(grid.cells.shape, -1, np.int64)
+    distances = np.full(grid.cells.shape, -1, np.int64)
     front = np.zeros(grid.cells.shape, np.bool_)
     front.reshape(-1)[path_cells[-1]] = True
     is_open, distance = ~blocked, 0
     while front.any():
-        found[front] = distance
+        distances[front] = distance
         wider = np.zeros_like(front)
         wider[1:] |= front[:-1]
         wider[:-1] |= front[1:]
         wider[:, 1:] |= front[:, :-1]
         wider[:, :-1] |= front[:, 1:]
-        front = wider & is_open & (found < 0)
+        front = wider & is_open & (distances < 0)
         distance += 1
-    if found[robot] < 0:
+    if distances[robot] < 0:
         return straight
-    found[found < 0] = distance
-    return found.reshape(-1)
+    distances[distances < 0] = distance
+    return distances.reshape(-1)
 
 
 def _known_cells(situation: Situation, path: Floats) -> Indices:
@@ -249,10 +249,10 @@ def _dense(points: Floats, resolution: float) -> Floats:
     counts = np.ceil(np.sqrt(steps[:, 0] ** 2 + steps[:, 1] ** 2) / resolution - _SLACK).astype(np.int64)
     if (counts <= 1).all():
         return points
-    found = [points[:1]]
+    parts = [points[:1]]
     for begin, step, count in zip(points[:-1], steps, np.maximum(counts, 1).tolist(), strict=True):
-        found.append(begin + (np.arange(1, count + 1) / count)[:, None] * step)
-    return np.concatenate(found)
+        parts.append(begin + (np.arange(1, count + 1) / count)[:, None] * step)
+    return np.concatenate(parts)
 
 
 class PathDistCritic(_MapGridCritic):

@@ -20,8 +20,8 @@ def costs_of_cells(cells: Cells, resolution: float, x: Numbers, y: Numbers) -> C
     columns, rows = np.floor(x * (1.0 / resolution)), np.floor(y * (1.0 / resolution))
     inside = (columns >= 0) & (columns < cells.shape[1]) & (rows >= 0) & (rows < cells.shape[0])
     index = np.where(inside, rows * cells.shape[1] + columns, 0).astype(np.int64)
-    found: Cells = np.where(inside, cells.reshape(-1)[index], np.uint8(UNKNOWN))
-    return found
+    costs: Cells = np.where(inside, cells.reshape(-1)[index], np.uint8(UNKNOWN))
+    return costs
 
 
 def footprint_costs(grid: CostGrid, points: Floats, x: Numbers, y: Numbers, cos: Numbers, sin: Numbers) -> Cells:
@@ -35,7 +35,7 @@ def footprint_costs(grid: CostGrid, points: Floats, x: Numbers, y: Numbers, cos:
         cos: cosines of its headings, shape (n,).
         sin: sines of its headings, shape (n,).
     """
-    found = np.empty(len(x), np.uint8)
+    largest = np.empty(len(x), np.uint8)
     share = max(1, _AT_ONCE // len(points))
     across, along = points[:, 1], points[:, 0]
     for at in range(0, len(x), share):
@@ -44,5 +44,5 @@ def footprint_costs(grid: CostGrid, points: Floats, x: Numbers, y: Numbers, cos:
         costs = costs_of_cells(
             grid.cells, grid.resolution, x[part, None] + c * along - s * across, y[part, None] + s * along + c * across
         )
-        found[part] = costs.max(axis=1)
-    return found
+        largest[part] = costs.max(axis=1)
+    return largest

@@ -54,13 +54,13 @@ class LocalPath:
         last = self._within(begin, search)
         squares = (self._poses[begin:last, 0] - pose.x) ** 2 + (self._poses[begin:last, 1] - pose.y) ** 2
         begin = self._begin = begin + int(squares.argmin())
-        found = self._poses[begin : self._within(begin, prune)]
+        poses = self._poses[begin : self._within(begin, prune)]
         if grid is not None:
-            outside = np.flatnonzero(~grid.indices(found[:, :2])[2])
-            found = found[: outside[0]] if len(outside) else found
+            outside = np.flatnonzero(~grid.indices(poses[:, :2])[2])
+            poses = poses[: outside[0]] if len(outside) else poses
         if self._end < len(self._poses) and self._is_at_inversion(pose):
             self._begin, self._end = self._end, self._next_end(self._end)
-        return found
+        return poses
 
     def _within(self, begin: int, distance: float) -> int:
         """Return the end of the poses within a distance along the path [m]; there is at least one."""
@@ -83,5 +83,5 @@ def first_inversion(poses: Floats) -> int:
     """Return the number of poses up to the first point where the direction of motion reverses; all without one."""
     steps = np.diff(poses[:, :2], axis=0)
     products = steps[:-1, 0] * steps[1:, 0] + steps[:-1, 1] * steps[1:, 1]
-    found = np.flatnonzero(products < 0.0)
-    return int(found[0]) + 2 if len(found) else len(poses)
+    inversions = np.flatnonzero(products < 0.0)
+    return int(inversions[0]) + 2 if len(inversions) else len(poses)

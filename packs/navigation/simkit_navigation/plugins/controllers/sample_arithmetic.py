@@ -45,8 +45,8 @@ def cosine(angles: Array) -> Array:
 
 def wrapped(angles: Array) -> Array:
     """Return angles [rad] within ±π."""
-    found: Array = angles - np.rint(angles * (1.0 / math.tau)) * math.tau
-    return found
+    result: Array = angles - np.rint(angles * (1.0 / math.tau)) * math.tau
+    return result
 
 
 def sum_over_steps(values: Array) -> Array:

@@ -50,8 +50,8 @@ class Axis:
     def projected(self, begin: float, targets: Floats, times: Floats) -> Floats:
         """Return the velocities after times [s] on the way to each of the targets, as `project`."""
         slower = np.maximum(targets, begin + self.decel * times)
-        found: Floats = np.where(begin < targets, np.minimum(targets, begin + self.accel * times), slower)
-        return found
+        result: Floats = np.where(begin < targets, np.minimum(targets, begin + self.accel * times), slower)
+        return result
 
     def velocities(self, present: float, time: float) -> list[float]:
         """Return evenly spaced velocities that are reached within a time [s], and 0 if they change their sign."""
@@ -92,8 +92,8 @@ class Trajectories:
         step = np.minimum(np.floor(at).astype(np.int64), counts - 1)
         all_of_them = np.arange(len(counts))
         begin, end = self.yaw[step, all_of_them], self.yaw[step + 1, all_of_them]
-        found: Floats = begin + (end - begin) * (at - step)
-        return found
+        yaw: Floats = begin + (end - begin) * (at - step)
+        return yaw
 
 
 class VelocitySampler:

@@ -118,11 +118,11 @@ class ObservationBuffer:
         Args:
             frame: frame of the costmap.
         """
-        found = []
+        result = []
         for index, message in enumerate(self.current_messages()):
             stored = self._observations[index]
             if stored is not None and stored[0] == frame:
-                found.append(stored[1])
+                result.append(stored[1])
                 continue
             sensor = find_pose(self._node, frame, message)
             if sensor is None:
@@ -130,10 +130,10 @@ class ObservationBuffer:
             pose, is_exact = sensor
             seen = _observe(self._node, frame, message, pose, self.options)
             if seen is not None:
-                found.append(seen)
+                result.append(seen)
                 if is_exact:
                     self._observations[index] = (frame, seen)
-        return found
+        return result
 
 
 def find_pose(node: CostmapNode, frame: str, message: msgs.Message, source: str = "") -> tuple[Pose, bool] | None:
@@ -165,12 +165,12 @@ def _observe(
         return None
     origin = pose
     if options.sensor_frame:
-        found = find_pose(node, frame, message, options.sensor_frame)
-        if found is None:
+        placed = find_pose(node, frame, message, options.sensor_frame)
+        if placed is None:
             text = f"there is no transform from {options.sensor_frame!r} (<sensor_frame>) to {frame!r}"
             node.report_once(f"frame {options.topic}", f"{text}; messages on {options.topic} are ignored")
             return None
-        origin = found[0]
+        origin = placed[0]
     x, y, z = transformed(pose, points)
     low, high = np.float32(options.min_obstacle_height), np.float32(options.max_obstacle_height)
     is_kept = (z >= low) & (z <= high)

@@ -126,10 +126,10 @@ class ObstacleLayer:
 
     def _add_scan(self, grid: CostGrid, scan: msgs.LaserScan, options: SourceOptions, clears: bool) -> None:
         """Clear the cells before the ends of the beams, or mark the cells at their ends."""
-        found = find_pose(self._node, grid.frame, scan)
-        if found is None:
+        placed = find_pose(self._node, grid.frame, scan)
+        if placed is None:
             return
-        sensor = planar_of(found[0])
+        sensor = planar_of(placed[0])
         ranges = np.asarray(scan.ranges, np.float64)
         angles = np.asarray(scan.angle_min + scan.angle_increment * np.arange(len(ranges)), np.float64)
         hits = np.isfinite(ranges) & (ranges >= scan.range_min) & (ranges <= scan.range_max)
@@ -137,7 +137,7 @@ class ObstacleLayer:
         if not clears:
             low, high = max(low, own.min_obstacle_height), min(high, own.max_obstacle_height)
         if math.isfinite(low) or math.isfinite(high):
-            rotation, height = found[0].matrix[2].tolist(), float(found[0].position[2])
+            rotation, height = placed[0].matrix[2].tolist(), float(placed[0].position[2])
             reached = np.where(hits, ranges, 0.0)
             z = height + rotation[0] * (reached * np.cos(angles)) + rotation[1] * (reached * np.sin(angles))
             hits &= (z >= low) & (z <= high)

@@ -101,11 +101,11 @@ class RangeSensorLayer:
         distance = self._distance(reading)
         if distance is None:
             return
-        found = find_pose(self._node, grid.frame, reading)
-        if found is None:
+        placed = find_pose(self._node, grid.frame, reading)
+        if placed is None:
             return
         length, is_cleared = distance
-        ends = np.array([found[0].position[:2], found[0].transform((length, 0.0, 0.0))[:2]])
+        ends = np.array([placed[0].position[:2], placed[0].transform((length, 0.0, 0.0))[:2]])
         (at_x, at_y), (end_x, end_y) = grid.origin.inverse().transform(ends).tolist()
         self._last_ns, self._has_told = self._node.sim.time_ns, False
         side, (rows, columns) = grid.resolution, grid.cells.shape

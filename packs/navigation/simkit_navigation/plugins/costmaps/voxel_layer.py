@@ -86,13 +86,13 @@ class VoxelLayer(ObstacleLayer):
     # ------------------------------------------------------------------ observations
 
     def _observe(self, grid: CostGrid) -> None:
-        found = []
+        observed = []
         for buffer in self._buffers.values():
-            found += [(buffer.options, seen) for seen in reversed(buffer.observations(grid.frame))]
-        for options, seen in found:
+            observed += [(buffer.options, seen) for seen in reversed(buffer.observations(grid.frame))]
+        for options, seen in observed:
             if options.clearing:
                 self._clear_points(grid, seen, options)
-        for options, seen in found:
+        for options, seen in observed:
             if options.marking:
                 self._mark_points(grid, seen, options)
 

@@ -81,8 +81,8 @@ class CollisionZone:
 
     def at_velocity(self, velocity: Velocity) -> CollisionZone:
         """Return the zone with the first polygon whose velocities contain the given one; else the zone itself."""
-        found = next((each for each in self.ranges if each.contains(velocity)), None)
-        return self if found is None else replace(self, corners=found.corners)
+        matching = next((each for each in self.ranges if each.contains(velocity)), None)
+        return self if matching is None else replace(self, corners=matching.corners)
 
     def is_hit(self, points: Floats) -> bool:
         """Check whether enough points [m], shape (n, 2), are within the zone."""

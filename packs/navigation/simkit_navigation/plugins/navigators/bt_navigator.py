@@ -187,11 +187,11 @@ class BtNavigator(NodeParameters):
             diagnostics.error("SK-BT-008", f"there is no behaviour tree {name!r}{place}", self.where, help_)
             return None
         if file not in self._trees:
-            found = read_tree_file(file, diagnostics)
-            if found is None or diagnostics.has_errors:
+            tree_file = read_tree_file(file, diagnostics)
+            if tree_file is None or diagnostics.has_errors:
                 return None
             overrides = {} if wanted or self._defaults[kind] else self._overrides()
-            tree = build_tree(found, self, diagnostics, overrides)
+            tree = build_tree(tree_file, self, diagnostics, overrides)
             if tree is None:
                 return None
             self._trees[file] = tree

@@ -70,13 +70,13 @@ class GridPlanner:
         if free is None:
             raise PlanningError(Reason.START_OCCUPIED, f"the start ({start.x:.4g}, {start.y:.4g}) is occupied")
         weights = np.where(passable, _NEUTRAL + _FACTOR * np.where(grid.cells == UNKNOWN, 0, grid.cells), math.inf)
-        found = search(weights, free, end if options.use_astar else None, _NEUTRAL)
-        reached = found.reached
+        result = search(weights, free, end if options.use_astar else None, _NEUTRAL)
+        reached = result.reached
         last = end if reached[end] else nearest_cell(grid, reached, goal, options.tolerance)
         if last is None:
             return []
-        self.visited_cells = found.visited(last)
-        points = grid.centres(*found.path(last).T)
+        self.visited_cells = result.visited(last)
+        points = grid.centres(*result.path(last).T)
         points[0] = start.x, start.y
         if last == end:
             points[-1] = goal.x, goal.y

@@ -53,8 +53,8 @@ class Search:
     @property
     def reached(self) -> Mask:
         """Cells to which there is a path."""
-        found: Mask = np.isfinite(self.costs)
-        return found
+        result: Mask = np.isfinite(self.costs)
+        return result
 
     def visited(self, end: Cell) -> int:
         """Return the number of cells that the search takes from its queue before a cell."""
@@ -67,16 +67,16 @@ class Search:
         """
         (row, column), (first_row, first_column) = end, self.begin
         across, along = row - first_row, column - first_column
-        found = [end]
-        while (row, column) != self.begin and len(found) <= self.costs.size:
+        cells = [end]
+        while (row, column) != self.begin and len(cells) <= self.costs.size:
             places = [
                 (abs((up + row - first_row) * along - (right + column - first_column) * across), up, right)
                 for up, right in self._cheapest_steps(row, column)
             ]
             _, up, right = min(places)
             row, column = row + up, column + right
-            found.append((row, column))
-        return np.array(found[::-1], np.int64)
+            cells.append((row, column))
+        return np.array(cells[::-1], np.int64)
 
     def _cheapest_steps(self, row: int, column: int) -> list[Cell]:
         """Return the steps from a cell to the cells that may come before it in a cheapest path."""
@@ -128,8 +128,8 @@ def search(
     graph = csr_matrix((costs.reshape(-1), neighbours, starts), (size, size))
     first = (begin[0] + 1) * (columns + 2) + begin[1] + 1
     for limit in limits:
-        found, before = dijkstra(graph, indices=first, return_predecessors=True, limit=limit)
-        inner = found.reshape(rows + 2, columns + 2)[1:-1, 1:-1]
+        costs_to, before = dijkstra(graph, indices=first, return_predecessors=True, limit=limit)
+        inner = costs_to.reshape(rows + 2, columns + 2)[1:-1, 1:-1]
         if end is None or np.isfinite(inner[end]):
             break
     return Search(begin, inner, costs, before)

@@ -91,10 +91,10 @@ class SmacPlanner2D:
             raise PlanningError(Reason.GOAL_OCCUPIED, f"the goal ({goal.x:.4g}, {goal.y:.4g}) is occupied")
         passable[begin] = True  # there is the robot, so that there cannot be an obstacle
         weights = np.where(passable, 1.0 + options.cost_travel_multiplier * (coarse.cells / _LARGEST_COST), math.inf)
-        found = search(weights, begin, end, 1.0, at_end=True)
-        last = self._last_cell(found, end, tolerance)
-        self.visited_cells = found.visited(last)
-        points = coarse.centres(*found.path(last).T)
+        result = search(weights, begin, end, 1.0, at_end=True)
+        last = self._last_cell(result, end, tolerance)
+        self.visited_cells = result.visited(last)
+        points = coarse.centres(*result.path(last).T)
         points[0] = start.x, start.y
         if last == end:
             points[-1] = goal.x, goal.y

@@ -67,10 +67,10 @@ class ThetaStarPlanner:
             raise PlanningError(Reason.GOAL_OCCUPIED, f"the goal ({goal.x:.4g}, {goal.y:.4g}) is occupied")
         weights = np.where(passable, options.w_euc_cost + self._crossing[grid.cells], math.inf)
         steps = 4 if options.how_many_corners == 4 else 8
-        found = search(weights, begin, end, options.w_euc_cost, steps, at_end=True)
-        if not found.reached[end]:
+        result = search(weights, begin, end, options.w_euc_cost, steps, at_end=True)
+        if not result.reached[end]:
             return []
-        path = found.path(end)
+        path = result.path(end)
         for cells in (self._lines(grid.cells, passable, path), path):  # a line may touch the corner of a cell
             points = grid.centres(*cells.T)
             points[0], points[-1] = (start.x, start.y), (goal.x, goal.y)
