@@ -5,9 +5,11 @@ from __future__ import annotations
 import gc
 import subprocess
 import sys
+from pathlib import Path
 
 from simkit.garbage_collection import no_collection, permanent_imports
 
+ROOT = Path(__file__).resolve().parents[1]
 PLUGIN = """
 from simkit import WorldPlugin
 
@@ -42,7 +44,7 @@ with permanent_imports():
 counts.append(gc.get_freeze_count())
 print(counts[0], counts[1] > 0, gc.isenabled())
 """
-    found = subprocess.run([sys.executable, "-S", "-c", code], capture_output=True, text=True, check=True)
+    found = subprocess.run([sys.executable, "-S", "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
     assert found.stdout.split() == ["0", "True", "True"]
 
 

@@ -280,11 +280,18 @@ def heading(message: Any) -> float:
     return 2 * math.atan2(q.z, q.w)
 
 
-@pytest.fixture(
-    scope="module",
-    params=[(robot, form, step) for robot, form in BOTH for step in (0.001, 0.002, 0.004)],
-    ids=lambda p: f"{p[0]}-{p[1]}-{p[2]}",
-)
+QUICK_STEPS = {"sdf": 0.001, "urdf": 0.004}
+"""Step [s] of the trials that are not slow: each robot at the shortest and at the longest step."""
+TRIALS = [
+    pytest.param(
+        (robot, form, step), id=f"{robot}-{form}-{step}", marks=() if step == QUICK_STEPS[form] else pytest.mark.slow
+    )
+    for robot, form in BOTH
+    for step in (0.001, 0.002, 0.004)
+]
+
+
+@pytest.fixture(scope="module", params=TRIALS)
 def trial(request: pytest.FixtureRequest) -> Trial:
     return tried(*request.param)
 

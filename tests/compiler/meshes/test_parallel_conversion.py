@@ -59,6 +59,7 @@ def test_the_processes_write_meshes_and_collision_bodies(world: Path, monkeypatc
     assert [len(list((cache / kind).iterdir())) for kind in ("meshes", "collisions")] == [3, 3]
 
 
+@pytest.mark.slow
 def test_a_broken_file_is_reported_as_without_processes(world: Path) -> None:
     (world.parent / "b.stl").write_bytes(b"solid nothing" * 200)
     with simkit.load(world) as sim:
