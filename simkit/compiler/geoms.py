@@ -66,7 +66,7 @@ class WorldGeoms:
         self._waiting: mujoco.MjSpec | None = None
         self._names: list[str] = []
 
-    def add(self, name: str, **settings: object) -> None:
+    def add(self, name: str, **settings: Any) -> None:
         """Add a geom; it is in the specification at the latest after `attach_waiting`."""
         self._count += 1
         if self._count <= DIRECT:
@@ -165,12 +165,12 @@ class GeomWriter:
         self._world, self._ambient, self._has_rolling = world, ambient, has_rolling
         self._count: Counter[str] = Counter()
 
-    def _add(self, parent: GeomParent, owner: GeomOwner, pose: Pose, **settings: object) -> None:
+    def _add(self, parent: GeomParent, owner: GeomOwner, pose: Pose, **settings: Any) -> None:
         local = parent.offset @ pose
         self._add_at(parent, owner, local.position, local.quaternion, **settings)
 
     def _add_at(
-        self, parent: GeomParent, owner: GeomOwner, position: Floats, quaternion: Floats, **settings: object
+        self, parent: GeomParent, owner: GeomOwner, position: Floats, quaternion: Floats, **settings: Any
     ) -> None:
         base = owner.scoped + ("#v" if owner.is_visual else "#")
         name = f"{base}{self._count[base]}"

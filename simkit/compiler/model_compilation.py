@@ -173,15 +173,14 @@ def report_overlaps(
 
     Call this after the plugins are loaded, because a plugin may move joints before the first step.
     """
-    first = mujoco.MjData(model)  # the state of a run stays as it is
-    first.qpos[:], first.mocap_pos[:], first.mocap_quat[:] = data.qpos, data.mocap_pos, data.mocap_quat
+    present, data = data, mujoco.MjData(model)  # the state of a run stays as it is
+    data.qpos[:], data.mocap_pos[:], data.mocap_quat[:] = present.qpos, present.mocap_pos, present.mocap_quat
     with warnings.catch_warnings(record=True) as engine_warnings:
         warnings.simplefilter("always")
         for compute in (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_flex, mujoco.mj_collision):
-            compute(model, first)
+            compute(model, data)
     for text in dict.fromkeys(str(w.message) for w in engine_warnings):
         diagnostics.warning("SK-PHYS-025", f"the engine warns: {text}", where)
-    data = first
     deepest: dict[tuple[str, str], float] = {}
     for i in (data.contact.dist < -REPORTED_DEPTH).nonzero()[0] if data.ncon else ():
         first, second = (names.geom_owner(g)[1] for g in data.contact.geom[i])

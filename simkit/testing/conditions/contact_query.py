@@ -111,7 +111,7 @@ class ContactQuery:
         mine, others, contacts, up = self._mine, self._others, [], None
         # for few contacts, Python numbers are faster than arrays
         is_few = len(pairs) <= _MANY_CONTACTS
-        rows = range(len(pairs)) if is_few else self._concerned[pairs].any(axis=1).nonzero()[0].tolist()
+        rows = range(len(pairs)) if is_few else np.flatnonzero(self._concerned[pairs].any(axis=1)).tolist()
         geoms = pairs.tolist() if is_few else None
         for row in rows:
             first, second = geoms[row] if geoms is not None else pairs[row].tolist()
