@@ -140,12 +140,13 @@ def _node(package: str, executable: str, **more: Any) -> dict[str, Any]:
 
 
 def _manager(part: str, names: Sequence[str]) -> dict[str, Any]:
-    """Return the lifecycle manager that activates nodes."""
-    params = {"autostart": True, "node_names": list(names)}
+    """Return the lifecycle manager that activates nodes, and ends the run if one of them does not become active."""
+    params = {"autostart": True, "node_names": list(names), "exit_on_failure": True}
     return {
         "program": "nav2_lifecycle_manager/lifecycle_manager",
         "name": f"lifecycle_manager_{part}",
         "params": params,
+        "ends_run": True,
     }
 
 

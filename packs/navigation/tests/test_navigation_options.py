@@ -119,10 +119,11 @@ def test_problems_of_a_parameter_file_have_its_lines(folder: Path) -> None:
     assert "nav2.yaml:3: warning SK-NAV-002: plugin 'planner_server': no effect here: wrong" in found.output
 
 
-def test_a_server_with_an_invalid_parameter_does_not_become_active_and_the_log_names_the_line(folder: Path) -> None:
+def test_a_server_with_an_invalid_parameter_ends_the_run_and_the_log_names_the_line(folder: Path) -> None:
     lines = "    planner_plugins: [GridBased]\n    GridBased:\n      tolerance: -1\n"
     (folder / "nav2.yaml").write_text(parameters(planner_server=lines), "utf-8")
-    found = run("rooms.sdf", "--nav", "--params-file", "nav2.yaml", "--duration", "0.5")
+    found = run("rooms.sdf", "--nav", "--params-file", "nav2.yaml", "--duration", "60")
+    assert found.exit_code == 4
     assert "nav2.yaml:5: " in found.output and "Failed to change state for node: planner_server" in found.output
 
 

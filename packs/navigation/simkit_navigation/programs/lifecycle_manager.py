@@ -28,6 +28,7 @@ class LifecycleManager(Node):
         self._bond_timeout = self.declare_parameter("bond_timeout", 4.0).value
         self._longest_respawn = self.declare_parameter("bond_respawn_max_duration", 10.0).value
         self._respawns = self.declare_parameter("attempt_respawn_reconnection", True).value
+        self._exits = self.declare_parameter("exit_on_failure", False).value  # of simkit alone: `--nav` sets it
         self.declare_parameter("service_timeout", 5.0)
         self._is_active = False
         self._missing = set()
@@ -47,7 +48,8 @@ class LifecycleManager(Node):
 
     def _on_start(self):
         self._start_timer.cancel()
-        self._start_up()
+        if not self._start_up() and self._exits:
+            sys.exit("a node did not become active; its error is above")
 
     def _on_manage(self, request, response):
         commands = {
