@@ -10,6 +10,8 @@ import os
 import re
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 from typing import Any, Final
 
@@ -34,6 +36,8 @@ _LOG_FLAG: Final = re.compile(r"--(enable|disable)-(rosout|stdout|external-lib)-
 _TIME: Final = re.compile(r"(\d+\.?\d*|\.\d+)\s*(s|ms|us|min|)")
 _UNITS: Final = {"": 1.0, "s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0}
 _INVALID: Final = "SK-CLI-018"
+NODES_READ_FILES: ContextVar[bool] = ContextVar("nodes_read_files", default=False)
+"""True while a world is loaded whose run has nodes, which are added later and may read the parameter files."""
 
 
 def seconds_of(text: str) -> float | None:
@@ -183,3 +187,17 @@ def _end_of_ros_arguments(words: Sequence[str], index: int) -> int:
         else:
             break
     return index
+
+
+@contextmanager
+def nodes_read_files(has_nodes: bool) -> Iterator[None]:
+    """Within the context, a parameter file of ROS 2 for all models may be one for the nodes of the run.
+
+    Args:
+        has_nodes: True if the run has nodes, which are added after the world is loaded.
+    """
+    token = NODES_READ_FILES.set(has_nodes)
+    try:
+        yield
+    finally:
+        NODES_READ_FILES.reset(token)

@@ -110,7 +110,7 @@ def execute(spec: RunSpec, parts: Sequence[RunPart], *, verbose: bool, quiet: bo
         from simkit.build import load
         from simkit.cli.run_session import Session
         from simkit.cli.run_verdict import RunVerdict
-        from simkit.plugins.run_parameter_files import nodes_read_files
+        from simkit.run_nodes import nodes_read_files
         from simkit.testing.scenarios.scenario_run import add_nodes
 
     for part in parts:

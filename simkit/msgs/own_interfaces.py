@@ -272,6 +272,12 @@ def used_texts() -> dict[str, str]:
     return texts_used_by(_used)
 
 
+def used_ros1_packages() -> set[str]:
+    """Return the packages of the own interfaces used in this process that have names which only ROS 1 allows."""
+    used = (_added[name] for name in used_texts() if name in _added)
+    return {item.name.partition("/")[0] for item in used if any(map(names_of_ros1, item.parts))}
+
+
 # ---------------------------------------------------------------------- reading and checks
 
 

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
-from contextvars import ContextVar
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -13,6 +11,7 @@ from typing import TYPE_CHECKING, Final
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.plugins.ros_parameter_files import ParameterFile, node_matches, read_parameter_file
 from simkit.run_files import is_there, model_and_file
+from simkit.run_nodes import NODES_READ_FILES
 
 if TYPE_CHECKING:
     from simkit.params import Params
@@ -23,7 +22,6 @@ _PLUGIN_EXAMPLE: Final = (
     '<gazebo><plugin filename="gz_ros2_control-system" name="gz_ros2_control::GazeboSimROS2ControlPlugin">'
     "<parameters>FILE.yaml</parameters></plugin></gazebo>"
 )
-_NODES_READ_FILES: ContextVar[bool] = ContextVar("nodes_read_files", default=False)
 ParameterFileArgument = str | os.PathLike[str] | tuple[str, str | os.PathLike[str]]
 """Path of a file, text `MODEL=FILE`, or a pair of model name and path."""
 
@@ -108,20 +106,6 @@ def _closest_file_name(text: str) -> str:
         return ""
 
 
-@contextmanager
-def nodes_read_files(has_nodes: bool) -> Iterator[None]:
-    """Within the context, a parameter file of ROS 2 for all models may be one for the nodes of the run.
-
-    Args:
-        has_nodes: True if the run has nodes, which are added after the world is loaded.
-    """
-    token = _NODES_READ_FILES.set(has_nodes)
-    try:
-        yield
-    finally:
-        _NODES_READ_FILES.reset(token)
-
-
 def report_unused_control(
     parameter_files: Iterable[RunParameterFile],
     plugins: Sequence[AttachedPlugin],
@@ -141,7 +125,7 @@ def report_unused_control(
     with_hosts = {plugin.scoped for plugin in plugins if plugin.reads_parameter_files}
     hosts = [model for model in models if model.scoped in with_hosts]
     for file in parameter_files:
-        if _NODES_READ_FILES.get() and not file.model and file.file.root is None:
+        if NODES_READ_FILES.get() and not file.model and file.file.root is None:
             continue
         if any(file.is_for(model) for model in hosts) or _is_read(file, plugins):
             continue

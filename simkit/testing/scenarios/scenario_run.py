@@ -13,7 +13,7 @@ from simkit.diagnostics import name_hint
 from simkit.errors import InputError
 from simkit.recording.command_script import Commands, commands_of, read_script, steady_velocity
 from simkit.run_files import FileName
-from simkit.run_nodes import label_of, latency_of, node_arguments
+from simkit.run_nodes import label_of, latency_of, node_arguments, nodes_read_files
 from simkit.run_spec import RunSpec
 from simkit.testing.scenarios.code_permission import permit_code
 
@@ -59,7 +59,6 @@ def open_scenario(scenario: RunSpec, *, allow_code: bool = False, **more: Any) -
         LoadError: The world has errors, or SK-SCEN-008 the scenario needs code that is not allowed.
     """
     from simkit.build import load
-    from simkit.plugins.run_parameter_files import nodes_read_files
 
     scenario = permit_code(scenario, allow_code, more.get("plugin_paths", ()))
     with nodes_read_files(bool(scenario.nodes)):

@@ -101,6 +101,7 @@ def model_hash(model: mujoco.MjModel, originals: Mapping[str, object]) -> str:
     return digest.hexdigest()
 
 
+_CATKIN_PACKAGE: Final = "<package><name>{}</name><buildtool_depend>catkin</buildtool_depend></package>\n"
 _INTERFACES: Final = "interfaces"  # folder of definitions of messages, services and actions
 UNPACKED: Final = "SK-BUNDLE-006"
 _CODE_NOT_ALLOWED: Final = ("SK-PLUGIN-001", "SK-PLUGIN-080")
@@ -158,6 +159,9 @@ class WorldStager:
             target = self._stage / _INTERFACES / f"{name}.{name.split('/')[1]}"
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_text(text, encoding="utf-8")
+        for package in own_interfaces.used_ros1_packages():  # else the replay refuses names such as that of `int64 A`
+            manifest = self._stage / _INTERFACES / package / "package.xml"
+            manifest.write_text(_CATKIN_PACKAGE.format(package), encoding="utf-8")
         world = self._copy_with_references(spec.world, "world", base=spec.options.get("base", "auto"))
         parsed = (spawned_model(cast("SpawnEntry", request), Diagnostics()) for request in spec.spawn)
         spec = replace(spec, spawn=tuple(request for request in parsed if request is not None))
