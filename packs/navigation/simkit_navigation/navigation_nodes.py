@@ -8,9 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.bridges.teleop import find_targets
+from simkit.errors import InputError
 from simkit.extend import Diagnostics, Where
 from simkit.loaders.resources.bundled_models import bundled_folders
 from simkit.plugins.ros_parameter_files import node_matches, read_parameter_file
+from simkit_navigation.plugins.maps.map_server import MapFileError, read_map
 
 if TYPE_CHECKING:
     from simkit import Simulation
@@ -58,7 +60,11 @@ def navigation_nodes(
             file that names one of the servers.
         remap: names of the topics `scan`, `odom` and `cmd_vel` of the robot, where they are others; see
             `topics_of_robot`.
+
+    Raises:
+        InputError: SK-NAV-020 the map is not there or not valid, or there is one although slam_toolbox makes it.
     """
+    check_map(map_file, makes_map=makes_map)
     named, rules = _nodes_named_in(params_files), dict(remap or {})
     nodes: list[dict[str, Any]] = []
     if makes_map:
@@ -80,6 +86,32 @@ def navigation_nodes(
         for node in nodes:
             node["args"] = ["--ros-args", "--params-file", str(default_parameters())]
     return nodes
+
+
+def check_map(map_file: str | os.PathLike[str] | None, *, makes_map: bool) -> None:
+    """Check whether a map can be read and is needed.
+
+    Args:
+        map_file: YAML file of the map; None without one.
+        makes_map: True if slam_toolbox makes the map.
+
+    Raises:
+        InputError: SK-NAV-020 it cannot be read, or is not needed.
+    """
+    if map_file is None:
+        return
+    path, code = Path(map_file), "SK-NAV-020"
+    if makes_map:
+        raise InputError(
+            code, f"found --nav {path} and --slam", help="--slam makes the map: write --nav without a file"
+        )
+    if not path.is_file():
+        problem = f"there is no map {path!s:.200}"
+        raise InputError(code, problem, help="simkit map WORLD -o NAME writes the true map of a world")
+    try:
+        read_map(path)
+    except MapFileError as error:
+        raise InputError(code, str(error), help="simkit map WORLD -o NAME writes a map") from None
 
 
 def _servers(*, has_monitor: bool, command: str) -> list[dict[str, Any]]:

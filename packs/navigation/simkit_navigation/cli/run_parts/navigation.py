@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from simkit.cli.run_part import fill_in_value
-from simkit.errors import InputError
 from simkit.extend import RunPart, option
 from simkit.run_files import model_and_file
 
@@ -42,20 +40,18 @@ class Navigation(RunPart):
         Raises:
             InputError: SK-NAV-020 the map is not there or not valid, or both a map and `--slam` are given.
         """
-        if self._map is not None and self.slam:
-            text = f"found --nav {self.nav} and --slam"
-            raise InputError("SK-NAV-020", text, help="--slam makes the map: write --nav without a file")
-        if self._map is not None:
-            _check_map(self._map)
+        if not self.adds_nodes:
+            return spec
+        from simkit_navigation.navigation_nodes import MAP_MODEL, check_map
+
+        check_map(self._map, makes_map=self.slam)
         if self.nav != _TRUE_MAP or self.slam:
             return spec
-        from simkit_navigation.navigation_nodes import MAP_MODEL
-
         return replace(spec, spawn=(*spec.spawn, {"model": MAP_MODEL}))
 
     def added_nodes(self, spec: RunSpec, sim: Simulation) -> Sequence[dict[str, Any]]:
         """Return the nodes that navigate or make a map."""
-        if self.nav is None and not self.slam:
+        if not self.adds_nodes:
             return ()
         from simkit_navigation.navigation_nodes import (
             navigation_nodes,
@@ -84,16 +80,3 @@ class Navigation(RunPart):
     @property
     def _map(self) -> str | None:
         return None if self.nav == _TRUE_MAP else self.nav
-
-
-def _check_map(name: str) -> None:
-    """Check whether a map can be read."""
-    if not Path(name).is_file():
-        problem = f"there is no map {name:.200}"
-        raise InputError("SK-NAV-020", problem, help="simkit map WORLD -o NAME writes the true map of a world")
-    from simkit_navigation.plugins.maps.map_server import MapFileError, read_map
-
-    try:
-        read_map(Path(name))
-    except MapFileError as error:
-        raise InputError("SK-NAV-020", str(error), help="simkit map WORLD -o NAME writes a map") from None
