@@ -1,0 +1,1 @@
+"""Pack that compares recordings with runs, and fits parameters of a world to a recording."""

@@ -1,0 +1,1 @@
+"""Pack with losses and errors of real sensors."""
