@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final
 from simkit.registry import Kinds
 
 if TYPE_CHECKING:
-    from simkit.compiler import Compiled
+    from simkit.compiler import Compiled, SpecBuilder
     from simkit.params import Params
     from simkit.runtime.engine.random_streams import RandomStream
 
@@ -46,6 +46,9 @@ class Artefact(abc.ABC):
 
     def __init__(self, params: Params, sensor: AnySensor) -> None:
         self.params, self.sensor = params, sensor
+
+    def build(self, builder: SpecBuilder) -> None:
+        """Find files that the element names, with `builder.find_file`; called before the model is compiled."""
 
     def prepare(self) -> None:
         """Open random streams and request measurements from the sensor; called once, when `sensor.sim` is known."""
