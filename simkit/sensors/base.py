@@ -114,6 +114,12 @@ class Sensor(Sampler):
         """Return the kind's own data for `simkit inspect --json`."""
         return {}
 
+    def build_with_artefacts(self, builder: SpecBuilder) -> None:
+        """Add what kind and artefacts need to MuJoCo's specification, before it is compiled."""
+        self.build(builder)
+        for artefact in self.artefacts:
+            artefact.build(builder)
+
     def build(self, builder: SpecBuilder) -> None:
         """Add what the kind needs to MuJoCo's specification, before it is compiled."""
 

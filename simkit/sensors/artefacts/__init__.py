@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final
 from simkit.registry import Kinds
 
 if TYPE_CHECKING:
-    from simkit.compiler import Compiled
+    from simkit.compiler import Compiled, SpecBuilder
     from simkit.params import Params
     from simkit.runtime.engine.random_streams import RandomStream
 
@@ -47,6 +47,9 @@ class Artefact(abc.ABC):
     def __init__(self, params: Params, sensor: AnySensor) -> None:
         self.params, self.sensor = params, sensor
 
+    def build(self, builder: SpecBuilder) -> None:
+        """Find files that the element names, with `builder.find_file`; called before the model is compiled."""
+
     def prepare(self) -> None:
         """Open random streams and request measurements from the sensor; called once, when `sensor.sim` is known."""
 
@@ -75,6 +78,12 @@ class Artefact(abc.ABC):
 def artefact_kinds() -> Kinds[Artefact]:
     """Return every known class of artefacts by family and element, such as `lidar/dropout`."""
     return Kinds("simkit.sensors.artefacts", GROUP, Artefact, lambda cls: cls.elements, ("elements",))  # type: ignore[type-abstract]
+
+
+@functools.cache
+def artefact_elements() -> frozenset[str]:
+    """Return the names of the elements of all known artefacts; no module of them is imported."""
+    return frozenset(name.partition("/")[2] for name in artefact_kinds().written)
 
 
 def read_artefacts(sensor: AnySensor, params: Params, families: Sequence[str]) -> tuple[Artefact, ...]:
