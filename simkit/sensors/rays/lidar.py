@@ -73,7 +73,7 @@ class Lidar(LidarMeasurement):
         """Make a scan of all rays, or of the middle layer if there are several layers."""
         o, n = self.options, self.options.horizontal.samples
         first = o.vertical.samples // 2 * n
-        if self._retro is None and self.min_intensity <= 0:
+        if self._retro is None and self.min_intensity <= 0 and not self.artefacts:
             intensities = self._dark_layer
         else:
             intensities = reading.intensities[first : first + n].astype(np.float32)
