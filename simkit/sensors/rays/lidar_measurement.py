@@ -113,6 +113,7 @@ class LidarMeasurement(Sensor):
         range_noise: noise [m] with one draw for all rays of a sample, added to the noise of each ray.
         point_noise: noise of x, y, z [m] and intensity of each ray in a `block` cloud.
         second_noise: noise of each second return [m]; None for a lidar with one return.
+        has_second_returns: True if readings have second returns, with messages of their own.
     """
 
     options: LidarOptions
@@ -121,6 +122,7 @@ class LidarMeasurement(Sensor):
     range_noise: Noise | None = None
     point_noise: UniformNoise | None = None
     second_noise: UniformNoise | None = None
+    has_second_returns = False
     _probes: RayProbes | None = None
     _ignores_own_model = False
 
@@ -215,6 +217,16 @@ class LidarMeasurement(Sensor):
     def add_second_returns(self) -> None:
         """Give the second returns the noise of the file, with random numbers of their own."""
         self.second_noise = self._make_uniform_noise(self.options.noise, self.fan.count, "second ranges")
+
+    def retro_of(self, geoms: npt.NDArray[np.int32]) -> Vector:
+        """Return `laser_retro` by geoms of the compiled model; 0 for -1."""
+        return np.zeros(len(geoms)) if self._retro is None else self._retro[geoms]
+
+    @property
+    def geom_numbers(self) -> npt.NDArray[np.int32]:
+        """Numbers of all geoms of the compiled model, and -1, as the `geoms` of a reading whose hits are geoms."""
+        count = self.fan.targets.model.ngeom
+        return np.append(np.arange(count), -1).astype(np.int32)
 
     def ignore_own_model(self) -> None:
         """Let the rays pass through all links of the sensor's model, as real sensors look out of their housing."""

@@ -68,6 +68,7 @@ class RayProbes:
         self.wants_surfaces = False
         self._fans: list[tuple[RayFan, Callable[[SurfaceOptics], npt.NDArray[np.bool_]] | None]] = []
         self._probes: dict[str, Probe] = {}
+        self._own: HitSurfaces | None = None  # surfaces of the lidar's own rays, while its probes measure
 
     def add(self, name: str, probe: Probe) -> None:
         """Add a measurement; its result is in `probed` of each reading, under the name."""
@@ -101,10 +102,14 @@ class RayProbes:
 
     def surfaces(self, fan: RayFan, cast: RayCast) -> HitSurfaces:
         """Return the surfaces that the rays of a fan hit."""
+        if self._own is not None and fan is self.fan:
+            return self._own
         normals = hit_normals(fan, cast.frames, cast.origins, cast.directions, self._start)
         return HitSurfaces(normals, -dots(normals, cast.directions), self.optics.reflectivity.take(fan.geoms))
 
     def measure(self, cast: RayCast) -> tuple[HitSurfaces | None, dict[str, Any]]:
         """Return the surfaces that the lidar's rays hit, if an artefact wants them, and the results of all probes."""
-        surfaces = self.surfaces(self.fan, cast) if self.wants_surfaces else None
-        return surfaces, {name: probe(cast) for name, probe in self._probes.items()}
+        self._own = surfaces = self.surfaces(self.fan, cast) if self.wants_surfaces else None
+        probed = {name: probe(cast) for name, probe in self._probes.items()}
+        self._own = None
+        return surfaces, probed
