@@ -15,6 +15,7 @@ from simkit.runtime import Publisher, Simulation
 from simkit.runtime.communication.subscription import LazyMessage, PendingWork
 from simkit.runtime.engine.physics_state import HeldState
 from simkit.runtime.engine.scheduler import Timetable
+from simkit.sensors.artefacts import Artefact
 from simkit.sensors.noise import NoiseKeeper
 from simkit.sensors.sample import Batch, Memory, Product, Reading, Sample
 from simkit.sensors.sample_packing import SampleGroup
@@ -59,6 +60,13 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         self._selects_ticks, self._selects_products_of_sample = self._overrides("accepts"), self._overrides("publishes")
         self._evolves = self._overrides("evolve")
         self._is_on: Callable[[], bool] = lambda: True
+        self._set_artefacts(())
+
+    def _set_artefacts(self, artefacts: Sequence[Artefact]) -> None:
+        """Set the artefacts, in the order in which they apply."""
+        self.artefacts: tuple[Artefact, ...] = tuple(artefacts)
+        self._before_noise = tuple(artefact for artefact in artefacts if artefact.order < 0)
+        self._after_noise = tuple(artefact for artefact in artefacts if artefact.order >= 0)
 
     def sample_only_while(self, is_on: Callable[[], bool]) -> None:
         """Sample at due times only while `is_on()` returns true; a sensor without power has no samples."""
@@ -182,7 +190,8 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
             self._held = tick, sim.engine.physics.hold()
             return
         # every reader needs its message at once: a batch makes the messages of its sensors together
-        if self._is_served and self.batch is not None and self.batch.publish_sample(self, tick):
+        is_batched = self._is_served and not self.artefacts
+        if is_batched and self.batch is not None and self.batch.publish_sample(self, tick):
             return
         if self._group is not None:  # no reader needs its message at once: many samples become messages together
             packed = self._group.add(tick, self._capture_now(tick))
@@ -301,7 +310,12 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         self._is_unread = not (self._read_publishers or changes or self._delayed)
         self._patience = max(patience, default=0.0)
         is_packed = is_plain and self.is_deferred and not changes and self._overrides("pack_samples")
-        is_packed = is_packed and self._is_read and not any(publisher.is_live for publisher in publishers)
+        is_packed = (
+            is_packed
+            and self._is_read
+            and not self.artefacts
+            and not any(publisher.is_live for publisher in publishers)
+        )
         self._group = SampleGroup(self, next(iter(self._products))) if is_packed else None
 
     def _process_pending(self) -> None:
@@ -406,10 +420,22 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         if sample.raw is not None:
             sample.truth = truth = self.finish(sample.raw)
             if sample.noise_states:
-                sample.noisy = self._with_noise_of(sample, self.perturb, truth, sample.index)
+                sample.noisy = self._with_noise_of(sample, self._with_errors, truth, sample.index)
             else:
-                sample.noisy = self.perturb(truth, sample.index)
+                sample.noisy = self._with_errors(truth, sample.index)
             sample.raw = sample.surroundings = None  # the reading replaces the captured values, such as an image
+
+    def _with_errors(self, truth: Reading, index: int) -> object:
+        """Return the reading with the noise and the artefacts of a sample."""
+        if not self.artefacts:
+            return self.perturb(truth, index)
+        reading = truth
+        for artefact in self._before_noise:
+            reading = artefact.apply(reading, truth, index)
+        reading = self.perturb(reading, index)
+        for artefact in self._after_noise:
+            reading = artefact.apply(reading, truth, index)
+        return reading
 
     def _message(self, sample: Sample, product: str) -> Message:
         message = sample.messages.get(product)
