@@ -256,7 +256,7 @@ class Sensor(Sampler):
         self.sim = sim
         options, quirks = self.timing, sim.world.gazebo_quirks
         self._times = SampleTimes(options, sim.engine.clock, sim.engine.streams, self.scoped, in_milliseconds=quirks)
-        if options.latency > 0:
+        if options.latency > 0 or self.lasting is not None:
             self._delayed = DelayedReadings(options, sim.engine.clock, sim.engine.streams, self.scoped)
         self._report_timing(sim)
         if options.set_rate_topic:
@@ -411,6 +411,8 @@ def sensor_rule(sensor: Sensor) -> SensorRule:
     """
     if "array_rule" not in vars(type(sensor)):
         raise CannotBatchError(f"sensor {sensor.scoped!r} ({sensor.kind})")
+    if sensor.lasting is not None:
+        raise CannotBatchError(f"the sweep of sensor {sensor.scoped!r}")
     if not sensor.keeps_to_grid:
         raise CannotBatchError(f"latency, jitter, drifting noise or a battery of sensor {sensor.scoped!r}")
     if sensor.artefacts:

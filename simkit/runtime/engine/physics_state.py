@@ -331,6 +331,17 @@ class PhysicsState:
         """Record that forces in the data last for the next step only, or that there are no such forces."""
         self.one_shot = is_pushed
 
+    def record_poses(self, user: object, ticks: int) -> None:
+        """Record the poses of all bodies, and keep those of at least a number of ticks for a user."""
+        if self.poses is None:
+            self.poses = PoseHistory()
+        self.poses.require(user, ticks)
+
+    def end_record_of_poses(self, user: object) -> None:
+        """End the record of a user; the poses of the next steps are not recorded if there is no other user."""
+        if self.poses is not None and not self.poses.release(user):
+            self.poses = None
+
     def changed_surface(self) -> None:
         """Record a changed motion of a surface; wake all bodies that may lie on it."""
         if self.sleep.is_drowsy or (self.data.tree_asleep >= 0).any():
@@ -410,8 +421,11 @@ class PhysicsState:
         self.shows_applied = True
         self.window = state.window
         self.sleep.set_state(state.sleep)
-        if self.poses is not None and state.poses is not None:
-            self.poses.set_state(state.poses)
+        if self.poses is not None:
+            if state.poses is None:
+                self.poses.clear()
+            else:
+                self.poses.set_state(state.poses)
 
     # ------------------------------------------------------------------ how the next steps are made
 

@@ -78,7 +78,6 @@ class WholeModelCaster:
         with self.without(excluded if body <= 0 else ()):
             return _cast(self.model, data, rays, SOLIDS, body if body > 0 else -1)
 
-
     def without(self, geoms: Sequence[int]) -> AbstractContextManager[None]:
         """Hide geoms from the rays in a `with` block."""
         return temporary_values(self.model.geom_group, geoms, _UNSEEN)

@@ -194,6 +194,13 @@ class RayFan:
             self._cast_on_shapes(data, rays, rotation)
         self.finish()
 
+    def use(self, distances: Vector, geoms: npt.NDArray[np.int32]) -> None:
+        """Set the results of a cast by other code: distances [m], infinite for no hit, and geoms of the model."""
+        if len(self.ids) != self.targets.model.ngeom + 1:
+            self.ids = np.append(np.arange(self.targets.model.ngeom), -1).astype(np.int32)
+        self.distances, self.hits = distances, geoms
+        self.finish()
+
     def rays_from(self, origin: Vector, rotation: Vector, start: float) -> RayBundle:
         rotate_vectors(self.directions, rotation.T, out=self._rotated)
         return RayBundle(origin, self._rotated, start, self.reach, self._limit, rotation[:, 2], *self.bounds)

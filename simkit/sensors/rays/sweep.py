@@ -51,7 +51,9 @@ class RayPattern:
         return times
 
 
-def read_sweep(params: Params, block: Params, columns: int, layers: int, angle: float, rate: float) -> SweepOptions | None:
+def read_sweep(
+    params: Params, block: Params, columns: int, layers: int, angle: float, rate: float
+) -> SweepOptions | None:
     """Read the `<sweep>` of a `<sensor>`, or of the `<lidar>` or `<ray>` in it; None for a scan at one instant.
 
     Args:
@@ -66,14 +68,16 @@ def read_sweep(params: Params, block: Params, columns: int, layers: int, angle: 
     if element is None:
         return None
     holder = params if params.has("sweep") else block
-    is_on = bool(element.children) and not element.value or holder.boolean("sweep", False)
+    is_on = (bool(element.children) and not element.value) or holder.boolean("sweep", False)
     duration = element.number("duration", 0.0, minimum=0)
     direction = element.choice("direction", (COUNTERCLOCKWISE, CLOCKWISE), COUNTERCLOCKWISE)
     offsets = element.vector("firing_offsets", layers, ()) if element.has("firing_offsets") else ()
     if not is_on:
         return None
     if any(offset < 0 for offset in offsets):
-        element.block("firing_offsets").error("SK-SENSOR-202", "found a negative firing offset; expected times of at least 0 s")
+        element.block("firing_offsets").error(
+            "SK-SENSOR-202", "found a negative firing offset; expected times of at least 0 s"
+        )
         offsets = ()
     if not rate > 0:
         message = "<sweep> needs the time of a scan, and the sensor has no <update_rate>"

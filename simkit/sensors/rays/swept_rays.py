@@ -410,4 +410,3 @@ def _distances_to_plane(origins: Vector, directions: Vector, sizes: Vector, star
         side = np.abs(origins[axis] + distances * directions[axis])
         distances = np.where((sizes[axis] > 0) & ~(side <= sizes[axis]), np.inf, distances)
     return distances
-
