@@ -19,7 +19,18 @@ OWN_ELEMENTS: Final[Mapping[str, frozenset[str]]] = MappingProxyType(
         "scene": frozenset({"quality", "renderer"}),
         "light": frozenset({"irradiance"}),
         "sensor": frozenset(
-            {"dropout", "encoder", "jitter", "latency", "latency_jitter", "phase", "preset", "set_rate_topic", "solar"}
+            {
+                "dropout",
+                "encoder",
+                "jitter",
+                "latency",
+                "latency_jitter",
+                "phase",
+                "preset",
+                "set_rate_topic",
+                "solar",
+                "sweep",
+            }
         ),
         "noise": frozenset({"bias_instability", "correlation_time", "noise_density", "random_walk"}),
         "camera": frozenset({"disparity_noise"}),

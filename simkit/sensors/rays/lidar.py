@@ -73,21 +73,27 @@ class Lidar(LidarMeasurement):
         """Make a scan of all rays, or of the middle layer if there are several layers."""
         o, n = self.options, self.options.horizontal.samples
         first = o.vertical.samples // 2 * n
+        low, high, step, ranges = o.horizontal.low, o.horizontal.high, o.horizontal.step, reading.ranges[first : first + n]
+        is_clockwise = o.sweep is not None and o.sweep.is_clockwise
+        if is_clockwise:  # the first ray of the message is the first one in time
+            low, high, step, ranges = high, low, -step, ranges[::-1]
         if self._retro is None and self.min_intensity <= 0:
             intensities = self._dark_layer
         else:
             intensities = reading.intensities[first : first + n].astype(np.float32)
             np.maximum(intensities, self.min_intensity, out=intensities)
+            if is_clockwise:
+                intensities = np.ascontiguousarray(intensities[::-1])
         message: msgs.LaserScan = msgs.type_of(SCAN)(
             msgs.header(time_ns, self.frame_id),
-            o.horizontal.low,
-            o.horizontal.high,
-            o.horizontal.step,
+            low,
+            high,
+            step,
             self.time_increment,
             min(1.0 / self.update_rate, MAX_RANGE) if self.update_rate > 0 else self.sim.timestep,
             o.range_min,
             o.range_max,
-            reading.ranges[first : first + n].astype(np.float32),
+            ranges.astype(np.float32),
             intensities,
         )
         return message

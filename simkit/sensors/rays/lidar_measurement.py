@@ -13,7 +13,6 @@ import numpy.typing as npt
 from simkit.compiler import Compiled
 from simkit.compiler.geom_groups import DRAWN_COLLISION, SEEN_AS_COLLISIONS, VISUAL
 from simkit.diagnostics import Diagnostics
-from simkit.errors import InputError
 from simkit.linear_algebra import matmul
 from simkit.params import Params
 from simkit.pose import Vector
@@ -146,11 +145,11 @@ class LidarMeasurement(Sensor):
         # shared by all readings and messages, and therefore read-only
         self._dark, self._dark_layer = np.zeros(self.fan.count), np.zeros(options.horizontal.samples, np.float32)
         self._dark.flags.writeable = self._dark_layer.flags.writeable = False
-        # arrays, because NumPy needs as long to convert a number as to process a whole planar scan
         if options.sweep is not None:
             self.lasting = LastingSamples()
         self._pattern: tuple[float, RayPattern] | None = None
         self._caster: SweptCaster | None = None
+        # arrays, because NumPy needs as long to convert a number as to process a whole planar scan
         self._limits = np.array(options.range_min), np.array(options.range_max)
 
     def read_options(self, params: Params) -> LidarOptions:
@@ -335,15 +334,18 @@ class LidarMeasurement(Sensor):
         return 0.0 if sweep is None else column_interval(sweep, *self._columns_and_angle(), self.update_rate)
 
     def _apply_rate(self, rate: float) -> None:
-        sweep = self.options.sweep
-        if sweep is not None:
-            length = last_time(sweep, *self._columns_and_angle(), rate) if rate > 0 else 0.0
-            if not (rate > 0 and length * rate <= 1 + 1e-9):
-                problem = "a lidar that sweeps needs a rate above 0 Hz, and a period as long as its scan"
-                raise InputError("SK-SENSOR-203", f"sensor {self.scoped!r} cannot sample at {rate:g} Hz: {problem}")
         super()._apply_rate(rate)
-        if sweep is not None:
+        if self.lasting is not None:
             self._record_poses()
+
+    def rate_problem(self, rate: float) -> str:
+        sweep = self.options.sweep
+        if sweep is None:
+            return ""
+        if not rate > 0:
+            return "a lidar that sweeps needs a rate above 0 Hz"
+        length = last_time(sweep, *self._columns_and_angle(), rate)
+        return f"its scan takes {length:g} s" if length * rate > 1 + 1e-9 else ""
 
     def _record_poses(self) -> None:
         """Let the physics record the poses of the bodies during a scan."""
