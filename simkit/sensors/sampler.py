@@ -290,7 +290,7 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
 
     def _loses(self, sample: Sample) -> bool:
         """Check whether the message of the newest sample is lost."""
-        return any([artefact.is_lost(sample.index) for artefact in self._message_artefacts])
+        return any(artefact.is_lost(sample.index) for artefact in self._message_artefacts)
 
     def _stamp(self, sample: Sample, arrival: int) -> None:
         """Set the time stamp of a sample that arrives at the tick `arrival`."""

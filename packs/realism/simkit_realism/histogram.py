@@ -114,7 +114,10 @@ class HistogramReader:
 
     def _row(self, value: str, weight: str) -> tuple[float, float]:
         try:
-            number, share = parse_number(value.strip(), *self._bounds, True), parse_number(weight.strip(), 0, 1e15, True)
+            number, share = (
+                parse_number(value.strip(), *self._bounds, True),
+                parse_number(weight.strip(), 0, 1e15, True),
+            )
         except ValueError:
             raise ValueError(f"the value {value!r} with the weight {weight!r}") from None
         if self._is_whole and number != int(number):

@@ -202,8 +202,10 @@ def test_messages_do_not_depend_on_who_listens() -> None:
 @pytest.mark.parametrize("kind", ["imu", "lidar"])
 def test_sensors_that_gather_their_samples_lose_the_same_messages(kind: str) -> None:
     block = "" if kind == "imu" else "<lidar><range><min>0.1</min><max>5</max></range></lidar>"
-    text = WORLD.replace('type="altimeter"', f'type="{kind}"').replace("<altimeter>", "<!--").replace(
-        "</altimeter>", f"-->{block}"
+    text = (
+        WORLD.replace('type="altimeter"', f'type="{kind}"')
+        .replace("<altimeter>", "<!--")
+        .replace("</altimeter>", f"-->{block}")
     )
     text = text.format(timing=BURSTS, rate=100)
     with simkit.load(text) as sim:

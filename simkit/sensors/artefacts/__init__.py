@@ -91,7 +91,7 @@ class MessageArtefact(Artefact):
         return 0.0
 
     def is_lost(self, index: int) -> bool:
-        """Check whether the newest sample, number `index`, never arrives; called once, after its noise is known."""
+        """Check whether the newest sample, number `index`, never arrives; called when its noise is known."""
         return False
 
     def stamp(self, measured_ns: int, arrived_ns: int) -> int:
