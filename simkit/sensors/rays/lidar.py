@@ -73,7 +73,8 @@ class Lidar(LidarMeasurement):
         """Make a scan of all rays, or of the middle layer if there are several layers."""
         o, n = self.options, self.options.horizontal.samples
         first = o.vertical.samples // 2 * n
-        low, high, step, ranges = o.horizontal.low, o.horizontal.high, o.horizontal.step, reading.ranges[first : first + n]
+        low, high, step = o.horizontal.low, o.horizontal.high, o.horizontal.step
+        ranges = reading.ranges[first : first + n]
         is_clockwise = o.sweep is not None and o.sweep.is_clockwise
         if is_clockwise:  # the first ray of the message is the first one in time
             low, high, step, ranges = high, low, -step, ranges[::-1]

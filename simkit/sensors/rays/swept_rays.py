@@ -298,8 +298,8 @@ class SweptCaster:
             pairs = np.repeat(np.arange(len(carriers)), repeats)
             within = np.arange(len(pairs)) - np.repeat(np.cumsum(repeats) - repeats, repeats)
             own = geoms.take(first.take(carriers.take(pairs)) + within)
-            parts = (own, *(part.take(pairs, -1) for part in (origins, directions, numbers)))
-            self._cast_on_geoms(None, *parts, start, hits)
+            parts = origins.take(pairs, 1), directions.take(pairs, 1), numbers.take(pairs)
+            self._cast_on_geoms(None, own, *parts, start, hits)
         for index, carrier in enumerate(self._mover_carriers):
             body = self._moving_triangles.get(carrier)
             if body is not None:

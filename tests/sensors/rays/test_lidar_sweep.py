@@ -147,7 +147,7 @@ def test_ranges_of_a_moving_sensor_and_moving_targets_agree_with_a_hand_computat
         sim.run(0.31)
         last = math.ceil(0.1 * (columns - 1) / columns / 0.002) * 0.002
         assert [time for time, _ in arrivals] == pytest.approx([0.002 + last, 0.1 + last, 0.2 + last])
-        time, message = arrivals[-1]
+        message = arrivals[-1][1]
         stamp = message.header.stamp.sec + message.header.stamp.nanosec * 1e-9
         assert stamp == pytest.approx(0.2, abs=1e-12)
         times = swept.ray_times
