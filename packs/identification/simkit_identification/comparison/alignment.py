@@ -7,8 +7,8 @@ from typing import Final, Literal
 
 import numpy as np
 
-from simkit_identification.comparison.measures.signals import is_constant
-from simkit_identification.comparison.recording import Floats, Recording, Signal
+from simkit_identification.measures.recording import Floats, Recording, Signal
+from simkit_identification.measures.signals import is_constant
 
 Align = Literal["auto", "none", "start", "correlation"]
 ALIGNMENTS: Final[tuple[Align, ...]] = ("auto", "none", "start", "correlation")

@@ -11,13 +11,13 @@ import numpy as np
 
 from simkit.recording.charts.page_chart import PageChart, page_chart_svg
 from simkit.recording.charts.series import Series
-from simkit_identification.comparison.measures.context import Context
-from simkit_identification.comparison.measures.inertial import VECTORS, still_statistics
-from simkit_identification.comparison.measures.motion import pose_paths
-from simkit_identification.comparison.measures.ranges import RANGE_EDGES, still_blocks
-from simkit_identification.comparison.measures.signals import FIELD_OF_MEASURE, is_constant, segment_spectra
-from simkit_identification.comparison.recording import Floats, Recording, Signal, Stream
 from simkit_identification.comparison.row import DIFFERING, Row
+from simkit_identification.measures.context import Context
+from simkit_identification.measures.inertial import VECTORS, still_statistics
+from simkit_identification.measures.motion import pose_paths
+from simkit_identification.measures.ranges import RANGE_EDGES, still_blocks
+from simkit_identification.measures.recording import Floats, Recording, Signal, Stream
+from simkit_identification.measures.signals import FIELD_OF_MEASURE, is_constant, segment_spectra
 
 _MOST_SIGNALS: Final = 4  # signals of a topic that are drawn
 _MOST_CHARTS: Final = 60

@@ -16,7 +16,6 @@ from simkit.run_spec import FilePath
 from simkit_identification.comparison.alignment import ALIGNMENTS, Align, alignment_offset
 from simkit_identification.comparison.charts import charts_of
 from simkit_identification.comparison.paired_runs import compare_sets, is_set
-from simkit_identification.comparison.recording import Recording
 from simkit_identification.comparison.rows import rows_of_one, rows_of_two
 from simkit_identification.comparison.sources import (
     TopicChoice,
@@ -28,6 +27,7 @@ from simkit_identification.comparison.sources import (
 )
 from simkit_identification.comparison.table import Comparison
 from simkit_identification.comparison.tolerances import INVALID, Tolerance, parse_tolerances
+from simkit_identification.measures.recording import Recording
 
 _NOTHING_IN_COMMON: Final = "SK-COMPARE-002"
 _NEAR: Final = 1.0  # [s] up to which two simulated clocks count as the same

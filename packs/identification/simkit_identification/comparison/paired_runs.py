@@ -16,15 +16,15 @@ import numpy as np
 from simkit.errors import InputError
 from simkit.input_file import read_failure, read_input_text
 from simkit.recording.bags.bag_contents import matches_topic
-from simkit_identification.comparison.measure import estimate
-from simkit_identification.comparison.measures.context import Context
-from simkit_identification.comparison.measures.registry import measures_of
-from simkit_identification.comparison.recording import Floats
 from simkit_identification.comparison.row import Row
 from simkit_identification.comparison.rows import with_verdicts
 from simkit_identification.comparison.sources import ASIDE, is_bag, read_bag
 from simkit_identification.comparison.table import Comparison
 from simkit_identification.comparison.tolerances import Tolerance, tolerance_of
+from simkit_identification.measures.context import Context
+from simkit_identification.measures.measure import estimate
+from simkit_identification.measures.recording import Floats
+from simkit_identification.measures.registry import measures_of
 
 _UNPAIRED: Final = "SK-COMPARE-004"
 _TABLE: Final = "results.csv"

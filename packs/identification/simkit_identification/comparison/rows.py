@@ -9,12 +9,12 @@ from typing import Final
 
 import numpy as np
 
-from simkit_identification.comparison.measure import Measure, Outcome, compare_measures, estimate
-from simkit_identification.comparison.measures.context import Context
-from simkit_identification.comparison.measures.registry import measures_of
-from simkit_identification.comparison.recording import Recording, Stream
 from simkit_identification.comparison.row import Row, Verdict
 from simkit_identification.comparison.tolerances import Tolerance, tolerance_of
+from simkit_identification.measures.context import Context
+from simkit_identification.measures.measure import Measure, Outcome, compare_measures, estimate
+from simkit_identification.measures.recording import Recording, Stream
+from simkit_identification.measures.registry import measures_of
 
 _UNKNOWN: Final = (math.nan, math.nan)
 _ROUNDING: Final = 1e-12  # in any unit: smaller values are errors of rounding

@@ -15,8 +15,8 @@ from simkit.recording.bags.bag_contents import matches_topic
 from simkit.recording.bags.reader import LATEST_SIMULATED_TIME, open_bag_to_read
 from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 from simkit_identification.command_replay import command_topics, repeated_run
-from simkit_identification.comparison.recording import Recording
 from simkit_identification.comparison.stream_reader import StreamReader
+from simkit_identification.measures.recording import Recording
 
 if TYPE_CHECKING:
     from simkit import Simulation

@@ -14,7 +14,7 @@ from simkit.errors import ArgumentValueError
 from simkit.msgs.field_units import unit_of
 from simkit.msgs.message_columns import TEXT, Column, columns_of
 from simkit.pose import rpy_of_quaternions
-from simkit_identification.comparison.recording import ArrayOverTime, Floats, Signal, Stream, measurement_times
+from simkit_identification.measures.recording import ArrayOverTime, Floats, Signal, Stream, measurement_times
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore

@@ -53,9 +53,7 @@ class Comparison:
     def differing(self) -> list[Row]:
         """Rows that differ by more than chance and tolerance, the clearest first."""
         found = [row for row in self.rows if row.verdict in DIFFERING]
-        return sorted(
-            found, key=lambda row: (row.verdict == "differs", row.chance if row.chance == row.chance else 0.0)
-        )
+        return sorted(found, key=lambda row: (row.verdict == "differs", math.isnan(row.chance), row.chance))
 
     @property
     def is_same(self) -> bool:

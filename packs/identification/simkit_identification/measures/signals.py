@@ -10,9 +10,9 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from simkit_identification.comparison.measure import Measure
-from simkit_identification.comparison.measures.context import Context
-from simkit_identification.comparison.recording import Floats, Signal, Stream
+from simkit_identification.measures.context import Context
+from simkit_identification.measures.measure import Measure
+from simkit_identification.measures.recording import Floats, Signal, Stream
 
 _SEGMENT_LENGTHS: Final = (8.0, 4.0, 2.0, 1.0, 0.5)  # [s]
 _LEAST_SEGMENTS: Final = 8

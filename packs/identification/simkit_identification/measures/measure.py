@@ -11,7 +11,7 @@ import numpy as np
 
 from simkit.elementary_functions import log
 from simkit.testing.run_record.noise_statistics import noise_statistics
-from simkit_identification.comparison.recording import ArrayOverTime, Floats
+from simkit_identification.measures.recording import ArrayOverTime, Floats
 
 Kind = Literal["mean", "rate", "deviation", "paired", "arrays", "power", "largest", "distribution", "estimate", "value"]
 _TINY: Final = 1e-12  # relative differences of sums that are rounding errors

@@ -10,10 +10,10 @@ from typing import Final
 import numpy as np
 
 from simkit.testing.run_record.noise_statistics import NoiseStatistics, noise_statistics
-from simkit_identification.comparison.measure import Measure
-from simkit_identification.comparison.measures.context import Context
-from simkit_identification.comparison.measures.signals import is_constant, quiet_part, second_differences
-from simkit_identification.comparison.recording import Floats, Signal, Stream
+from simkit_identification.measures.context import Context
+from simkit_identification.measures.measure import Measure
+from simkit_identification.measures.recording import Floats, Signal, Stream
+from simkit_identification.measures.signals import is_constant, quiet_part, second_differences
 
 _INSTABILITY: Final = 0.664  # Allan deviation of a flicker noise, relative to its bias instability (IEEE Std 952)
 _LARGEST_ERROR: Final = 0.1  # relative; the lowest of less certain deviations is too low by chance

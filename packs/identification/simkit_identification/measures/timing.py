@@ -7,9 +7,9 @@ from typing import Final
 
 import numpy as np
 
-from simkit_identification.comparison.measure import Measure
-from simkit_identification.comparison.measures.context import Context
-from simkit_identification.comparison.recording import Stream
+from simkit_identification.measures.context import Context
+from simkit_identification.measures.measure import Measure
+from simkit_identification.measures.recording import Stream
 
 _LARGEST_LATENCY: Final = 3600.0  # [s] beyond which the stamps are those of another clock
 

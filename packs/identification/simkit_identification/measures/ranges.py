@@ -8,9 +8,9 @@ from typing import Final
 
 import numpy as np
 
-from simkit_identification.comparison.measure import Measure
-from simkit_identification.comparison.measures.context import Context
-from simkit_identification.comparison.recording import ArrayOverTime, Floats, Stream
+from simkit_identification.measures.context import Context
+from simkit_identification.measures.measure import Measure
+from simkit_identification.measures.recording import ArrayOverTime, Floats, Stream
 
 RANGE_EDGES: Final = (0.0, 0.5, 1.0, 2.0, 3.0, 5.0, 8.0, 12.0, 20.0, 40.0, 80.0, 200.0)
 """Limits of the ranges [m] whose noise is measured together."""

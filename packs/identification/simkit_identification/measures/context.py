@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from simkit_identification.comparison.recording import Recording
+from simkit_identification.measures.recording import Recording
 
 
 @dataclass(frozen=True)

@@ -11,10 +11,10 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from simkit_identification.comparison.measure import Measure
-from simkit_identification.comparison.measures.context import Context
-from simkit_identification.comparison.measures.signals import is_constant
-from simkit_identification.comparison.recording import Floats, Recording, Signal, Stream
+from simkit_identification.measures.context import Context
+from simkit_identification.measures.measure import Measure
+from simkit_identification.measures.recording import Floats, Recording, Signal, Stream
+from simkit_identification.measures.signals import is_constant
 
 _STEP: Final = 1.0  # [s] time over which the motion of a pose is measured
 _SETTLING: Final = 1.0  # [s] after a change of a command, in which the speed is not steady

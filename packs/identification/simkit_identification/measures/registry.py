@@ -6,10 +6,10 @@ import fnmatch
 from collections.abc import Callable, Iterator
 from typing import Final
 
-from simkit_identification.comparison.measure import Measure
-from simkit_identification.comparison.measures import inertial, motion, ranges, signals, timing
-from simkit_identification.comparison.measures.context import Context
-from simkit_identification.comparison.recording import Stream
+from simkit_identification.measures import inertial, motion, ranges, signals, timing
+from simkit_identification.measures.context import Context
+from simkit_identification.measures.measure import Measure
+from simkit_identification.measures.recording import Stream
 
 MeasureFunction = Callable[[Stream, Context], Iterator[Measure]]
 
