@@ -18,6 +18,8 @@ OWN_ELEMENTS: Final[Mapping[str, frozenset[str]]] = MappingProxyType(
         "actor": frozenset({"person"}),
         "scene": frozenset({"quality", "renderer"}),
         "light": frozenset({"irradiance"}),
+        "collision": frozenset({"reflectivity", "specularity", "transmittance"}),
+        "visual": frozenset({"reflectivity", "specularity", "transmittance"}),
         "sensor": frozenset(
             {"dropout", "encoder", "jitter", "latency", "latency_jitter", "phase", "preset", "set_rate_topic", "solar"}
         ),

@@ -80,6 +80,12 @@ def artefact_kinds() -> Kinds[Artefact]:
     return Kinds("simkit.sensors.artefacts", GROUP, Artefact, lambda cls: cls.elements, ("elements",))  # type: ignore[type-abstract]
 
 
+@functools.cache
+def artefact_elements() -> frozenset[str]:
+    """Return the names of the elements of all known artefacts; no module of them is imported."""
+    return frozenset(name.partition("/")[2] for name in artefact_kinds().written)
+
+
 def read_artefacts(sensor: AnySensor, params: Params, families: Sequence[str]) -> tuple[Artefact, ...]:
     """Make the artefacts of a sensor from the unread elements of its `<sensor>`, in their order.
 
