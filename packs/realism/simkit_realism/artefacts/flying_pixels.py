@@ -40,13 +40,16 @@ class FlyingPixels(DepthArtefact):
         finite = np.isfinite(true)
         nearest = np.asarray(cv2.erode(np.where(finite, true, np.float32(np.inf)), square), np.float32)
         farthest = np.asarray(cv2.dilate(np.where(finite, true, np.float32(-np.inf)), square), np.float32)
-        rows, columns = np.nonzero(farthest - nearest >= self._jump)
+        with np.errstate(over="ignore"):  # OpenCV's border is the largest float, where nothing is seen
+            is_edge = farthest - nearest >= self._jump
+        rows, columns = np.nonzero(is_edge)
         if self._probability < 1:
             words = random_words(random_key(self._chances, exposure.index), exposure.shape)
             is_mixed = words[rows, columns] < self._probability * 65536.0
             rows, columns = rows[is_mixed], columns[is_mixed]
         share = random_words(random_key(self._mixtures, exposure.index), exposure.shape)[rows, columns]
+        weights = (share.astype(np.float32) + np.float32(0.5)) / np.float32(65536.0)
         near, far = nearest[rows, columns], farthest[rows, columns]
         changed = depths.copy()
-        changed[rows, columns] = near + (share.astype(np.float32) + np.float32(0.5)) / np.float32(65536.0) * (far - near)
+        changed[rows, columns] = near + weights * (far - near)
         return changed

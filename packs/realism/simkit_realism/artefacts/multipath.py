@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cv2
 import numpy as np
+import numpy.typing as npt
 
 from simkit import Params
 from simkit.sensors.base import Sensor
@@ -48,11 +49,12 @@ class Multipath(DepthArtefact):
         np.add(changed, self._strength * surplus * np.square(np.where(seen, true, np.float32(0.0))), out=changed)
         return changed
 
-    def _is_smooth(self, true: Depths, seen: np.ndarray) -> np.ndarray:
+    def _is_smooth(self, true: Depths, seen: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
         """Return True for the pixels whose square has no edge and no pixel without a return."""
         shown = np.where(seen, true, np.float32(0.0))
         cross = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
         steps = np.asarray(cv2.dilate(shown, cross)) - np.asarray(cv2.erode(shown, cross))
         edges = ((steps >= self._jump) | ~seen).astype(np.uint8)
         side = 2 * self._radius + 1
-        return np.asarray(cv2.dilate(edges, np.ones((side, side), np.uint8))) == 0
+        smooth: npt.NDArray[np.bool_] = np.asarray(cv2.dilate(edges, np.ones((side, side), np.uint8))) == 0
+        return smooth

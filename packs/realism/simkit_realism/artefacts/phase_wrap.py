@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit import Params
 from simkit.sensors.base import Sensor
@@ -39,8 +40,9 @@ class PhaseWrap(DepthArtefact):
         return self.sensor.limit_depths(changed)
 
 
-def _stretch(model: CameraModel) -> np.ndarray:
+def _stretch(model: CameraModel) -> npt.NDArray[np.float64]:
     """Return the ratio of distance to depth at each pixel, shape (h, w)."""
     left, up = model.rays()
     up = up if up.ndim == 2 else up[:, None]
-    return np.sqrt(1.0 + left.astype(np.float64) ** 2 + up.astype(np.float64) ** 2)
+    stretch: npt.NDArray[np.float64] = np.sqrt(1.0 + left.astype(np.float64) ** 2 + up.astype(np.float64) ** 2)
+    return stretch

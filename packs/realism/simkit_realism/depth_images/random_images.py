@@ -102,7 +102,8 @@ def _thresholds() -> Floats:
 
 def threshold(probabilities: Floats) -> Floats:
     """Return the normal numbers below which the given shares of normal numbers lie."""
-    return np.take(_thresholds(), np.rint(probabilities * np.float32(65536.0)).astype(np.int32))
+    found: Floats = np.take(_thresholds(), np.rint(probabilities * np.float32(65536.0)).astype(np.int32))
+    return found
 
 
 def window_sums(image: npt.NDArray[np.int64], radius: int) -> npt.NDArray[np.int64]:

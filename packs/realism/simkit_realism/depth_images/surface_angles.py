@@ -40,7 +40,8 @@ class SurfaceAngles:
             c = inverse - a * self._x - b * self._y
             cosines = inverse / np.sqrt((a * a + b * b + c * c) * self._square_length)
         cosines[~(cosines > 0)] = 0.0  # no surface, or one that is nearer than the range
-        return np.minimum(cosines, np.float32(1.0))
+        limited: Depths = np.minimum(cosines, np.float32(1.0))
+        return limited
 
 
 def _smaller_step(steps: Depths) -> Depths:
