@@ -345,6 +345,8 @@ OWN = """<sdf version="1.9"><world name="w"><gazebo_quirks>1</gazebo_quirks>
   <angular_velocity><scale>0 0 0.01</scale></angular_velocity></calibration_error><saturation>
   <linear_acceleration>40</linear_acceleration></saturation><clock><offset>0.1</offset></clock>
   <gaps><probability>0.1</probability></gaps><latency_histogram><values>0.01</values></latency_histogram></sensor>
+<sensor name="gps" type="navsat"><outages><window>1 2</window></outages><multipath><stddev>1</stddev></multipath>
+  <fix_types><fix><status>sbas</status></fix></fix_types></sensor>
 <sensor name="solar" type="custom" gz:type="solar"><update_rate>50</update_rate><solar><normal>0 0 1</normal></solar>
 </sensor><collision name="c"><geometry><box><size>1 1 1</size></box></geometry><reflectivity>0.1</reflectivity>
 <transmittance>0.2</transmittance><specularity>0.3</specularity></collision></link><link name="k"/><joint name="j" type="revolute"><parent>l</parent><child>k</child><axis/>
