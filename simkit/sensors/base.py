@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import abc
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import chain
 from typing import Any, ClassVar, TypeVar
 
@@ -17,6 +17,7 @@ from simkit.compiler import Compiled, SpecBuilder
 from simkit.compiler.name_map import NameMap
 from simkit.diagnostic_record import TEXT_SOURCE
 from simkit.diagnostics import Diagnostics, Severity, Where
+from simkit.errors import InputError
 from simkit.linear_algebra import matmul
 from simkit.msgs.message_types import Message
 from simkit.msgs.topic_names import valid_topic
@@ -27,7 +28,7 @@ from simkit.runtime.array_rules import CannotBatchError, SensorRule, array_rule_
 from simkit.runtime.engine.random_streams import RandomStreams
 from simkit.runtime.engine.simulated_time import TickGrid
 from simkit.scene import SceneSensor
-from simkit.sensors.artefacts import read_artefacts
+from simkit.sensors.artefacts import MessageArtefact, read_artefacts
 from simkit.sensors.noise import NO_NOISE, Noise, NoiseModel, SettableNoise, UniformNoise
 from simkit.sensors.sample import NoiseProcess, Product, Reading, Sample
 from simkit.sensors.sample_times import DelayedReadings, SampleTimes, read_timing
@@ -175,7 +176,7 @@ class Sensor(Sampler):
         if sample is None:
             return None
         if sample.truth_message is None:
-            sample.truth_message = self._make_message(sample, next(iter(self._topics)), sample.truth)
+            sample.truth_message = self._make_message(sample, next(iter(self._topics)), sample.truth, sample.time_ns)
         return sample.truth_message
 
     def _finished_sample(self) -> Sample | None:
@@ -207,14 +208,22 @@ class Sensor(Sampler):
 
         Raises:
             ValueError: the rate is negative, NaN or infinite.
+            InputError: SK-SENSOR-203 the sensor cannot measure at this rate.
         """
         rate = checked_number(rate, "rate", 0.0, unit="Hz")
         self.sim.engine.check_open()
+        problem = self.rate_problem(rate)
+        if problem:
+            raise InputError("SK-SENSOR-203", f"sensor {self.scoped!r} cannot sample at {rate:g} Hz: {problem}")
         self.sim.communication.bus.settle()
         if self._noises and self._sample is not None:
             self.latest  # noqa: B018 - make this message now, because it may contain the rate of its sample
         self._apply_rate(rate)
         self.sim.engine.reschedule()
+
+    def rate_problem(self, rate: float) -> str:
+        """Return why the sensor cannot measure at a rate [Hz]; empty if it can."""
+        return ""
 
     def optical_frames(self) -> dict[str, Pose]:
         """Return the poses of all other frames that the messages name, in the sensor's frame."""
@@ -256,8 +265,10 @@ class Sensor(Sampler):
         self.sim = sim
         options, quirks = self.timing, sim.world.gazebo_quirks
         self._times = SampleTimes(options, sim.engine.clock, sim.engine.streams, self.scoped, in_milliseconds=quirks)
-        if options.latency > 0:
-            self._delayed = DelayedReadings(options, sim.engine.clock, sim.engine.streams, self.scoped)
+        delays, keeps_order = self._message_delays()
+        if options.latency > 0 or delays or self.lasting is not None:
+            origin = options, sim.engine.clock, sim.engine.streams, self.scoped
+            self._delayed = DelayedReadings(*origin, delays, keeps_order)
         self._report_timing(sim)
         if options.set_rate_topic:
             sim.communication.bus.listen(valid_topic(options.set_rate_topic), (_RATE_TYPE,), self._on_rate)
@@ -270,6 +281,11 @@ class Sensor(Sampler):
         self._products = self.products()
         self._open(self.default_topics())
         self.restart()
+
+    def _message_delays(self) -> tuple[list[Callable[[int], float]], bool]:
+        """Return the functions of the artefacts that delay messages, and whether messages keep their order."""
+        late = [a for a in self._message_artefacts if type(a).delay is not MessageArtefact.delay]
+        return [artefact.delay for artefact in late], all(artefact.keeps_order for artefact in late)
 
     def _report_timing(self, sim: Simulation) -> None:
         """Report options that are impossible with the length of a step."""
@@ -373,6 +389,7 @@ class Sensor(Sampler):
             problem = "expected a finite number of at least 0"
         elif self.sim.world.gazebo_quirks and file_rate > 0 and not 0 < rate <= file_rate:
             problem = f"Gazebo allows at most {file_rate:g} Hz, the rate of the file"
+        problem = problem or self.rate_problem(rate)
         if not problem:
             self.set_rate(rate)
             return
@@ -411,6 +428,8 @@ def sensor_rule(sensor: Sensor) -> SensorRule:
     """
     if "array_rule" not in vars(type(sensor)):
         raise CannotBatchError(f"sensor {sensor.scoped!r} ({sensor.kind})")
+    if sensor.lasting is not None:
+        raise CannotBatchError(f"the sweep of sensor {sensor.scoped!r}")
     if not sensor.keeps_to_grid:
         raise CannotBatchError(f"latency, jitter, drifting noise or a battery of sensor {sensor.scoped!r}")
     if sensor.artefacts:

@@ -95,6 +95,6 @@ def reading_of(reading: LidarReading, returns: Returns, sensor: LidarMeasurement
         intensities=np.where(infinite | is_near, 0.0, sensor.retro_of(hits)),
         infinite=infinite | is_near,
         hits=hits,
-        geoms=sensor.geom_numbers,
+        geoms=np.append(np.arange(sensor.fan.targets.model.ngeom), -1).astype(np.int32),
         surfaces=HitSurfaces(returns.normals, returns.cosines, returns.reflectivities),
     )

@@ -12,7 +12,7 @@ from simkit.pose import Vector
 from simkit.sensors.rays.geom_types import Ids
 from simkit.sensors.rays.hit_normals import dots
 from simkit.sensors.rays.ray_fan import RayFan
-from simkit.sensors.rays.ray_probes import RayCast, RayProbes
+from simkit.sensors.rays.ray_probes import RayCast, RayProbes, Spread
 from simkit.sensors.surface_optics import SurfaceOptics
 
 _GROUPS = np.array((1, 0, 0, 0, 0, 0), dtype=np.uint8)
@@ -69,14 +69,17 @@ class OpticalRays:
     Args:
         probes: probes of the lidar.
         fan: fan whose rays meet the glass and mirrors.
-        normal_angle: angle of incidence below which glass and mirrors themselves return light [rad], given as cosine.
+        spread: function that returns the directions of this fan for those of the lidar.
+        normal_cosine: cosine of the angle of incidence below which glass and mirrors themselves return light.
         least_share: smallest share of the light that returns.
     """
 
-    def __init__(self, probes: RayProbes, fan: RayFan, normal_cosine: float, least_share: float) -> None:
+    def __init__(
+        self, probes: RayProbes, fan: RayFan, spread: Spread, normal_cosine: float, least_share: float
+    ) -> None:
         self._probes, self._fan = probes, fan
         self._normal_cosine, self._least_share = normal_cosine, least_share
-        self._behind = probes.add_fan(fan.directions, _is_transparent)
+        self._behind = probes.add_fan(spread, _is_transparent)
 
     def trace(self, cast: RayCast) -> Returns:
         """Return the strongest return of each ray of the fan, which is cast already."""

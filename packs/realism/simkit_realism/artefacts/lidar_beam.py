@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from simkit import Params
+from simkit.pose import Vector
 from simkit.sensors.artefacts import Artefact
 from simkit.sensors.base import Sensor
 from simkit.sensors.rays.lidar_measurement import LidarMeasurement, LidarReading
@@ -51,13 +52,16 @@ class LidarBeam(Artefact):
         sensor, probes = self.sensor, self.sensor.probes
         if self._mode == "dual":
             sensor.add_second_returns()
-        self._fan = probes.add_fan(beam_directions(sensor.fan.directions, self._divergence, self._rings))
+        self._fan = probes.add_fan(self._spread)
         glass = next((artefact for artefact in sensor.artefacts if isinstance(artefact, LidarGlass)), None)
         self._optics: tuple[OpticalRays, ...] = ()
         if glass is not None:
-            self._optics = glass.rays_of(sensor.fan), glass.rays_of(self._fan)
+            self._optics = glass.rays_of(sensor.fan), glass.rays_of(self._fan, self._spread)
         probes.wants_surfaces = True
         probes.add("beam", self._echoes)
+
+    def _spread(self, axes: Vector) -> Vector:
+        return beam_directions(axes, self._divergence, self._rings)
 
     def _echoes(self, cast: RayCast) -> tuple[Returns, Returns | None]:
         """Return the selected echo of each ray, and its second return."""

@@ -9,6 +9,7 @@ from simkit.sensors.artefacts import Artefact
 from simkit.sensors.base import Sensor
 from simkit.sensors.rays.lidar_measurement import LidarMeasurement, LidarReading
 from simkit.sensors.rays.ray_fan import RayFan
+from simkit.sensors.rays.ray_probes import Spread
 from simkit_realism.lidar_returns import reading_of
 from simkit_realism.optical_rays import OpticalRays, Returns
 
@@ -39,9 +40,9 @@ class LidarGlass(Artefact):
         self._cosine = math.cos(params.number("normal_angle", 0.09, minimum=0.0, maximum=math.pi / 2))
         self._least_share = params.number("least_share", 0.05, minimum=0.0, maximum=1.0)
 
-    def rays_of(self, fan: RayFan) -> OpticalRays:
-        """Return the rays of a fan with glass and mirrors."""
-        return OpticalRays(self.sensor.probes, fan, self._cosine, self._least_share)
+    def rays_of(self, fan: RayFan, spread: Spread = lambda directions: directions) -> OpticalRays:
+        """Return the rays of a fan with glass and mirrors; `spread` makes its directions from those of the lidar."""
+        return OpticalRays(self.sensor.probes, fan, spread, self._cosine, self._least_share)
 
     def prepare(self) -> None:
         if any("lidar/beam" in artefact.elements for artefact in self.sensor.artefacts):
