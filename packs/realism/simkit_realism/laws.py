@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -59,7 +60,8 @@ def read_law(owner: Params, name: str, minimum: float = 0.0, maximum: float | No
         owner: block that contains the element.
         name: name of the element, with a `<table>`, or with `<constant>`, `<coefficient>`, `<exponent>` and `<least>`;
             a number alone is a constant.
-        minimum, maximum: limits of y in a table and of a constant.
+        minimum: lower limit of y in a table and of a constant.
+        maximum: upper limit of these; None for none.
     """
     params = owner.child(name)
     if params is None:
@@ -85,7 +87,7 @@ def _read_table(params: Params, minimum: float, maximum: float | None) -> tuple[
     except ValueError:
         numbers = []
     x, y = tuple(numbers[::2]), tuple(numbers[1::2])
-    is_ascending = all(a < b for a, b in zip(x, x[1:], strict=False))
+    is_ascending = all(a < b for a, b in pairwise(x))
     is_good = len(x) == len(y) > 0 and is_ascending and np.isfinite(numbers).all()
     if is_good and all(minimum <= value <= top for value in y):
         return x, y

@@ -41,7 +41,8 @@ class Returns:
     def strengths(self) -> Vector:
         """Strength of each return: ρ·cos(θ)/r² [1/m²]."""
         ranges = np.maximum(self.ranges, 1e-6)
-        return self.reflectivities * self.cosines / (ranges * ranges)
+        strengths: Vector = self.reflectivities * self.cosines / (ranges * ranges)
+        return strengths
 
     def take(self, rays: Ids) -> Returns:
         """Return those of some rays."""
@@ -122,7 +123,7 @@ class OpticalRays:
         geom, normal = np.empty(1, np.int32), np.empty(3)
         for i in range(count):
             distance = mujoco.mj_ray(seen, cast.data, starts[i], turned[i], _GROUPS, 1, -1, geom, normal)
-            if 0.0 <= distance and mirrors.ranges[i] + distance <= self._fan.reach:
+            if distance >= 0.0 and mirrors.ranges[i] + distance <= self._fan.reach:
                 ghosts.ranges[i], ghosts.geoms[i], ghosts.normals[i] = mirrors.ranges[i] + distance, geom[0], normal
         ghosts.cosines = np.abs(dots(ghosts.normals, turned))
         ghosts.reflectivities = self._probes.optics.reflectivity.take(ghosts.geoms)

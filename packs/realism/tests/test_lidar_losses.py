@@ -99,7 +99,8 @@ def test_the_spread_of_the_signal_makes_the_loss_a_probability() -> None:
 
 
 def test_a_blind_zone_loses_near_returns_and_falsifies_the_rest() -> None:
-    zone = "<simkit:blind_zone><range>1</range><probability>0.7</probability><false_range>0.2</false_range></simkit:blind_zone>"
+    limits = "<range>1</range><probability>0.7</probability><false_range>0.2</false_range>"
+    zone = f"<simkit:blind_zone>{limits}</simkit:blind_zone>"
     near = box("near", "0.9 0.5 0 0 0 0", "0.1 1 1")
     found, true = many_ranges(world(lidar(zone), near, WALL), 40)
     is_near = true < 1.0

@@ -1,4 +1,4 @@
-"""Artefacts of lidars repeat their bits: after a reset, after a restore, in another process, with and without readers."""
+"""Artefacts of lidars repeat their bits: after a reset or restore, in another process, with and without readers."""
 
 from __future__ import annotations
 
@@ -69,7 +69,9 @@ def test_a_reader_changes_no_bit(expected: list[tuple[bytes, bytes]]) -> None:
         assert scan(sim) == expected[3]
     heard = []
     with simkit.load(WORLD, seed=5) as sim:
-        sim.subscribe(sim.sensor("m::l::scan").topic, lambda m: heard.append((m.ranges.tobytes(), m.intensities.tobytes())))
+        sim.subscribe(
+            sim.sensor("m::l::scan").topic, lambda m: heard.append((m.ranges.tobytes(), m.intensities.tobytes()))
+        )
         sim.run(0.4)
     assert heard[-4:] == expected
 

@@ -197,6 +197,8 @@ def test_a_mirror_shows_a_ghost_at_the_length_of_the_way() -> None:
 
 def test_the_beam_goes_through_glass_too() -> None:
     both = beam("<resolution>0.5</resolution>") + "<simkit:glass_and_mirrors/>"
-    found, _ = readings(world(lidar(both), box("pane", "2 0 0 0 0 0", "0.02 8 2", PANE), POST.replace("2 0 0", "3 0 0"), WALL))
+    found, _ = readings(
+        world(lidar(both), box("pane", "2 0 0 0 0 0", "0.02 8 2", PANE), POST.replace("2 0 0", "3 0 0"), WALL)
+    )
     wide = np.abs(ANGLES) > 0.2
     np.testing.assert_allclose(found.ranges[wide], 4.0 / np.cos(ANGLES[wide]), atol=1e-3)

@@ -191,7 +191,6 @@ class TriangleBody:
         hits, distances, triangles = self._scene.nearest(origin, directions, start, limit)
         return hits, distances, self._geom_of.take(triangles)
 
-
     def hit_normals(
         self, origins: Vector, directions: Vector, start: float, limit: npt.NDArray[np.float32]
     ) -> tuple[Ids, Vector]:

@@ -12,7 +12,6 @@ import mujoco
 import numpy as np
 
 from simkit.pose import Vector
-from simkit.sensors.rays.embree_rays import TriangleBody
 from simkit.sensors.rays.geom_types import BOX, CAPSULE, CYLINDER, ELLIPSOID, HFIELD, MESH, PLANE, SPHERE, Ids
 from simkit.sensors.rays.ray_fan import RayFan
 
@@ -63,7 +62,7 @@ def hit_normals(
     if not rays.size:
         return normals
     model = fan.targets.model
-    hit_geoms = geoms.take(rays)
+    hit_geoms = geoms.take(rays).astype(np.intp)
     bodies = model.geom_bodyid.take(hit_geoms).astype(np.intp)
     positions, turns = frames.frames(bodies, rays)
     origin = origins if origins.ndim == 1 else origins.take(rays, 0)
@@ -78,8 +77,8 @@ def hit_normals(
             local[which] = _shape_normals(model, hit_geoms.take(which), points.take(which, 0), normals_of)
     which = np.flatnonzero((kinds == MESH) | (kinds == HFIELD))
     if which.size:
-        parts = (column.take(which, 0) for column in (local_origins, local_directions, distances))
-        local[which] = _triangle_normals(fan, hit_geoms.take(which), *parts, start)
+        ways = local_origins.take(which, 0), local_directions.take(which, 0), distances.take(which)
+        local[which] = _triangle_normals(fan, hit_geoms.take(which), ways, start)
     normals[rays] = _towards(_out_of(turns, local), forward)
     return normals
 
@@ -130,13 +129,13 @@ def _shape_normals(model: mujoco.MjModel, geoms: Ids, points: Vector, normals_of
     return _out_of(own, normals_of(local, model.geom_size.take(geoms, 0)))
 
 
-def _plane(points: Vector, sizes: Vector) -> Vector:
+def _plane(points: Vector, _sizes: Vector) -> Vector:
     normals = np.zeros_like(points)
     normals[:, 2] = 1.0
     return normals
 
 
-def _sphere(points: Vector, sizes: Vector) -> Vector:
+def _sphere(points: Vector, _sizes: Vector) -> Vector:
     return points
 
 
@@ -177,28 +176,26 @@ _NORMALS: dict[int, ShapeNormals] = {
 # ---------------------------------------------------------------------- triangles
 
 
-def _triangle_normals(
-    fan: RayFan, geoms: Ids, origins: Vector, directions: Vector, distances: Vector, start: float
-) -> Vector:
-    """Return normals in the body's frame of triangles that are hit; the rays are in the frame of the body they hit."""
+Ways = tuple[Vector, Vector, Vector]
+"""Origins [m], directions and distances [m] of rays in the frame of the body that each of them hits."""
+
+
+def _triangle_normals(fan: RayFan, geoms: Ids, ways: Ways, start: float) -> Vector:
+    """Return normals in the body's frame of the triangles that rays hit."""
     targets = fan.targets
     if not targets.has_embree:
-        return _engine_normals(targets.model, geoms, origins + start * directions, directions)
+        return _engine_normals(targets.model, geoms, ways[0] + start * ways[1], ways[1])
     normals = np.zeros((len(geoms), 3))
     for body in targets.triangles_for_engine if fan.by_engine else targets.triangles_and_boxes:
         which = np.flatnonzero(np.isin(geoms, body.geoms))
         if which.size:
-            rays = (column.take(which, 0) for column in (origins, directions, distances))
-            normals[which] = _normals_on_body(body, *rays, start)
-    return normals
-
-
-def _normals_on_body(body: TriangleBody, origins: Vector, directions: Vector, distances: Vector, start: float) -> Vector:
-    # the same rays find the same triangles again, since nothing nearer belongs to the body
-    limit = (distances * (1.0 + 1e-6) + 1e-5).astype(np.float32)
-    hits, found = body.hit_normals(origins, directions, start, limit)
-    normals: Vector = -directions  # a ray that rounding has moved past an edge keeps a surface that faces it
-    normals[hits] = found
+            origins, directions, distances = (column.take(which, 0) for column in ways)
+            # the same rays find the same triangles again, since nothing nearer belongs to the body
+            limit = (distances * (1.0 + 1e-6) + 1e-5).astype(np.float32)
+            hits, found = body.hit_normals(origins, directions, start, limit)
+            # a ray that rounding moves past an edge keeps a surface that faces it
+            normals[which] = -directions
+            normals[which[hits]] = found
     return normals
 
 

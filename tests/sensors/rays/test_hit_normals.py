@@ -36,7 +36,8 @@ def scattered(shapes: dict[str, str], moving: bool) -> str:
     for i, shape in enumerate([*shapes.values()] * 3):
         angle = 2 * i / len(shapes) + 0.1 * i
         place = (3 * math.cos(angle), 3 * math.sin(angle), 0.2, *random.uniform(-3, 3, 3))
-        text += f"""<model name="m{i}"><static>{str(not moving).lower()}</static><pose>{" ".join(map(str, place))}</pose>
+        pose, is_static = " ".join(map(str, place)), str(not moving).lower()
+        text += f"""<model name="m{i}"><static>{is_static}</static><pose>{pose}</pose>
           <link name="l"><gravity>false</gravity><collision name="c"><pose>0.1 0.2 0.1 0.3 0.2 0.1</pose>
           <geometry>{shape}</geometry></collision></link></model>"""
     ground = """<model name="ground"><static>true</static><pose>0 0 -1.5 0.1 0 0</pose><link name="l">
@@ -65,9 +66,7 @@ def engine_normals(sim: simkit.Simulation, fan: RayFan) -> tuple[np.ndarray, np.
     geoms, distances, normals = np.empty(count, np.int32), np.empty(count), np.empty(3 * count)
     groups = np.array((1, 0, 0, 0, 0, 0), np.uint8)
     rays = fan.directions.reshape(-1)
-    mujoco.mj_multiRay(
-        whole, sim.mj_data, ORIGIN, rays, groups, 1, -1, geoms, distances, normals, count, fan.reach
-    )
+    mujoco.mj_multiRay(whole, sim.mj_data, ORIGIN, rays, groups, 1, -1, geoms, distances, normals, count, fan.reach)
     return np.where((distances < 0) | (distances > fan.reach), np.inf, distances), normals.reshape(-1, 3)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -72,7 +73,7 @@ class LidarBlindZone(Artefact):
             if not math.isnan(self._false_range):
                 reading = change_returns(reading, self._with_false_ranges)
         for sector, rays in self._blocked:
-            reading = lose_returns(reading, lambda part, number, rays=rays: rays)  # type: ignore[misc]
+            reading = lose_returns(reading, _always(rays))
             if math.isfinite(sector.range):
                 ranges = np.where(rays, sector.range, reading.ranges)
                 reading = replace(reading, ranges=ranges, infinite=reading.infinite & ~rays)
@@ -87,6 +88,10 @@ class LidarBlindZone(Artefact):
     def _with_false_ranges(self, reading: LidarReading, number: int) -> LidarReading:
         is_near = (reading.ranges < self._range) & ~reading.infinite
         return replace(reading, ranges=np.where(is_near, self._false_range, reading.ranges))
+
+
+def _always(rays: Mask) -> Callable[[LidarReading, int], Mask]:
+    return lambda _part, _number: rays
 
 
 def _read_sector(block: Params) -> Sector | None:

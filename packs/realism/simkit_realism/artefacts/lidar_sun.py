@@ -43,7 +43,7 @@ class LidarSun(Artefact):
 
     Args:
         params: the element, with `angle` [rad], `probability`, `lit_probability`, and optionally `azimuth` and
-            `elevation` of the sun in the world [rad]; without them, the first directional light of the world is the sun.
+            `elevation` of the sun in the world [rad]; without them, the world's first directional light is the sun.
         sensor: the lidar.
     """
 
