@@ -20,6 +20,7 @@ OWN_ELEMENTS: Final[Mapping[str, frozenset[str]]] = MappingProxyType(
         "light": frozenset({"irradiance"}),
         "sensor": frozenset(
             {"dropout", "encoder", "jitter", "latency", "latency_jitter", "phase", "preset", "set_rate_topic", "solar"}
+            | {"exposure_control", "image_sensor", "tone_curve", "vignetting", "white_balance"}
         ),
         "noise": frozenset({"bias_instability", "correlation_time", "noise_density", "random_walk"}),
         "camera": frozenset({"disparity_noise"}),

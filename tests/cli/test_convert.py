@@ -338,6 +338,9 @@ OWN = """<sdf version="1.9"><world name="w"><gazebo_quirks>1</gazebo_quirks>
   <dropout><probability>0.1</probability></dropout></sensor>
 <sensor name="eye" type="depth_camera"><camera><image><width>8</width><height>6</height></image>
   <disparity_noise><baseline>0.05</baseline><stddev>0.1</stddev></disparity_noise></camera></sensor>
+<sensor name="colour" type="camera"><camera><image><width>8</width><height>6</height></image></camera>
+  <vignetting/><exposure_control/><image_sensor/><white_balance/><tone_curve/>
+</sensor>
 <sensor name="solar" type="custom" gz:type="solar"><update_rate>50</update_rate><solar><normal>0 0 1</normal></solar>
 </sensor></link><link name="k"/><joint name="j" type="revolute"><parent>l</parent><child>k</child><axis/>
 <sensor name="e" type="custom" gz:type="encoder"><encoder><resolution>0.001</resolution></encoder></sensor></joint>
