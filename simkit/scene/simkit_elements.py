@@ -18,9 +18,12 @@ OWN_ELEMENTS: Final[Mapping[str, frozenset[str]]] = MappingProxyType(
         "actor": frozenset({"person"}),
         "scene": frozenset({"quality", "renderer"}),
         "light": frozenset({"irradiance"}),
+        "collision": frozenset({"reflectivity", "specularity", "transmittance"}),
+        "visual": frozenset({"reflectivity", "specularity", "transmittance"}),
         "sensor": frozenset(
             {"dropout", "encoder", "jitter", "latency", "latency_jitter", "phase", "preset", "set_rate_topic", "solar"}
             | {"exposure_control", "image_sensor", "tone_curve", "vignetting", "white_balance"}
+            | {"bandwidth", "calibration_error", "clock", "gaps", "latency_histogram", "saturation"}
         ),
         "noise": frozenset({"bias_instability", "correlation_time", "noise_density", "random_walk"}),
         "camera": frozenset({"disparity_noise"}),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import abc
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import chain
 from typing import Any, ClassVar, TypeVar
 
@@ -27,7 +27,7 @@ from simkit.runtime.array_rules import CannotBatchError, SensorRule, array_rule_
 from simkit.runtime.engine.random_streams import RandomStreams
 from simkit.runtime.engine.simulated_time import TickGrid
 from simkit.scene import SceneSensor
-from simkit.sensors.artefacts import read_artefacts
+from simkit.sensors.artefacts import MessageArtefact, read_artefacts
 from simkit.sensors.noise import NO_NOISE, Noise, NoiseModel, SettableNoise, UniformNoise
 from simkit.sensors.sample import NoiseProcess, Product, Reading, Sample
 from simkit.sensors.sample_times import DelayedReadings, SampleTimes, read_timing
@@ -175,7 +175,7 @@ class Sensor(Sampler):
         if sample is None:
             return None
         if sample.truth_message is None:
-            sample.truth_message = self._make_message(sample, next(iter(self._topics)), sample.truth)
+            sample.truth_message = self._make_message(sample, next(iter(self._topics)), sample.truth, sample.time_ns)
         return sample.truth_message
 
     def _finished_sample(self) -> Sample | None:
@@ -256,8 +256,10 @@ class Sensor(Sampler):
         self.sim = sim
         options, quirks = self.timing, sim.world.gazebo_quirks
         self._times = SampleTimes(options, sim.engine.clock, sim.engine.streams, self.scoped, in_milliseconds=quirks)
-        if options.latency > 0:
-            self._delayed = DelayedReadings(options, sim.engine.clock, sim.engine.streams, self.scoped)
+        delays, keeps_order = self._message_delays()
+        if options.latency > 0 or delays:
+            origin = options, sim.engine.clock, sim.engine.streams, self.scoped
+            self._delayed = DelayedReadings(*origin, delays, keeps_order)
         self._report_timing(sim)
         if options.set_rate_topic:
             sim.communication.bus.listen(valid_topic(options.set_rate_topic), (_RATE_TYPE,), self._on_rate)
@@ -270,6 +272,11 @@ class Sensor(Sampler):
         self._products = self.products()
         self._open(self.default_topics())
         self.restart()
+
+    def _message_delays(self) -> tuple[list[Callable[[int], float]], bool]:
+        """Return the functions of the artefacts that delay messages, and whether messages keep their order."""
+        late = [a for a in self._message_artefacts if type(a).delay is not MessageArtefact.delay]
+        return [artefact.delay for artefact in late], all(artefact.keeps_order for artefact in late)
 
     def _report_timing(self, sim: Simulation) -> None:
         """Report options that are impossible with the length of a step."""

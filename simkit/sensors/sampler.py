@@ -15,7 +15,7 @@ from simkit.runtime import Publisher, Simulation
 from simkit.runtime.communication.subscription import LazyMessage, PendingWork
 from simkit.runtime.engine.physics_state import HeldState
 from simkit.runtime.engine.scheduler import Timetable
-from simkit.sensors.artefacts import Artefact
+from simkit.sensors.artefacts import Artefact, MessageArtefact
 from simkit.sensors.noise import NoiseKeeper
 from simkit.sensors.sample import Batch, Memory, Product, Reading, Sample
 from simkit.sensors.sample_packing import SampleGroup
@@ -67,6 +67,9 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         self.artefacts: tuple[Artefact, ...] = tuple(artefacts)
         self._before_noise = tuple(artefact for artefact in artefacts if artefact.order < 0)
         self._after_noise = tuple(artefact for artefact in artefacts if artefact.order >= 0)
+        self._message_artefacts = tuple(a for a in artefacts if isinstance(a, MessageArtefact))
+        # each of these samples is taken at its time, whether or not it has a reader
+        self._needs_each_sample = bool(self._message_artefacts) or any(a.follows_truth for a in artefacts)
 
     def sample_only_while(self, is_on: Callable[[], bool]) -> None:
         """Sample at due times only while `is_on()` returns true; a sensor without power has no samples."""
@@ -204,6 +207,8 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
                 self._process_pending()
             return
         sample, read_publishers = self._begin_sample(tick), self._read_publishers
+        if self._message_artefacts and self._loses(sample):
+            return
         if self._is_read:
             # the noise and the message can wait, but the data change with the next step
             sample.raw = self._capture_now(tick)
@@ -212,9 +217,13 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         else:
             sample.held = sim.engine.physics.hold()
         if self._delayed is not None:
-            self._delayed.samples.append((self._delayed.arrival(tick, sample.index), sample))
+            arrival = self._delayed.add(tick, sample)
+            if self._message_artefacts:
+                self._stamp(sample, arrival)
             self._deliver(self._delayed, tick)
             return
+        if self._message_artefacts:
+            self._stamp(sample, tick)
         self._sample = sample
         if read_publishers:
             self._publish(sample, read_publishers)
@@ -279,6 +288,18 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
             sample.noise_states = tuple([noise.state for noise in self._evolving])
         return sample
 
+    def _loses(self, sample: Sample) -> bool:
+        """Check whether the message of the newest sample is lost."""
+        return any(artefact.is_lost(sample.index) for artefact in self._message_artefacts)
+
+    def _stamp(self, sample: Sample, arrival: int) -> None:
+        """Set the time stamp of a sample that arrives at the tick `arrival`."""
+        arrived_ns, stamp_ns = self.sim.engine.clock.time_ns(arrival), sample.time_ns
+        for artefact in self._message_artefacts:
+            stamp_ns = artefact.stamp(stamp_ns, arrived_ns)
+        if stamp_ns != sample.time_ns:
+            sample.stamp_ns = stamp_ns
+
     def _capture_now(self, tick: int) -> object:
         """Capture the state of this tick, from the batch if the sensor belongs to one."""
         batch = self.batch
@@ -303,11 +324,12 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         publishers = [publisher for _, publisher, _ in self._read_publishers]
         self._is_served = bool(publishers) and all(publisher.is_live for publisher in publishers)
         patience = [publisher.patience for publisher in publishers]
-        is_plain = self._delayed is None and not (self._selects_ticks or self._selects_products_of_sample)
+        selects = self._selects_ticks or self._selects_products_of_sample
+        is_plain = self._delayed is None and not (selects or self._needs_each_sample)
         self._gathers = self.gathers and self.is_deferred and is_plain and self._is_read and all(patience)
         changes = self._evolves or self._evolving or self._overrides("_begin_sample")
         # a drifting noise advances at every sample, and a delayed sample is delivered later, so neither is skipped
-        self._is_unread = not (self._read_publishers or changes or self._delayed)
+        self._is_unread = not (self._read_publishers or changes or self._delayed or self._needs_each_sample)
         self._patience = max(patience, default=0.0)
         is_packed = is_plain and self.is_deferred and not changes and self._overrides("pack_samples")
         is_packed = (
@@ -442,11 +464,12 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         if message is None:
             if self._products[product].needs_reading:
                 self._finish_sample(sample)
-            message = sample.messages[product] = self._make_message(sample, product, sample.noisy)
+            stamp_ns = sample.time_ns if sample.stamp_ns is None else sample.stamp_ns
+            message = sample.messages[product] = self._make_message(sample, product, sample.noisy, stamp_ns)
         return message
 
-    def _make_message(self, sample: Sample, product: str, reading: Reading) -> object:
+    def _make_message(self, sample: Sample, product: str, reading: Reading, stamp_ns: int) -> object:
         make = self._products[product].make
         if sample.noise_states:
-            return self._with_noise_of(sample, make, reading, sample.time_ns)
-        return make(reading, sample.time_ns)
+            return self._with_noise_of(sample, make, reading, stamp_ns)
+        return make(reading, stamp_ns)

@@ -39,10 +39,13 @@ class Artefact(abc.ABC):
         elements: family of sensors and name of the element, such as `lidar/dropout`; the family `any` is all sensors.
         order: place among the artefacts of a sensor, which apply in ascending order; those below 0 apply before the
             noise of the file, all others after it.
+        follows_truth: True if the artefact measures the sensor at every sample, in `evolve` of a noise process. The
+            samples are then taken one by one, in the physics state of their time.
     """
 
     elements: ClassVar[tuple[str, ...]] = ()
     order: ClassVar[float] = 1.0
+    follows_truth: ClassVar[bool] = False
 
     def __init__(self, params: Params, sensor: AnySensor) -> None:
         self.params, self.sensor = params, sensor
@@ -72,6 +75,36 @@ class Artefact(abc.ABC):
             self.sensor.scoped, f"{self.params.name}/{name}", width
         )
         return stream
+
+
+class MessageArtefact(Artefact):
+    """Artefact of the messages of a sensor: it delays, loses or stamps them, and leaves the readings unchanged.
+
+    Attributes:
+        keeps_order: True if a message never arrives before an older one.
+    """
+
+    keeps_order: bool = True
+
+    def delay(self, index: int) -> float:
+        """Return the time [s] that sample `index` needs to arrive, besides the `<latency>` of the sensor."""
+        return 0.0
+
+    def is_lost(self, index: int) -> bool:
+        """Check whether the newest sample, number `index`, never arrives; called when its noise is known."""
+        return False
+
+    def stamp(self, measured_ns: int, arrived_ns: int) -> int:
+        """Return the time stamp [ns] of a sample.
+
+        Args:
+            measured_ns: stamp without this artefact; the time of the measurement.
+            arrived_ns: time at which the message arrives.
+        """
+        return measured_ns
+
+    def apply(self, reading: Reading, truth: Reading, index: int) -> Reading:
+        return reading
 
 
 @functools.cache
