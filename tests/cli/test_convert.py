@@ -347,7 +347,8 @@ OWN = """<sdf version="1.9"><world name="w"><gazebo_quirks>1</gazebo_quirks>
   <gaps><probability>0.1</probability></gaps><latency_histogram><values>0.01</values></latency_histogram></sensor>
 <sensor name="solar" type="custom" gz:type="solar"><update_rate>50</update_rate><solar><normal>0 0 1</normal></solar>
 </sensor><collision name="c"><geometry><box><size>1 1 1</size></box></geometry><reflectivity>0.1</reflectivity>
-<transmittance>0.2</transmittance><specularity>0.3</specularity></collision></link><link name="k"/><joint name="j" type="revolute"><parent>l</parent><child>k</child><axis/>
+<transmittance>0.2</transmittance><specularity>0.3</specularity></collision></link><link name="k"/>
+<joint name="j" type="revolute"><parent>l</parent><child>k</child><axis/>
 <sensor name="e" type="custom" gz:type="encoder"><encoder><resolution>0.001</resolution></encoder></sensor></joint>
 <link name="o"/><joint name="i" type="revolute"><parent>l</parent><child>o</child><axis/></joint>
 <plugin filename="user" name="user"><latency>1</latency><sensor><phase>0</phase></sensor>
