@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import abc
 from collections.abc import Callable
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 import numpy.typing as npt
 
 from simkit.sensors.artefacts import Artefact, Reading
-from simkit.sensors.cameras.image_noise import CameraReading
+from simkit.sensors.cameras.image_noise import CameraReading, ChangedReading
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
 from simkit.sensors.cameras.tone_curve import WHITE, colour_table, light_table
 
@@ -36,8 +36,8 @@ def quantise(light: Light, levels: int) -> Light:
     return np.clip(numbers, 0.0, levels, out=numbers)
 
 
-class LightReading:
-    """Reading of a camera whose artefacts are computed when its colours are first read.
+class LightReading(ChangedReading):
+    """Reading of a camera whose light an artefact changes when the colours are first read.
 
     Args:
         source: reading before the artefact.
@@ -45,11 +45,9 @@ class LightReading:
         encoder: function from light to colours.
     """
 
-    def __init__(
-        self, source: CameraReading | LightReading, change: Callable[[Light], Light], encoder: Encoder = encode
-    ) -> None:
+    def __init__(self, source: CameraReading, change: Callable[[Light], Light], encoder: Encoder = encode) -> None:
+        super().__init__(source)
         self._source, self._change, self._encoder = source, change, encoder
-        self._colours: Bytes | None = None
 
     @property
     def light(self) -> Light:
@@ -57,19 +55,10 @@ class LightReading:
         source = self._source
         return self._change(source.light if isinstance(source, LightReading) else decode(source.colours))
 
-    @property
+    @cached_property
     def colours(self) -> Bytes:
-        if self._colours is None:
-            self._colours = self._encoder(self.light)
-        return self._colours
-
-    @property
-    def depths(self) -> npt.NDArray[np.float32] | None:
-        """Depths along the optical axis [m], shape (h, w); None for a plain camera."""
-        return self._source.depths
-
-    def __reduce__(self) -> tuple[object, ...]:
-        return CameraReading, (self.colours, self.depths)
+        """Colours (h, w, 3), or brightness (h, w)."""
+        return self._encoder(self.light)
 
 
 class LightArtefact(Artefact):
@@ -98,5 +87,5 @@ class LightArtefact(Artefact):
             return tuple(self._on_camera(picture, index, n) for n, picture in enumerate(reading))
         return self._on_camera(reading, index, 0)
 
-    def _on_camera(self, reading: CameraReading | LightReading, index: int, camera: int) -> LightReading:
+    def _on_camera(self, reading: CameraReading, index: int, camera: int) -> LightReading:
         return LightReading(reading, partial(self.change, index=index, camera=camera), self.encoder)

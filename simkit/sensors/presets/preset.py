@@ -69,7 +69,7 @@ class Preset:
     @property
     def block(self) -> str:
         """Name of the element that contains the settings."""
-        return _BLOCKS.get(self.kind, self.kind)
+        return block_of(self.kind)
 
     @property
     def elements(self) -> Settings:
@@ -80,6 +80,11 @@ class Preset:
     def beside(self) -> Settings:
         """Elements beside the sensor's block: its sweep, its latency and its artefacts."""
         return {name: value for name, value in self.settings.items() if name != self.block}
+
+
+def block_of(kind: str) -> str:
+    """Return the name of the element that contains the settings of a kind."""
+    return _BLOCKS.get(kind, kind)
 
 
 def load_presets() -> Iterator[Preset]:

@@ -8,6 +8,7 @@ from dataclasses import replace
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.params import Params
 from simkit.scene import SceneSensor
+from simkit.scene.overrides import SOURCE_PREFIX
 from simkit.sensors.artefacts import artefact_elements
 from simkit.sensors.presets import find, normalise_name, presets
 from simkit.sensors.presets.preset import TIMING_ELEMENTS, Preset, Settings, format_value, outline
@@ -63,13 +64,15 @@ def add_preset_defaults(sensor: SceneSensor, diagnostics: Diagnostics) -> SceneS
 def _usable_elements(sensor: SceneSensor, preset: Preset) -> tuple[Settings, list[str]]:
     """Return the elements of a preset that a sensor lacks, and the names of those that no installed pack provides.
 
-    An element beside the block is added as a whole: an element of the file replaces it with all its children.
+    An element beside the block is added as a whole: an element of the file replaces it with all its children. A value
+    of `--set` replaces one of them.
     """
     elements: dict[str, object] = {}
     missing: list[str] = []
     for name, value in preset.elements.items():
         if name in preset.beside:
-            if sensor.params.has(name):
+            own = next((child for child in sensor.params.children if child.name == name), None)
+            if own is not None and not (own.where.file or "").startswith(SOURCE_PREFIX):
                 continue
             if name not in TIMING_ELEMENTS and name not in artefact_elements():
                 missing.append(name)
