@@ -52,6 +52,7 @@ from simkit.scene.overrides import Overrides, apply_overrides, check_used, overr
 from simkit.sensors import sensor_kinds
 from simkit.sensors.cameras.rendering.render_thread import usable_cores
 from simkit.sensors.presets.preset_defaults import add_preset_defaults
+from simkit.sensors.realism import read_realism
 from simkit.writers.inspect_description import describe_scene
 
 if TYPE_CHECKING:
@@ -91,6 +92,7 @@ def load(
     remap: NamedValues | None = None,
     start_controllers: bool = True,
     hold_joints: bool = False,
+    realism: Source | None = None,
 ) -> Simulation:
     """Load a world or a single model and return a simulation that is ready to step.
 
@@ -128,6 +130,8 @@ def load(
         start_controllers: start the controllers of robots with ros2_control when they are loaded. With False, they
             wait for spawners, as in ROS.
         hold_joints: hold each joint that no plugin drives at its initial position, with the effort limit of the joint.
+        realism: errors of all sensors: "ideal" for none, "datasheet" for those of the real devices, the name of a set,
+            or a YAML file; see `docs/realism.md`. With None, the files decide.
 
     Returns:
         Simulation at t = 0.
@@ -145,7 +149,7 @@ def load(
         seed=seed, plugin_paths=plugin_paths, plugins=plugins, strict=strict, overrides=overrides, sleep=sleep,
         on_error=on_error, spawn=spawn, params_files=params_files, change_world=change_world, model_world=model_world,
         interfaces=interfaces, renderer=renderer, remap=remap, start_controllers=start_controllers,
-        hold_joints=hold_joints,
+        hold_joints=hold_joints, realism=realism,
     )  # fmt: skip
     import_mujoco()
     options: LoadOptions = {
@@ -154,7 +158,7 @@ def load(
         "params_files": params_files, "strict": strict, "sleep": sleep, "render_thread": render_thread,
         "on_error": on_error, "interfaces": tuple(interfaces), "renderer": renderer,
         "remap": named_values(remap, "--remap") or (), "start_controllers": start_controllers,
-        "hold_joints": hold_joints,
+        "hold_joints": hold_joints, "realism": None if realism is None else os.fspath(realism),
     }  # fmt: skip
     run = RunSpec(
         os.fspath(source), seed=seed, overrides=tuple(overrides), spawn=tuple(spawn), plugins=tuple(plugins),
@@ -221,6 +225,9 @@ class _WorldReader:
         self._xacro_overrides = xacro_overrides(run.overrides)
         arguments = named_values(options["xacro_args"], "xacro_args") | self._xacro_overrides
         self._scene = _scene(source, self._resolver, diagnostics, arguments, options["base"], spawn, run.model_world)
+        choice = options["realism"]
+        find = partial(self.find_file, folder=None)
+        self._realism = None if choice is None else read_realism(choice, find, diagnostics)
 
     def find_file(self, uri: str, folder: Path | None) -> Path | None:
         """Return the file of a URI, relative to a folder; None for a missing one."""
@@ -231,7 +238,8 @@ class _WorldReader:
         from simkit.compiler.standing_models import stand_models
 
         scene, change_world = _overridden(self._scene, overrides, diagnostics), self.run.change_world
-        world = scene.world if diagnostics.has_errors else stand_models(scene.world, scene.standing, diagnostics)
+        world = scene.world if self._realism is None else self._realism.world(scene.world, diagnostics)
+        world = world if diagnostics.has_errors else stand_models(world, scene.standing, diagnostics)
         if not self.run.options["sleep"]:
             world = replace(world, physics=replace(world.physics, sleep=False))
         world = _with_renderer(world, self.run.options["renderer"])
@@ -255,11 +263,16 @@ class _WorldReader:
 
         list_models, check_source = client_models(self._resolver, self._source)
         return WorldSource(
-            load_model=partial(_model_to_spawn, resolver=self._resolver), make_parts=self._make_parts,
+            load_model=self._load_model, make_parts=self._make_parts,
             leave_out=self.left_out.take,
             write_sdf=_sdf_of, resolve_world=self.resolve, list_models=list_models, check_source=check_source,
             file_arguments=self._scene.arguments, xacro_overrides=self._xacro_overrides,
         )  # fmt: skip
+
+    def _load_model(self, source: Source, diagnostics: Diagnostics, **options: Any) -> SceneModel:
+        """Return a model to spawn, with the realism of the run."""
+        model = _model_to_spawn(source, diagnostics, resolver=self._resolver, **options)
+        return model if self._realism is None else self._realism.model(model, diagnostics)
 
     def _make_parts(self, model: SceneModel, builder: SpecBuilder, diagnostics: Diagnostics) -> SensorsAndPlugins:
         return InstanceMaker(builder, diagnostics, self.plugin_folders, self.left_out).model_parts(model)

@@ -11,7 +11,17 @@ from collections.abc import Callable, Sequence
 from typing import Any, Final, Literal, NamedTuple, TypedDict, get_args
 
 from simkit.run_files import FilePath, PackagePaths
-from simkit.run_values import Choice, Flag, Folders, NamedTexts, NamedValues, Packages, ParameterFiles, ValueKind
+from simkit.run_values import (
+    Choice,
+    Flag,
+    Folders,
+    NamedTexts,
+    NamedValues,
+    Packages,
+    ParameterFiles,
+    ValueKind,
+    WordOrFile,
+)
 
 PluginErrorPolicy = Literal["stop", "disable"]
 """Policy for a plugin that raises: end the run, or continue without the plugin."""
@@ -46,6 +56,7 @@ class LoadOptions(SourceOptions, total=False):
     remap: NamedValues
     start_controllers: bool
     hold_joints: bool
+    realism: str | None
 
 
 class LoadArguments(LoadOptions, total=False):
@@ -261,6 +272,14 @@ LOAD_FIELDS: Final = _load_options(
         "hold_joints", Flag(), key="hold_joints", packed="first", default=False,
         option=CommandOption(
             "--hold-joints", "", "Hold each joint that no plugin drives at its initial position.", "world"
+        ),
+    ),
+    RunField(
+        "realism", WordOrFile(), key="realism",
+        option=CommandOption(
+            "--realism", "datasheet|ideal|SET|FILE.yaml",
+            "Errors of all sensors: those of the data sheets, none, or those of a set or file; default: the files'.",
+            "world", completion="realism",
         ),
     ),
     RunField("sleep", Flag(), packed="first", default=True),

@@ -223,6 +223,20 @@ class WorldName(Text):
         return value if value in self._words or "<" in value else change(FileName(value, "world", (name,)))
 
 
+class WordOrFile(Text):
+    """Word, or path of a YAML file, which its suffix marks; None for neither."""
+
+    has_files = True
+
+    def plain(self, value: str | os.PathLike[str] | None) -> str | None:
+        return None if value is None else os.fspath(value)
+
+    def move(self, value: str | os.PathLike[str] | None, name: str, change: ChangeFile) -> str | None:
+        text = self.plain(value)
+        is_file = text is not None and text.endswith((".yaml", ".yml"))
+        return str(change(FileName(text, "file", (name,)))) if is_file and text is not None else text
+
+
 class BagText(Text):
     """Path of a bag as text, relative to the folder of the run; empty for none."""
 

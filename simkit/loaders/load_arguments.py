@@ -68,6 +68,7 @@ def check_load_arguments(
     remap: object,
     start_controllers: object,
     hold_joints: object,
+    realism: object,
 ) -> int:
     """Check the other arguments of `simkit.load`, and return the seed.
 
@@ -83,6 +84,7 @@ def check_load_arguments(
     check_kind(sleep, _FLAG, "sleep", "True or False")
     check_kind(start_controllers, _FLAG, "start_controllers", "True or False")
     check_kind(hold_joints, _FLAG, "hold_joints", "True or False")
+    check_kind(realism, (*_PATH, type(None)), "realism", "'ideal', 'datasheet', the name of a set, or a path")
     check_kind(on_error, (str, type(None)), "on_error", "'stop' or 'disable'")
     if on_error not in (None, "stop", "disable"):
         raise wrong_value("on_error", "'stop' or 'disable'", on_error)

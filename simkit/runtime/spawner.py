@@ -251,7 +251,7 @@ class Spawner:
         builder.remove_model(name)
         builder.add_model(old.models[name], movable=True)
         for sensor in old.parts[name].sensors:
-            sensor.build(builder)
+            sensor.build_with_artefacts(builder)
         changes = old.changed("make_movable", name)
         self.switch(replace(self._recompiled(builder), movable=old.movable | {name}, changes=changes))
         for light in self._handles.tables["light"].values():

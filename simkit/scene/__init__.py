@@ -20,10 +20,13 @@ from simkit.scene.geometry import (
     Sphere,
 )
 from simkit.scene.model import (
+    DEFAULT_REFLECTIVITY,
+    NO_OPTICS,
     Axis,
     Inertial,
     Material,
     Mimic,
+    Optics,
     SceneCollision,
     SceneFrame,
     SceneJoint,
@@ -50,9 +53,10 @@ from simkit.scene.world import (
 )
 
 __all__ = [
-    "Animation", "Atmosphere", "Axis", "Box", "Calibration", "Capsule", "Cone", "Cylinder", "Ellipsoid", "Empty",
-    "Geometry", "Heightmap", "Inertial", "Material", "Mesh", "Mimic", "PersonLook", "Physics", "Plane", "Polyline",
-    "Safety", "Scene", "SceneActor", "SceneCollision", "SceneFrame", "SceneJoint", "SceneLight", "SceneLink",
-    "SceneModel", "ScenePlugin", "SceneSensor", "SceneVisual", "SceneWorld", "Sphere", "SphericalCoordinates",
-    "Surface", "Surroundings", "Trajectory", "Transmission", "TransmissionEnd", "Waypoint",
+    "DEFAULT_REFLECTIVITY", "NO_OPTICS", "Animation", "Atmosphere", "Axis", "Box", "Calibration", "Capsule", "Cone",
+    "Cylinder", "Ellipsoid", "Empty", "Geometry", "Heightmap", "Inertial", "Material", "Mesh", "Mimic", "Optics",
+    "PersonLook", "Physics", "Plane", "Polyline", "Safety", "Scene", "SceneActor", "SceneCollision", "SceneFrame",
+    "SceneJoint", "SceneLight", "SceneLink", "SceneModel", "ScenePlugin", "SceneSensor", "SceneVisual", "SceneWorld",
+    "Sphere", "SphericalCoordinates", "Surface", "Surroundings", "Trajectory", "Transmission", "TransmissionEnd",
+    "Waypoint",
 ]  # fmt: skip

@@ -102,6 +102,27 @@ class Material:
 
 
 @dataclass(frozen=True, slots=True)
+class Optics:
+    """Optical properties of a surface, for the artefacts of lidars and depth cameras.
+
+    Attributes:
+        reflectivity: share of the light that the surface scatters in all directions (Lambert's law); above 1 for a
+            retro-reflector. None if the file gives no value; `DEFAULT_REFLECTIVITY` then applies.
+        transmittance: share of the light that passes through the surface, as through glass.
+        specularity: share of the light that the surface reflects as a mirror.
+    """
+
+    reflectivity: float | None = None
+    transmittance: float = 0.0
+    specularity: float = 0.0
+
+
+DEFAULT_REFLECTIVITY: Final = 0.5
+"""Reflectivity of a surface without a value: between wood (0.3 to 0.6) and a white wall (0.8)."""
+NO_OPTICS: Final = Optics()
+
+
+@dataclass(frozen=True, slots=True)
 class SceneCollision:
     """Collision shape of a link."""
 
@@ -112,6 +133,7 @@ class SceneCollision:
     surface: Surface = Surface()
     laser_retro: float = 0.0
     where: Where = NOWHERE
+    optics: Optics = NO_OPTICS
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,6 +151,7 @@ class SceneVisual:
     laser_retro: float = 0.0
     where: Where = NOWHERE
     plugins: tuple[ScenePlugin, ...] = ()
+    optics: Optics = NO_OPTICS
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,6 +22,7 @@ from simkit.scene.geometry import (
     vec3,
 )
 from simkit.scene.model import (
+    DEFAULT_REFLECTIVITY,
     Inertial,
     SceneCollision,
     SceneJoint,
@@ -177,12 +178,23 @@ def _given(name: str) -> Callable[[SceneCollision], float]:
     return lambda collision: getattr(collision.surface, name) or 0.0
 
 
+def _reflectivity(shape: SceneCollision | SceneVisual) -> float:
+    """Return the reflectivity of a surface, or the value of a surface without one."""
+    value = shape.optics.reflectivity
+    return DEFAULT_REFLECTIVITY if value is None else value
+
+
 def _optional(element: str, unit: str, name: str) -> Field:
     write = _field(element, TEXT, f"surface.{name}").write
     return Field(element, number(unit, minimum=0.0), _given(name), write)
 
 
 _COEFFICIENT: Final = number("", minimum=0.0)
+_OPTICS: Final = (
+    Field("reflectivity", _COEFFICIENT, _reflectivity, _field("reflectivity", TEXT, "optics.reflectivity").write),
+    _field("transmittance", _SHARE, "optics.transmittance"),
+    _field("specularity", _SHARE, "optics.specularity"),
+)
 _SURFACE: Final = (
     Field(MU, _COEFFICIENT, lambda collision: collision.surface.mu, _set_mu),
     _field(MU2, _COEFFICIENT, "surface.mu2"),
@@ -202,12 +214,14 @@ _SURFACE: Final = (
     _field("surface.contact.collide_bitmask", integer(0), "surface.collide_bitmask"),
     _field("surface.contact.category_bitmask", integer(0), "surface.category_bitmask"),
     _field("laser_retro", number("")),
+    *_OPTICS,
 )
 
 _VISUAL: Final = (
     _field("transparency", number("", minimum=0.0)),
     _field("cast_shadows", FLAG),
     _field("laser_retro", number("")),
+    *_OPTICS,
     _field("visibility_flags", integer(0)),
     _field("material.ambient", RGBA),
     _field("material.diffuse", RGBA),

@@ -18,8 +18,11 @@ OWN_ELEMENTS: Final[Mapping[str, frozenset[str]]] = MappingProxyType(
         "actor": frozenset({"person"}),
         "scene": frozenset({"quality", "renderer"}),
         "light": frozenset({"irradiance"}),
+        "collision": frozenset({"reflectivity", "specularity", "transmittance"}),
+        "visual": frozenset({"reflectivity", "specularity", "transmittance"}),
         "sensor": frozenset(
-            {"encoder", "jitter", "latency", "latency_jitter", "phase", "preset", "set_rate_topic", "solar"}
+            {"dropout", "encoder", "jitter", "latency", "latency_jitter", "phase", "preset", "set_rate_topic", "solar"}
+            | {"bandwidth", "calibration_error", "clock", "gaps", "latency_histogram", "saturation"}
         ),
         "noise": frozenset({"bias_instability", "correlation_time", "noise_density", "random_walk"}),
         "camera": frozenset({"disparity_noise"}),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import abc
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import chain
 from typing import Any, ClassVar, TypeVar
 
@@ -27,6 +27,7 @@ from simkit.runtime.array_rules import CannotBatchError, SensorRule, array_rule_
 from simkit.runtime.engine.random_streams import RandomStreams
 from simkit.runtime.engine.simulated_time import TickGrid
 from simkit.scene import SceneSensor
+from simkit.sensors.artefacts import MessageArtefact, read_artefacts
 from simkit.sensors.noise import NO_NOISE, Noise, NoiseModel, SettableNoise, UniformNoise
 from simkit.sensors.sample import NoiseProcess, Product, Reading, Sample
 from simkit.sensors.sample_times import DelayedReadings, SampleTimes, read_timing
@@ -61,6 +62,7 @@ class Sensor(Sampler):
             move scenery then move it before each sample.
         has_dynamic_bias: True if the bias of this kind drifts in Gazebo, which then passes the time between samples to
             the noise.
+        artefact_families: families of artefacts that the kind can have, besides `any`.
         name, scoped, kind: names as in the file.
         update_rate: rate [Hz]; 0 is every step. Change it with `set_rate`.
         frame_id: frame of the messages.
@@ -75,6 +77,7 @@ class Sensor(Sampler):
     needs_renderer: ClassVar[bool] = False
     sees_scene: ClassVar[bool] = True
     has_dynamic_bias: ClassVar[bool] = False
+    artefact_families: ClassVar[tuple[str, ...]] = ()
 
     options: object = None
     noise: Any = SettableNoise()
@@ -89,6 +92,7 @@ class Sensor(Sampler):
             scene.params.child(element)
         self._read_common(scene)
         self.options = self.read_options(scene.params)
+        self._set_artefacts(read_artefacts(self, scene.params, (*self.artefact_families, "any")))
 
     def _read_common(self, scene: SceneSensor) -> None:
         params = scene.params
@@ -109,6 +113,12 @@ class Sensor(Sampler):
     def describe(self) -> dict[str, object]:
         """Return the kind's own data for `simkit inspect --json`."""
         return {}
+
+    def build_with_artefacts(self, builder: SpecBuilder) -> None:
+        """Add what kind and artefacts need to MuJoCo's specification, before it is compiled."""
+        self.build(builder)
+        for artefact in self.artefacts:
+            artefact.build(builder)
 
     def build(self, builder: SpecBuilder) -> None:
         """Add what the kind needs to MuJoCo's specification, before it is compiled."""
@@ -165,7 +175,7 @@ class Sensor(Sampler):
         if sample is None:
             return None
         if sample.truth_message is None:
-            sample.truth_message = self._make_message(sample, next(iter(self._topics)), sample.truth)
+            sample.truth_message = self._make_message(sample, next(iter(self._topics)), sample.truth, sample.time_ns)
         return sample.truth_message
 
     def _finished_sample(self) -> Sample | None:
@@ -246,17 +256,27 @@ class Sensor(Sampler):
         self.sim = sim
         options, quirks = self.timing, sim.world.gazebo_quirks
         self._times = SampleTimes(options, sim.engine.clock, sim.engine.streams, self.scoped, in_milliseconds=quirks)
-        if options.latency > 0:
-            self._delayed = DelayedReadings(options, sim.engine.clock, sim.engine.streams, self.scoped)
+        delays, keeps_order = self._message_delays()
+        if options.latency > 0 or delays:
+            origin = options, sim.engine.clock, sim.engine.streams, self.scoped
+            self._delayed = DelayedReadings(*origin, delays, keeps_order)
         self._report_timing(sim)
         if options.set_rate_topic:
             sim.communication.bus.listen(valid_topic(options.set_rate_topic), (_RATE_TYPE,), self._on_rate)
         self.prepare()
         if self.noise is not None:
-            self._register_noise(self.noise)  # a kind may make its noise without `_make_noise`
+            self.register_noise(self.noise)  # a kind may make its noise without `_make_noise`
+        for artefact in self.artefacts:
+            artefact.prepare()
+            self.is_deferred = True
         self._products = self.products()
         self._open(self.default_topics())
         self.restart()
+
+    def _message_delays(self) -> tuple[list[Callable[[int], float]], bool]:
+        """Return the functions of the artefacts that delay messages, and whether messages keep their order."""
+        late = [a for a in self._message_artefacts if type(a).delay is not MessageArtefact.delay]
+        return [artefact.delay for artefact in late], all(artefact.keeps_order for artefact in late)
 
     def _report_timing(self, sim: Simulation) -> None:
         """Report options that are impossible with the length of a step."""
@@ -284,6 +304,8 @@ class Sensor(Sampler):
         self._offset: Pose = link.offset @ self.scene.pose_link
         self._offset_position: Vector = self._offset.position
         self._offset_rotation: Vector = self._offset.matrix
+        for artefact in self.artefacts:
+            artefact.bind(compiled)
 
     def measure_pending(self, state: Any) -> None:
         """Make the readings of the samples of a state from `get_state`, so that the state can be pickled."""
@@ -304,7 +326,7 @@ class Sensor(Sampler):
         """Make the noise of a few channels with one model each, for `self.noise`."""
         quirks, names = self.sim.world.gazebo_quirks, self._noise_stream_names(group)
         models = [self._effective_noise(m) for m in models]
-        return self._register_noise(Noise(models, *names, interval=self._noise_interval(), random_sign=quirks))
+        return self.register_noise(Noise(models, *names, interval=self._noise_interval(), random_sign=quirks))
 
     def _make_uniform_noise(self, model: NoiseModel, width: int, group: str) -> UniformNoise:
         """Make noise with the same model on each of many channels, for `self.noise`."""
@@ -314,7 +336,7 @@ class Sensor(Sampler):
         else:
             model = self._effective_noise(model)
         names, interval = self._noise_stream_names(group), self._noise_interval()
-        return self._register_noise(UniformNoise(model, width, *names, interval=interval, random_sign=quirks))
+        return self.register_noise(UniformNoise(model, width, *names, interval=interval, random_sign=quirks))
 
     def _noise_stream_names(self, group: str) -> tuple[RandomStreams, str, str]:
         return self.sim.engine.streams, self.scoped, group
@@ -325,7 +347,8 @@ class Sensor(Sampler):
     def _effective_noise(self, model: NoiseModel) -> NoiseModel:
         return model.as_gazebo(self.has_dynamic_bias) if self.sim.world.gazebo_quirks else model
 
-    def _register_noise(self, noise: AnyNoiseProcess) -> AnyNoiseProcess:
+    def register_noise(self, noise: AnyNoiseProcess) -> AnyNoiseProcess:
+        """Add a process that advances, restarts and is restored with the sensor; return it."""
         if noise not in self._noises:
             self._noises.append(noise)
         if noise.evolves:
@@ -397,6 +420,8 @@ def sensor_rule(sensor: Sensor) -> SensorRule:
         raise CannotBatchError(f"sensor {sensor.scoped!r} ({sensor.kind})")
     if not sensor.keeps_to_grid:
         raise CannotBatchError(f"latency, jitter, drifting noise or a battery of sensor {sensor.scoped!r}")
+    if sensor.artefacts:
+        raise CannotBatchError(f"artefacts of sensor {sensor.scoped!r}")
     if not (sensor.is_manual or isinstance(sensor.timetable(), (TickGrid, type(None)))):
         raise CannotBatchError(f"the phase of sensor {sensor.scoped!r}")
     rule = array_rule_of(sensor, SensorRule)  # type: ignore[type-abstract]

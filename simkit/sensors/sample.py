@@ -49,6 +49,7 @@ class Sample:
         unpublished: products of this sample that are not published.
         surroundings: state besides the physics that the kind measures; None if the kind measures only the physics.
         work: job of another thread on this sample; a reader of the sample waits for it first.
+        stamp_ns: time stamp [ns] of the messages with noise if it is not the time of the sample.
     """
 
     # class attributes, because creating samples without a reader must be fast
@@ -61,6 +62,7 @@ class Sample:
     unpublished: tuple[str, ...] = ()
     surroundings: Memory = None
     work: Any = None
+    stamp_ns: int | None = None
 
     def __init__(self, index: int, time_ns: int) -> None:
         self.index, self.time_ns = index, time_ns

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import bisect
 import math
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Final
@@ -17,6 +18,7 @@ from simkit.sensors.sample import Sample
 
 MAX_LATENCY = 3600.0  # [s]; all readings that have not arrived yet are kept
 _MILLISECOND = Fraction(1, 1000)
+_ROUNDING: Final = 1e-9  # [steps]
 _LOWEST_RATE: Final = 2.0**-31
 """Rate [Hz] whose period is the longest duration of a run; a lower one has the same samples."""
 
@@ -113,9 +115,20 @@ class DelayedReadings:
         clock: the simulation's clock.
         streams: random streams for the jitter, which is drawn by the index of the sample.
         scoped: scoped name of the sensor, which names the stream.
+        delays: functions that return a further delay [s] of a sample from its index; all delays are added.
+        keeps_order: False lets a sample arrive before an older one.
     """
 
-    def __init__(self, options: TimingOptions, clock: Clock, streams: RandomStreams, scoped: str) -> None:
+    def __init__(
+        self,
+        options: TimingOptions,
+        clock: Clock,
+        streams: RandomStreams,
+        scoped: str,
+        delays: Sequence[Callable[[int], float]] = (),
+        keeps_order: bool = True,
+    ) -> None:
+        self._delays, self._keeps_order = tuple(delays), keeps_order
         self._clock, self._latency = clock, exact_fraction(options.latency)
         self._spread = options.latency_jitter
         self._stream = streams.stream(scoped, "latency") if options.latency_jitter > 0 else None
@@ -123,12 +136,28 @@ class DelayedReadings:
         self.samples: deque[tuple[int, Sample]] = deque()
 
     def arrival(self, tick: int, index: int) -> int:
-        """Return the tick at which sample `index`, measured at `tick`, arrives; never before an older sample."""
+        """Return the tick at which sample `index`, measured at `tick`, arrives; in order, not before an older one."""
         steps = self._steps
-        if self._stream is not None:
-            late = float(self._latency) + self._spread * float(self._stream.uniform(index)[0])
-            steps = max(0, math.ceil(late / self._clock.timestep))
-        return max(tick + steps, self.samples[-1][0]) if self.samples else tick + steps
+        if self._stream is not None or self._delays:
+            late = float(self._latency)
+            if self._stream is not None:
+                late += self._spread * float(self._stream.uniform(index)[0])
+            for delay in self._delays:
+                late += delay(index)
+            # the quotient of a delay of whole steps may be above the number of steps by a rounding error
+            slack = _ROUNDING if self._delays else 0.0
+            steps = max(0, math.ceil(late / self._clock.timestep - slack))
+        is_bounded = self._keeps_order and self.samples
+        return max(tick + steps, self.samples[-1][0]) if is_bounded else tick + steps
+
+    def add(self, tick: int, sample: Sample) -> int:
+        """Add a sample measured at `tick`; return the tick at which it arrives."""
+        arrival = self.arrival(tick, sample.index)
+        if self._keeps_order:
+            self.samples.append((arrival, sample))
+        else:
+            self.samples.insert(bisect.bisect_right(self.samples, arrival, key=lambda row: row[0]), (arrival, sample))
+        return arrival
 
     def arrived(self, tick: int) -> list[Sample]:
         """Remove and return the samples that have arrived by `tick`."""

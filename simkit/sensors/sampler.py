@@ -15,6 +15,7 @@ from simkit.runtime import Publisher, Simulation
 from simkit.runtime.communication.subscription import LazyMessage, PendingWork
 from simkit.runtime.engine.physics_state import HeldState
 from simkit.runtime.engine.scheduler import Timetable
+from simkit.sensors.artefacts import Artefact, MessageArtefact
 from simkit.sensors.noise import NoiseKeeper
 from simkit.sensors.sample import Batch, Memory, Product, Reading, Sample
 from simkit.sensors.sample_packing import SampleGroup
@@ -59,6 +60,16 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         self._selects_ticks, self._selects_products_of_sample = self._overrides("accepts"), self._overrides("publishes")
         self._evolves = self._overrides("evolve")
         self._is_on: Callable[[], bool] = lambda: True
+        self._set_artefacts(())
+
+    def _set_artefacts(self, artefacts: Sequence[Artefact]) -> None:
+        """Set the artefacts, in the order in which they apply."""
+        self.artefacts: tuple[Artefact, ...] = tuple(artefacts)
+        self._before_noise = tuple(artefact for artefact in artefacts if artefact.order < 0)
+        self._after_noise = tuple(artefact for artefact in artefacts if artefact.order >= 0)
+        self._message_artefacts = tuple(a for a in artefacts if isinstance(a, MessageArtefact))
+        # each of these samples is taken at its time, whether or not it has a reader
+        self._needs_each_sample = bool(self._message_artefacts) or any(a.follows_truth for a in artefacts)
 
     def sample_only_while(self, is_on: Callable[[], bool]) -> None:
         """Sample at due times only while `is_on()` returns true; a sensor without power has no samples."""
@@ -182,7 +193,8 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
             self._held = tick, sim.engine.physics.hold()
             return
         # every reader needs its message at once: a batch makes the messages of its sensors together
-        if self._is_served and self.batch is not None and self.batch.publish_sample(self, tick):
+        is_batched = self._is_served and not self.artefacts
+        if is_batched and self.batch is not None and self.batch.publish_sample(self, tick):
             return
         if self._group is not None:  # no reader needs its message at once: many samples become messages together
             packed = self._group.add(tick, self._capture_now(tick))
@@ -195,6 +207,8 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
                 self._process_pending()
             return
         sample, read_publishers = self._begin_sample(tick), self._read_publishers
+        if self._message_artefacts and self._loses(sample):
+            return
         if self._is_read:
             # the noise and the message can wait, but the data change with the next step
             sample.raw = self._capture_now(tick)
@@ -203,9 +217,13 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         else:
             sample.held = sim.engine.physics.hold()
         if self._delayed is not None:
-            self._delayed.samples.append((self._delayed.arrival(tick, sample.index), sample))
+            arrival = self._delayed.add(tick, sample)
+            if self._message_artefacts:
+                self._stamp(sample, arrival)
             self._deliver(self._delayed, tick)
             return
+        if self._message_artefacts:
+            self._stamp(sample, tick)
         self._sample = sample
         if read_publishers:
             self._publish(sample, read_publishers)
@@ -270,6 +288,18 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
             sample.noise_states = tuple([noise.state for noise in self._evolving])
         return sample
 
+    def _loses(self, sample: Sample) -> bool:
+        """Check whether the message of the newest sample is lost."""
+        return any(artefact.is_lost(sample.index) for artefact in self._message_artefacts)
+
+    def _stamp(self, sample: Sample, arrival: int) -> None:
+        """Set the time stamp of a sample that arrives at the tick `arrival`."""
+        arrived_ns, stamp_ns = self.sim.engine.clock.time_ns(arrival), sample.time_ns
+        for artefact in self._message_artefacts:
+            stamp_ns = artefact.stamp(stamp_ns, arrived_ns)
+        if stamp_ns != sample.time_ns:
+            sample.stamp_ns = stamp_ns
+
     def _capture_now(self, tick: int) -> object:
         """Capture the state of this tick, from the batch if the sensor belongs to one."""
         batch = self.batch
@@ -294,14 +324,20 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         publishers = [publisher for _, publisher, _ in self._read_publishers]
         self._is_served = bool(publishers) and all(publisher.is_live for publisher in publishers)
         patience = [publisher.patience for publisher in publishers]
-        is_plain = self._delayed is None and not (self._selects_ticks or self._selects_products_of_sample)
+        selects = self._selects_ticks or self._selects_products_of_sample
+        is_plain = self._delayed is None and not (selects or self._needs_each_sample)
         self._gathers = self.gathers and self.is_deferred and is_plain and self._is_read and all(patience)
         changes = self._evolves or self._evolving or self._overrides("_begin_sample")
         # a drifting noise advances at every sample, and a delayed sample is delivered later, so neither is skipped
-        self._is_unread = not (self._read_publishers or changes or self._delayed)
+        self._is_unread = not (self._read_publishers or changes or self._delayed or self._needs_each_sample)
         self._patience = max(patience, default=0.0)
         is_packed = is_plain and self.is_deferred and not changes and self._overrides("pack_samples")
-        is_packed = is_packed and self._is_read and not any(publisher.is_live for publisher in publishers)
+        is_packed = (
+            is_packed
+            and self._is_read
+            and not self.artefacts
+            and not any(publisher.is_live for publisher in publishers)
+        )
         self._group = SampleGroup(self, next(iter(self._products))) if is_packed else None
 
     def _process_pending(self) -> None:
@@ -406,21 +442,34 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         if sample.raw is not None:
             sample.truth = truth = self.finish(sample.raw)
             if sample.noise_states:
-                sample.noisy = self._with_noise_of(sample, self.perturb, truth, sample.index)
+                sample.noisy = self._with_noise_of(sample, self._with_errors, truth, sample.index)
             else:
-                sample.noisy = self.perturb(truth, sample.index)
+                sample.noisy = self._with_errors(truth, sample.index)
             sample.raw = sample.surroundings = None  # the reading replaces the captured values, such as an image
+
+    def _with_errors(self, truth: Reading, index: int) -> object:
+        """Return the reading with the noise and the artefacts of a sample."""
+        if not self.artefacts:
+            return self.perturb(truth, index)
+        reading = truth
+        for artefact in self._before_noise:
+            reading = artefact.apply(reading, truth, index)
+        reading = self.perturb(reading, index)
+        for artefact in self._after_noise:
+            reading = artefact.apply(reading, truth, index)
+        return reading
 
     def _message(self, sample: Sample, product: str) -> Message:
         message = sample.messages.get(product)
         if message is None:
             if self._products[product].needs_reading:
                 self._finish_sample(sample)
-            message = sample.messages[product] = self._make_message(sample, product, sample.noisy)
+            stamp_ns = sample.time_ns if sample.stamp_ns is None else sample.stamp_ns
+            message = sample.messages[product] = self._make_message(sample, product, sample.noisy, stamp_ns)
         return message
 
-    def _make_message(self, sample: Sample, product: str, reading: Reading) -> object:
+    def _make_message(self, sample: Sample, product: str, reading: Reading, stamp_ns: int) -> object:
         make = self._products[product].make
         if sample.noise_states:
-            return self._with_noise_of(sample, make, reading, sample.time_ns)
-        return make(reading, sample.time_ns)
+            return self._with_noise_of(sample, make, reading, stamp_ns)
+        return make(reading, stamp_ns)

@@ -17,6 +17,7 @@ from simkit.scene import (
     Material,
     Mesh,
     Mimic,
+    Optics,
     SceneCollision,
     SceneLight,
     ScenePlugin,
@@ -84,8 +85,12 @@ def _mesh(shape: Mesh, uri_of: UriOf) -> Params:
 
 def collision(value: SceneCollision, uri_of: UriOf) -> Params:
     """Return `<collision>`."""
-    shape, retro = geometry(value.geometry, uri_of), changed_elements(value, "laser_retro")
-    return element("collision", [pose(value.pose_link), shape, surface(value.surface), *retro], name=value.name)
+    shape, light = geometry(value.geometry, uri_of), [*changed_elements(value, "laser_retro"), *_optics(value.optics)]
+    return element("collision", [pose(value.pose_link), shape, surface(value.surface), *light], name=value.name)
+
+
+def _optics(value: Optics) -> list[Params]:
+    return changed_elements(value, "reflectivity", "transmittance", "specularity")
 
 
 def _direction(value: Surface) -> Params | None:
@@ -142,6 +147,7 @@ def visual(value: SceneVisual, uri_of: UriOf) -> Params:
         *changed_elements(value, "transparency", "cast_shadows"),
         flags,
         *changed_elements(value, "laser_retro"),
+        *_optics(value.optics),
         *(_visual_plugin(plugin(p), p.where.file, uri_of) for p in value.plugins),
     ]
     return element("visual", children, name=value.name)

@@ -82,6 +82,13 @@ def scenarios(ctx: typer.Context) -> Iterable[str]:
     return _worlds_and_files(ctx, _WORLD_SUFFIXES + _SCENARIO_SUFFIXES)
 
 
+def realism(ctx: typer.Context) -> Iterable[str]:
+    """Return the words, sets and files of `--realism`."""
+    from simkit.sensors.realism import IDEAL_OR_DATASHEET, realism_sets
+
+    return [*IDEAL_OR_DATASHEET, *realism_sets(), *_files(incomplete_word(ctx), (".yaml", ".yml"))]
+
+
 def _worlds_and_files(ctx: typer.Context, suffixes: tuple[str, ...]) -> list[str]:
     from simkit.loaders.resources.bundled_models import bundled_names
 

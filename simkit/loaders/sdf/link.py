@@ -12,6 +12,7 @@ from simkit.loaders.sdf.inertial import read_fluid_added_mass, read_inertial
 from simkit.loaders.sdf.light import read_lights
 from simkit.loaders.sdf.load_context import NamedElement, Workspace
 from simkit.loaders.sdf.material import read_material, read_transparency
+from simkit.loaders.sdf.optics import read_optics
 from simkit.loaders.sdf.plugin import read_particle_emitters, read_plugins
 from simkit.loaders.sdf.sensor import read_sensors
 from simkit.loaders.sdf.surface import read_surface
@@ -89,6 +90,7 @@ def _collision(
         surface=surface,
         laser_retro=element.number("laser_retro", 0.0),
         where=element.where,
+        optics=read_optics(element),
     )
     return collision, density
 
@@ -136,4 +138,5 @@ def _visual(part: NamedElement, element: Params, name: str, link: str, workspace
         laser_retro=element.number("laser_retro", 0.0),
         where=element.where,
         plugins=read_plugins(element.all("plugin"), scoped(link, name)),
+        optics=read_optics(element),
     )

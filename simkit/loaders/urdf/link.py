@@ -8,6 +8,7 @@ from dataclasses import replace
 from simkit.loaders.sdf.inertial import MOMENT_NAMES, rotated_moments
 from simkit.loaders.sdf.light import read_lights
 from simkit.loaders.sdf.material import read_transparency
+from simkit.loaders.sdf.optics import read_optics
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.loaders.sdf.sensor import read_sensors
 from simkit.loaders.sdf.surface import read_surface
@@ -19,7 +20,7 @@ from simkit.loaders.urdf.geometry import read_geometry
 from simkit.loaders.urdf.material import Materials, extended_material
 from simkit.loaders.urdf.robot_draft import RobotDraft
 from simkit.params import Params
-from simkit.scene import Inertial, SceneCollision, SceneLink, SceneSensor, SceneVisual, Surface
+from simkit.scene import NO_OPTICS, Inertial, SceneCollision, SceneLink, SceneSensor, SceneVisual, Surface
 from simkit.scene.geometry import vec3
 
 HEAVIEST = 1e15  # [kg] and [kg·m²]; products of larger numbers overflow
@@ -138,6 +139,9 @@ def unique_names(elements: list[Params], link: str, kind: str) -> list[str]:
 def _collisions(draft: RobotDraft, link: str, element: Params, extension: Params) -> tuple[SceneCollision, ...]:
     elements = element.all("collision")
     surface, retro = _surface(extension), read_number(extension, "laserRetro") or 0.0
+    optics = NO_OPTICS
+    for block in extension.all("collision"):
+        optics = read_optics(block, optics)
     collisions = []
     for name, collision in zip(unique_names(elements, link, "collision"), elements, strict=True):
         shape = read_geometry(collision, draft, f"collision {name!r} of link {link!r}")
@@ -145,7 +149,8 @@ def _collisions(draft: RobotDraft, link: str, element: Params, extension: Params
         collision.attribute("group")
         if shape is not None:
             collision_name = draft.own(link, name)
-            collisions.append(SceneCollision(name, collision_name, pose, shape, surface, retro, collision.where))
+            shared = surface, retro, collision.where, optics
+            collisions.append(SceneCollision(name, collision_name, pose, shape, *shared))
     return tuple(collisions)
 
 
@@ -194,6 +199,7 @@ def _visuals(
                 visibility_flags=block.integer("visibility_flags", scene_visual.visibility_flags) & 0xFFFFFFFF,
                 laser_retro=block.number("laser_retro", scene_visual.laser_retro),
                 plugins=(*scene_visual.plugins, *read_plugins(block.all("plugin"), scene_visual.scoped)),
+                optics=read_optics(block, scene_visual.optics),
             )
         visuals.append(scene_visual)
     return tuple(visuals)

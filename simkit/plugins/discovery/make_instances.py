@@ -130,7 +130,7 @@ class InstanceMaker:
                 if sensor is None:
                     continue
                 if diagnostics.error_count == faults:
-                    sensor.build(self._builder)
+                    sensor.build_with_artefacts(self._builder)
             if diagnostics.error_count == faults:
                 parts.sensors.append(sensor)
             owner = scene.parent.rpartition("::")[0]

@@ -19,6 +19,7 @@ class DepthCamera(RgbdCamera):
     """Depth camera: depth images, and point clouds in shades of grey, in which near points are bright."""
 
     kinds = ("depth_camera", "depth")
+    artefact_families = ("depth",)
 
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
         super().__init__(scene, diagnostics)

@@ -82,6 +82,7 @@ class RgbdCamera(RenderedCamera):
     """
 
     kinds: ClassVar[tuple[str, ...]] = ("rgbd_camera",)
+    artefact_families: ClassVar[tuple[str, ...]] = ("depth", "colour")
     has_depth = True
 
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:

@@ -119,7 +119,7 @@ class Encoder(Sensor):
         self._history: CountHistory | None = None
         if options.from_counts:
             # registered after the noise, because a sample's noise must be known before the sample's position is read
-            self._history = self._register_noise(CountHistory(self, round(options.window * 1e9)))
+            self._history = self.register_noise(CountHistory(self, round(options.window * 1e9)))
 
     def bind(self, compiled: Compiled) -> None:
         super().bind(compiled)

@@ -65,6 +65,7 @@ class NavSat(Sensor):
     """
 
     kinds = ("navsat", "gps")
+    artefact_families = ("navsat",)
     example = "<navsat/>"
     sees_scene = False
     options: NavSatOptions

@@ -147,6 +147,7 @@ class Imu(ImuMeasurement):
     """IMU, `imu`: specific force, angular rate and attitude."""
 
     kinds = ("imu",)
+    artefact_families = ("imu",)
     example = "<imu/>"
     sees_scene = False
     _template_of: tuple[list[Vector], str] = ([], "")

@@ -25,9 +25,13 @@ SENSOR_KINDS: Mapping[str, tuple[str, ...]] = {
 }
 """Sensor types that share a block, by kind; a kind that is not listed has one type of the same name."""
 
+TIMING_ELEMENTS: Final = ("jitter", "latency", "latency_jitter", "phase", "sweep")
+"""Elements of the core that a `<sensor>` of any kind may have beside its block, except its rate."""
+
 _FOLDER: Final = Path(__file__).parent / "data"
 _AXES: Final = ("xyz", "xy")
 _BLOCKS = {"depth_camera": "camera", "rgbd_camera": "camera"}
+_LONGEST_LIST: Final = 6  # numbers of a list that a description shows
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +43,8 @@ class Preset:
         kind: kind of sensor; `lidar` includes `ray`, `gpu_lidar` and `gpu_ray`.
         maker: manufacturer or vendor.
         source: data sheet, its revision if known, and the place of the numbers in it.
-        settings: elements of the sensor, in SI units.
+        settings: elements of the sensor, in SI units: its block, and elements beside the block such as `latency` and
+            artefacts.
         rate: samples per second [Hz]; 0 if the data sheet leaves the rate to the user.
         aliases: other names of the same device.
         remark: properties that the numbers omit, or the derivation of a number from a published one.
@@ -64,12 +69,22 @@ class Preset:
     @property
     def block(self) -> str:
         """Name of the element that contains the settings."""
-        return _BLOCKS.get(self.kind, self.kind)
+        return block_of(self.kind)
 
     @property
     def elements(self) -> Settings:
         """All elements: the settings, and the rate if the preset has one."""
         return {"update_rate": self.rate, **self.settings} if self.rate else self.settings
+
+    @property
+    def beside(self) -> Settings:
+        """Elements beside the sensor's block: its sweep, its latency and its artefacts."""
+        return {name: value for name, value in self.settings.items() if name != self.block}
+
+
+def block_of(kind: str) -> str:
+    """Return the name of the element that contains the settings of a kind."""
+    return _BLOCKS.get(kind, kind)
 
 
 def load_presets() -> Iterator[Preset]:
@@ -111,16 +126,20 @@ def _outline_items(settings: Settings) -> list[str]:
     listed = {name: value for name, value in settings.items() if not str(value).startswith("gaussian")} or settings
     for name, value in listed.items():
         if isinstance(value, Mapping):
-            children = _outline_items(value)
-            text = f" ({', '.join(children)})" if len(children) > 1 else f" {children[0]}"
+            children = _outline_items(value) or [""]
+            text = f" ({', '.join(children)})" if len(children) > 1 else f" {children[0]}".rstrip()
             names.setdefault(text, []).append(name)
+        elif isinstance(value, list) and len(value) > _LONGEST_LIST:
+            names[f"{name} of {len(value)} values"] = []
         else:
             names[f"{name} {format_value(value)}".removeprefix("@")] = []
     return ["/".join(merged_names) + text for text, merged_names in names.items()]
 
 
 def format_value(value: object) -> str:
-    """Return a value as it is written in a file: a number with all its digits, `true` or `false`."""
+    """Return a value as it is written in a file: a number with all its digits, `true` or `false`, a list in a row."""
+    if isinstance(value, list):
+        return " ".join(map(format_value, value))
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, float):

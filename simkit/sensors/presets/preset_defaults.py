@@ -8,8 +8,10 @@ from dataclasses import replace
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.params import Params
 from simkit.scene import SceneSensor
+from simkit.scene.overrides import SOURCE_PREFIX
+from simkit.sensors.artefacts import artefact_elements
 from simkit.sensors.presets import find, normalise_name, presets
-from simkit.sensors.presets.preset import Preset, Settings, format_value, outline
+from simkit.sensors.presets.preset import TIMING_ELEMENTS, Preset, Settings, format_value, outline
 
 _OLD_BLOCKS = {"lidar": "ray", "navsat": "gps"}
 """Older spellings of blocks: a preset's block is merged into the block that the file has."""
@@ -43,15 +45,40 @@ def add_preset_defaults(sensor: SceneSensor, diagnostics: Diagnostics) -> SceneS
     if preset is None:
         return sensor
     added: dict[str, object] = {}
-    params = _Merge(element.where, sensor.params.diagnostics).merged(sensor.params, preset.elements, added)
+    elements, missing = _usable_elements(sensor, preset)
+    params = _Merge(element.where, sensor.params.diagnostics).merged(sensor.params, elements, added)
     for child in ("preset", "update_rate"):
         params.child(child)
     text = outline(added) or "nothing, because the file sets everything itself"
     diagnostics.note(
         "SK-SENSOR-092", f"sensor {sensor.scoped!r}: preset {preset.name} gives {text}", element.where, preset.source
     )
+    if missing:
+        names = ", ".join(f"<{name}>" for name in missing)
+        message = f"sensor {sensor.scoped!r}: preset {preset.name} also has {names}, which no installed pack provides"
+        diagnostics.note("SK-SENSOR-265", message, element.where, "install simkit with its pack 'realism'")
     rate = preset.rate if "update_rate" in added else sensor.rate
     return replace(sensor, params=params, rate=rate)
+
+
+def _usable_elements(sensor: SceneSensor, preset: Preset) -> tuple[Settings, list[str]]:
+    """Return the elements of a preset that a sensor lacks, and the names of those that no installed pack provides.
+
+    An element beside the block is added as a whole: an element of the file replaces it with all its children. A value
+    of `--set` replaces one of them.
+    """
+    elements: dict[str, object] = {}
+    missing: list[str] = []
+    for name, value in preset.elements.items():
+        if name in preset.beside:
+            own = next((child for child in sensor.params.children if child.name == name), None)
+            if own is not None and not (own.where.file or "").startswith(SOURCE_PREFIX):
+                continue
+            if name not in TIMING_ELEMENTS and name not in artefact_elements():
+                missing.append(name)
+                continue
+        elements[name] = value
+    return elements, missing
 
 
 def _find_preset(sensor: SceneSensor, element: Params, diagnostics: Diagnostics) -> Preset | None:
@@ -93,7 +120,10 @@ class _Merge:
                     attributes[name[1:]] = added[name] = str(value)
                 continue
             index = _find_child_index(children, name)
-            if isinstance(value, Mapping):
+            if isinstance(value, list) and value and isinstance(value[0], Mapping):
+                children += [self.merged(self._element(name), item, {}) for item in value]
+                added[name] = value
+            elif isinstance(value, Mapping):
                 added_below: dict[str, object] = {}
                 child = children[index] if index is not None else self._element(name)
                 block = self.merged(child, value, added_below)

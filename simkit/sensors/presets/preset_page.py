@@ -25,13 +25,14 @@ def presets_page() -> str:
 
 def _section(kind: str, title: str) -> Iterator[str]:
     yield f"## {title}\n"
-    yield "| preset | Hz | gives | source, remarks |"
-    yield "|---|---|---|---|"
+    yield "| preset | Hz | gives | losses, sweep, timing | source, remarks |"
+    yield "|---|---|---|---|---|"
     for preset in presets():
         if preset.kind == kind:
-            (block,) = preset.settings.values()
             rate = f"{preset.rate:g}" if preset.rate else ""
-            yield f"| {_names(preset)} | {rate} | `{outline(block)}` | {_source(preset)} |"
+            beside = f"`{outline(preset.beside)}`" if preset.beside else ""
+            block = f"`{outline(preset.settings[preset.block])}`"
+            yield f"| {_names(preset)} | {rate} | {block} | {beside} | {_source(preset)} |"
 
 
 def _names(preset: Preset) -> str:

@@ -36,6 +36,7 @@ class Lidar(LidarMeasurement):
     """
 
     kinds = ("lidar", "ray", "gpu_lidar", "gpu_ray")
+    artefact_families = ("lidar",)
     example = "<lidar><range><min>0.1</min><max>10</max></range></lidar>"
     min_intensity = 0.0
     cloud_range = (0.0, math.inf)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +13,10 @@ import pytest
 from sensor_worlds import box, cloud, sensor, world
 
 import simkit
+from simkit.diagnostics import NOWHERE, Diagnostics
 from simkit.params import Params
 from simkit.sensors import sensor_kinds
-from simkit.sensors.presets import Preset, find, presets
+from simkit.sensors.presets import Preset, find, preset_defaults, presets
 from simkit.sensors.presets.preset import outline
 from simkit.sensors.presets.preset_page import describe_preset, presets_page
 
@@ -76,12 +78,12 @@ def test_every_preset_loads_with_only_its_note_and_reads(preset: Preset) -> None
 @pytest.mark.parametrize("preset", presets(), ids=lambda p: f"{p.kind}-{p.name}")
 def test_a_preset_is_complete(preset: Preset) -> None:
     assert preset.maker and len(preset.source) > 15
-    (block,) = preset.settings
-    assert block == preset.block
+    assert preset.block in preset.settings
     for path, value in leaves(preset.elements):
-        assert isinstance(value, (int, float, bool, str)), path
-        if isinstance(value, float):
-            assert math.isfinite(value)
+        for item in value if isinstance(value, list) else [value]:
+            assert isinstance(item, (int, float, bool, str)), path
+            if isinstance(item, float):
+                assert math.isfinite(item)
     for name in (preset.name, *preset.aliases):
         assert find(name.lower().replace("-", " "))[preset.kind] is preset
 
@@ -246,6 +248,50 @@ def test_a_preset_can_be_chosen_on_the_command_line() -> None:
     with simkit.load(world(lidar), overrides=["m::l::s.preset=LDS-02", "m::l::s.lidar.range.min=0.3"]) as sim:
         o = sim.sensor("m::l::s").options
         assert (o.range_min, o.range_max, sim.sensor("m::l::s").update_rate) == (0.3, 8.0, 7.0)
+
+
+def preset_with(monkeypatch: pytest.MonkeyPatch, **beside: Any) -> None:
+    """Give LDS-01 these elements beside its block, and no others."""
+    device = find("LDS-01")["lidar"]
+    settings = {"lidar": device.settings["lidar"], **beside}
+    changed = replace(device, settings=settings)
+    monkeypatch.setattr(preset_defaults, "find", lambda name: {"lidar": changed})
+
+
+def test_a_preset_sets_elements_beside_the_block(monkeypatch: pytest.MonkeyPatch) -> None:
+    preset_with(monkeypatch, latency=0.05, dropout={"probability": 1.0})
+    with load(world(named("LDS-01", "lidar"), others=box("b", "2 0 0 0 0 0", "1 40 4"))) as sim:
+        device = sim.sensor("m::l::s")
+        assert device.timing.latency == 0.05
+        (note,) = [d for d in sim.diagnostics if d.code == "SK-SENSOR-092"]
+        assert "latency 0.05, dropout probability 1" in note.message
+        sim.run(0.5)
+        assert np.isinf(device.latest.ranges).all()
+        assert np.isfinite(device.truth.ranges).any()
+
+
+def test_an_element_of_the_file_beside_the_block_replaces_the_presets(monkeypatch: pytest.MonkeyPatch) -> None:
+    preset_with(monkeypatch, dropout={"probability": 1.0})
+    own = named("LDS-01", "lidar", "<dropout/>")
+    with load(world(own, others=box("b", "2 0 0 0 0 0", "1 40 4"))) as sim:
+        sim.run(0.5)
+        assert np.isfinite(sim.sensor("m::l::s").latest.ranges).any()
+
+
+def test_without_its_pack_an_element_is_left_out_with_a_note(monkeypatch: pytest.MonkeyPatch) -> None:
+    preset_with(monkeypatch, latency=0.05, element_of_a_pack={"probability": 0.5})
+    with load(world(named("LDS-01", "lidar"))) as sim:
+        assert sim.sensor("m::l::s").timing.latency == 0.05
+        (note,) = [d for d in sim.diagnostics if d.code == "SK-SENSOR-265"]
+        assert "<element_of_a_pack>" in note.message
+        assert [d for d in sim.diagnostics if d.severity == "warning"] == []
+
+
+def test_a_list_is_a_row_and_a_list_of_tables_is_repeated_elements() -> None:
+    merge = preset_defaults._Merge(NOWHERE, Diagnostics())
+    params = merge.merged(Params("sensor"), {"gaps": {"frames": [1, 2.5]}, "zone": [{"near": 1}, {"near": 2}]}, {})
+    assert params.block("gaps").block("frames").value == "1 2.5"
+    assert [zone.number("near") for zone in params.all("zone")] == [1, 2]
 
 
 def test_a_spawned_robot_has_its_preset() -> None:
