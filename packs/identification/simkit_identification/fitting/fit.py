@@ -30,13 +30,14 @@ from simkit_identification.fitting.codes import (
 )
 from simkit_identification.fitting.derivatives import Differences, choose_differences, derivatives
 from simkit_identification.fitting.evaluation import Evaluator
+from simkit_identification.fitting.fitted_values import ComparedTopic, FitCurve, FittedParameter
 from simkit_identification.fitting.motion import Motion
 from simkit_identification.fitting.noise_level import NoiseLevel, estimate_noise
 from simkit_identification.fitting.parameters import Parameter, Vary, read_parameters_to_vary, without_noise
 from simkit_identification.fitting.problem import Recording, fit_problem
 from simkit_identification.fitting.recordings import Bag, read_recordings
 from simkit_identification.fitting.residuals import Residuals
-from simkit_identification.fitting.result import ComparedTopic, FitCurve, FitResult, FittedParameter
+from simkit_identification.fitting.result import FitResult
 from simkit_identification.fitting.search import (
     METHODS,
     Found,

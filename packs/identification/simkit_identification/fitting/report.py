@@ -2,23 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from simkit.recording.charts.chart import Chart, Style, check_suffix, render_chart
 from simkit.recording.charts.page_chart import PageChart, page_chart_svg
 from simkit.recording.charts.series import Series
 from simkit.writers.atomic_output import write_atomically
-from simkit_identification.fitting.result import FitCurve, FitResult, interval_text
+from simkit_identification.fitting.fitted_values import FitCurve, interval_text
+from simkit_identification.fitting.validation import Fold
 
 _TEMPLATE: Final = Path(__file__).with_name("report.html.j2")
 _MOST_PANELS: Final = 3
 _MOST_CHARTS: Final = 24
 
 
-def write_page(result: FitResult, target: Path) -> Path:
+def write_page(title: str, contents: Mapping[str, Any], overrides: Sequence[str], target: Path) -> Path:
     """Write the page of a fit; return its path.
+
+    Args:
+        title: name of the world.
+        contents: attributes of the result by name.
+        overrides: fitted values, `PATH=VALUE`.
+        target: page to write.
 
     Raises:
         InputError: SK-CLI-016 the page cannot be written.
@@ -27,12 +34,13 @@ def write_page(result: FitResult, target: Path) -> Path:
 
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     environment.filters.update(number=lambda value: f"{value:.6g}", percent=_percent, interval=interval_text)
-    charts = [page_chart_svg(chart) for curve in result.curves[:_MOST_CHARTS] for chart in _page_charts(curve)]
+    curves: Sequence[FitCurve] = contents["curves"]
+    folds: Sequence[Fold] = contents["folds"]
     page = environment.from_string(_TEMPLATE.read_text("utf-8")).render(
-        title=result.run.title, result=result, charts=charts, overrides=result.overrides,
-        hidden=max(0, len(result.curves) - _MOST_CHARTS),
-        folds=[(f.name, list(f.values.values()), f.error / max(f.own_error, 1e-300)) for f in result.folds],
-        searched=list(result.folds[0].values) if result.folds else [],
+        title=title, result=contents, overrides=overrides, hidden=max(0, len(curves) - _MOST_CHARTS),
+        charts=[page_chart_svg(chart) for curve in curves[:_MOST_CHARTS] for chart in _page_charts(curve)],
+        folds=[(f.name, list(f.values.values()), f.error / max(f.own_error, 1e-300)) for f in folds],
+        searched=list(folds[0].values) if folds else [],
     )  # fmt: skip
     write_atomically(target, page.encode("utf-8"))
     return target
@@ -56,8 +64,13 @@ def _page_charts(curve: FitCurve) -> list[PageChart]:
     ]
 
 
-def write_chart(result: FitResult, target: Path) -> Path:
+def write_chart(title: str, curves: Sequence[FitCurve], target: Path) -> Path:
     """Write a chart of the columns that improve most.
+
+    Args:
+        title: name of the world.
+        curves: columns.
+        target: chart to write.
 
     Raises:
         InputError: SK-BAG-012 another ending; SK-CLI-016 the chart cannot be written.
@@ -65,13 +78,13 @@ def write_chart(result: FitResult, target: Path) -> Path:
     check_suffix(target.name)
     series: list[Series] = []
     styles: list[Style] = []
-    for curve in _different(result.curves):
+    for curve in _different(curves):
         unit = curve.label.partition(".")[2]  # lines with the same unit share a panel
         lines = (("recorded", curve.recorded), ("first values", curve.before), ("fitted values", curve.after))
         for colour, (name, values) in enumerate(lines):
             series.append(Series(f"{curve.label}, {name}", unit, times=curve.times, values=values))
             styles.append(Style(colour, colour))
-    chart = Chart(series, styles, title=f"{result.run.title}: recorded, before and after the fit")
+    chart = Chart(series, styles, title=f"{title}: recorded, before and after the fit")
     write_atomically(target, render_chart(chart, target.suffix.lower()))
     return target
 

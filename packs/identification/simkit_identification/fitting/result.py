@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 import shlex
 from collections.abc import Sequence
@@ -17,74 +16,12 @@ from simkit import RunSpec
 from simkit.diagnostics import Diagnostic
 from simkit.scene.overrides import override_texts
 from simkit.writers.atomic_output import write_atomically
+from simkit_identification.fitting.fitted_values import ComparedTopic, FitCurve, FittedParameter, interval_text
 from simkit_identification.fitting.problem import Recording
+from simkit_identification.fitting.report import write_chart, write_page
 from simkit_identification.fitting.validation import Fold
 
 Floats = npt.NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class FittedParameter:
-    """Parameter with its result.
-
-    Attributes:
-        path: path of `--set`.
-        start: first value.
-        value: fitted value.
-        low, high: ends of its 95 % interval.
-        unit: SI unit; empty if unknown.
-        effective: effective number of readings that the interval is based on.
-        is_followed: True if the interval follows the cost, because the quadratic form is poor.
-    """
-
-    path: str
-    start: float
-    value: float
-    low: float
-    high: float
-    unit: str = ""
-    effective: float = 0.0
-    is_followed: bool = False
-
-
-@dataclass(frozen=True)
-class ComparedTopic:
-    """Topic of a recording that was compared, or the reason why it was not.
-
-    Attributes:
-        topic: topic.
-        readings: number of compared readings.
-        before, after: root mean square residual over the variation of the readings, with the first and the fitted
-            values, as a mean over the columns.
-        note: reason why the topic tells nothing; empty if it was compared.
-    """
-
-    topic: str
-    readings: int = 0
-    before: float = float("nan")
-    after: float = float("nan")
-    note: str = ""
-
-
-@dataclass(frozen=True)
-class FitCurve:
-    """Readings of one column for a plot.
-
-    Attributes:
-        label: topic and column.
-        recording: name of the recording.
-        times: times [s].
-        recorded, before, after: recorded numbers, and those of runs with the first and the fitted values.
-        deviation: standard deviation of the residuals.
-    """
-
-    label: str
-    recording: str
-    times: Floats
-    recorded: Floats
-    before: Floats
-    after: Floats
-    deviation: float
 
 
 @dataclass(frozen=True)
@@ -184,9 +121,7 @@ class FitResult:
         Raises:
             InputError: SK-CLI-016 the page cannot be written.
         """
-        from simkit_identification.fitting.report import write_page
-
-        return write_page(self, Path(path))
+        return write_page(self.run.title, vars(self), self.overrides, Path(path))
 
     def plot(self, path: str | Path) -> Path:
         """Write a chart (.png or .svg) of the readings before and after.
@@ -194,9 +129,7 @@ class FitResult:
         Raises:
             InputError: SK-BAG-012 another ending; SK-CLI-016 the chart cannot be written.
         """
-        from simkit_identification.fitting.report import write_chart
-
-        return write_chart(self, Path(path))
+        return write_chart(self.run.title, self.curves, Path(path))
 
     def as_dict(self) -> dict[str, Any]:
         """Return the result as plain data for JSON."""
@@ -269,13 +202,6 @@ def _relative(path: Path, folder: Path) -> str:
 
 def _finite(value: float) -> float | None:
     return value if np.isfinite(value) else None
-
-
-def interval_text(parameter: FittedParameter) -> str:
-    """Return the ends of an interval with as many digits as tell them apart."""
-    size, width = abs(parameter.value), parameter.high - parameter.low
-    digits = 6 if not width > 0 or size == 0 else int(min(max(math.ceil(math.log10(size / width)) + 3, 4), 12))
-    return f"{parameter.low:.{digits}g} to {parameter.high:.{digits}g}"
 
 
 def _percent(share: float) -> str:
