@@ -334,7 +334,7 @@ OWN = """<sdf version="1.9"><world name="w"><gazebo_quirks>1</gazebo_quirks>
   <random_walk>0.3</random_walk><correlation_time>4</correlation_time></noise></x></angular_velocity></imu></sensor>
 <sensor name="sonar" type="sonar"><sonar><axis>1 0 0</axis><noise type="gaussian"><stddev>0.1</stddev></noise></sonar>
 </sensor><sensor name="field" type="magnetometer"><magnetometer><date>2026.5</date></magnetometer></sensor>
-<sensor name="lds" type="ray"><preset>LDS-01</preset>
+<sensor name="lds" type="ray"><preset>LDS-01</preset><sweep>true</sweep>
   <dropout><probability>0.1</probability></dropout></sensor>
 <sensor name="eye" type="depth_camera"><camera><image><width>8</width><height>6</height></image>
   <disparity_noise><baseline>0.05</baseline><stddev>0.1</stddev></disparity_noise></camera>
