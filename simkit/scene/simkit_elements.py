@@ -23,7 +23,7 @@ OWN_ELEMENTS: Final[Mapping[str, frozenset[str]]] = MappingProxyType(
         "sensor": frozenset(
             {"dropout", "encoder", "jitter", "latency", "latency_jitter", "phase", "preset", "set_rate_topic", "solar"}
             | {"depth_error", "depth_holes", "flying_pixels", "lost_depth", "multipath", "occlusion_shadow"}
-            | {"phase_wrap", "sweep"}
+            | {"phase_wrap", "point_layout", "scan_pattern", "sweep"}
             | {"bandwidth", "calibration_error", "clock", "gaps", "latency_histogram", "saturation"}
             | {"fix_types", "multipath", "outages"}
         ),

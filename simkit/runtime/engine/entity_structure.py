@@ -64,7 +64,7 @@ class AttachedSensor(Protocol):
     def truth(self) -> Message:
         """Newest message without noise; None before the first."""
 
-    def build(self, builder: SpecBuilder) -> None:
+    def build_with_artefacts(self, builder: SpecBuilder) -> None:
         """Add the elements that the sensor needs to the specification."""
 
     def attach(self, sim: Any) -> None:
