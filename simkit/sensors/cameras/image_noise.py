@@ -115,8 +115,8 @@ def _looks_up_words() -> bool:
     return int(cv2.__version__.split(".")[0]) >= 5
 
 
-def _look_up(table: npt.NDArray[np.generic], words: npt.NDArray[np.uint16], out: npt.NDArray[np.generic]) -> None:
-    """Set `out[...] = table[words]`; OpenCV 5 and newer are three times as fast as NumPy."""
+def look_up(table: npt.NDArray[np.generic], words: npt.NDArray[np.uint16], out: npt.NDArray[np.generic]) -> None:
+    """Set `out[...] = table[words]` for 65536 values; OpenCV 5 and newer are three times as fast as NumPy."""
     if _looks_up_words():
         import cv2
 
@@ -217,7 +217,7 @@ class ImageNoise:
         out = self._output_buffer(depths)
         for rows, words in self._strips("depth", index, depths.shape):
             part = out[rows]
-            _look_up(self._length_table, words, part)
+            look_up(self._length_table, words, part)
             np.add(part, depths[rows], out=part)
         return out
 
@@ -243,9 +243,9 @@ class _BrightnessChanges:
 
         count = len(words)
         up, down = (flat[:count] for flat in self._flat)
-        _look_up(self._steps[-1], words, down)
+        look_up(self._steps[-1], words, down)
         if len(self._steps) == 2:
-            _look_up(self._steps[0], words, up)
+            look_up(self._steps[0], words, up)
         else:
             middle = self._middle[:count]
             cv2.subtract(down, middle, up)

@@ -7,13 +7,15 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Iterator
 
 import cv2
 import numpy as np
 import numpy.typing as npt
 
 from simkit.runtime.engine.random_streams import RandomStream
-from simkit.sensors.cameras.image_noise import normal_table
+from simkit.sensors.cameras.image_noise import look_up, normal_table
+from simkit_realism.depth_images.image_buffers import new_image, strips
 
 Floats = npt.NDArray[np.float32]
 _UNIT = 4096.0  # integer that stands for one standard deviation
@@ -30,9 +32,19 @@ def random_key(stream: RandomStream, index: int) -> Key:
 
 def random_words(key: Key, shape: tuple[int, int]) -> npt.NDArray[np.uint16]:
     """Return uniform numbers of 16 bits for the pixels of one image."""
+    words = new_image(shape, np.uint16)
+    for rows, drawn in _word_strips(key, shape):
+        words[rows] = drawn
+    return words
+
+
+def _word_strips(key: Key, shape: tuple[int, int]) -> Iterator[tuple[slice, npt.NDArray[np.uint16]]]:
+    """Yield the rows of an image, strip by strip, with their random numbers."""
     bits = np.random.SFC64(np.random.SeedSequence(key))  # the fastest generator for many numbers
-    count = shape[0] * shape[1]
-    return bits.random_raw(-(-count // 4)).view(np.uint16)[:count].reshape(shape)
+    for rows in strips(shape):
+        height = rows.stop - rows.start
+        count = height * shape[1]
+        yield rows, bits.random_raw(-(-count // 4)).view(np.uint16)[:count].reshape(height, shape[1])
 
 
 @functools.cache
@@ -63,8 +75,10 @@ class NormalImages:
         first, part = divmod(index / self._samples, 1.0)
         angle = part * math.pi / 2
         before, after = self._kept(int(first), shape), self._kept(int(first) + 1, shape)
-        image = before * np.float32(math.cos(angle))
-        image += after * np.float32(math.sin(angle))
+        image = new_image(shape, np.float32)
+        np.multiply(before, np.float32(math.cos(angle)), out=image)
+        for rows in strips(shape):
+            image[rows] += after[rows] * np.float32(math.sin(angle))
         return image
 
     def _kept(self, number: int, shape: tuple[int, int]) -> Floats:
@@ -81,13 +95,15 @@ class NormalImages:
         """Draw an independent image."""
         window = self._window
         padded = shape[0] + window - 1, shape[1] + window - 1
-        words = random_words(key, padded)
-        normals = np.take(_integer_normals(), words)
+        normals = new_image(padded, np.int16)
+        for rows, words in _word_strips(key, padded):
+            look_up(_integer_normals(), words, normals[rows])
+        sums = normals
         if window > 1:
-            sums = cv2.boxFilter(normals, cv2.CV_32S, (window, window), anchor=(0, 0), normalize=False)
-            normals = sums[: shape[0], : shape[1]]
-        image = normals.astype(np.float32)
-        image *= np.float32(1.0 / (_UNIT * window))
+            sums = new_image(padded, np.int32)
+            cv2.boxFilter(normals, cv2.CV_32S, (window, window), sums, anchor=(0, 0), normalize=False)
+        image = new_image(shape, np.float32)
+        np.multiply(sums[: shape[0], : shape[1]], np.float32(1.0 / (_UNIT * window)), out=image, dtype=np.float32)
         return image
 
 
@@ -104,15 +120,3 @@ def threshold(probabilities: Floats) -> Floats:
     """Return the normal numbers below which the given shares of normal numbers lie."""
     found: Floats = np.take(_thresholds(), np.rint(probabilities * np.float32(65536.0)).astype(np.int32))
     return found
-
-
-def window_sums(image: npt.NDArray[np.int64], radius: int) -> npt.NDArray[np.int64]:
-    """Return the sums over squares of 2·radius + 1 pixels; beyond the edge, pixels repeat."""
-    sums = np.pad(image, radius, mode="edge")
-    side = 2 * radius + 1
-    for axis in (0, 1):
-        sums = np.cumsum(sums, axis=axis)
-        sums = np.concatenate((np.zeros_like(np.take(sums, [0], axis)), sums), axis=axis)
-        size = sums.shape[axis]
-        sums = np.take(sums, range(side, size), axis) - np.take(sums, range(size - side), axis)
-    return sums
