@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.elementary_functions import log, power
-from simkit.sensors.cameras.image_noise import look_up
+from simkit.sensors.cameras.random_pixels import look_up
 
 Depths = npt.NDArray[np.float32]
 _SHIFT = 12  # a table has 2048 entries for each doubling: steps of 0.05 %

@@ -7,14 +7,13 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterator
 
 import cv2
 import numpy as np
 import numpy.typing as npt
 
 from simkit.runtime.engine.random_streams import RandomStream
-from simkit.sensors.cameras.image_noise import look_up, normal_table
+from simkit.sensors.cameras.random_pixels import look_up, normal_table, word_source
 from simkit_realism.depth_images.image_buffers import new_image, strips
 
 Floats = npt.NDArray[np.float32]
@@ -22,29 +21,10 @@ _UNIT = 4096.0  # integer that stands for one standard deviation
 LARGEST_WINDOW = 101  # [px] the sums of a window stay far below 2^31
 
 
-Key = tuple[int, ...]
-
-
-def random_key(stream: RandomStream, index: int) -> Key:
-    """Return the seed of the numbers of one image, which depends on the stream and the index only."""
-    return tuple(stream.generator(index).bit_generator.random_raw(2).tolist())
-
-
-def random_words(key: Key, shape: tuple[int, int]) -> npt.NDArray[np.uint16]:
-    """Return uniform numbers of 16 bits for the pixels of one image."""
-    words = new_image(shape, np.uint16)
-    for rows, drawn in _word_strips(key, shape):
-        words[rows] = drawn
+def random_words(stream: RandomStream, index: int, shape: tuple[int, int]) -> npt.NDArray[np.uint16]:
+    """Return uniform numbers of 16 bits for the pixels of sample `index`."""
+    words: npt.NDArray[np.uint16] = word_source(stream, index)(shape[0] * shape[1]).reshape(shape)
     return words
-
-
-def _word_strips(key: Key, shape: tuple[int, int]) -> Iterator[tuple[slice, npt.NDArray[np.uint16]]]:
-    """Yield the rows of an image, strip by strip, with their random numbers."""
-    bits = np.random.SFC64(np.random.SeedSequence(key))  # the fastest generator for many numbers
-    for rows in strips(shape):
-        height = rows.stop - rows.start
-        count = height * shape[1]
-        yield rows, bits.random_raw(-(-count // 4)).view(np.uint16)[:count].reshape(height, shape[1])
 
 
 @functools.cache
@@ -66,12 +46,12 @@ class NormalImages:
 
     def __init__(self, stream: RandomStream, window: int = 1, samples: float = 0.0) -> None:
         self._stream, self._window, self._samples = stream, window, samples
-        self._drawn: dict[int, tuple[Key, Floats]] = {}  # by number, as several samples use an image
+        self._drawn: dict[int, tuple[list[int], Floats]] = {}  # by number, as several samples use an image
 
     def image(self, index: int, shape: tuple[int, int]) -> Floats:
         """Return the numbers of sample `index`; the array must not be modified."""
         if self._samples <= 1.0:
-            return self._draw(random_key(self._stream, index), shape)
+            return self._draw(index, shape)
         first, part = divmod(index / self._samples, 1.0)
         angle = part * math.pi / 2
         before, after = self._kept(int(first), shape), self._kept(int(first) + 1, shape)
@@ -82,22 +62,24 @@ class NormalImages:
         return image
 
     def _kept(self, number: int, shape: tuple[int, int]) -> Floats:
-        """Return an independent image, drawn if it is not kept; a new seed of the run changes the key."""
-        key = random_key(self._stream, number)
+        """Return an independent image, drawn if it is not kept; a new seed of the run changes its first numbers."""
+        key = self._stream.generator(number).bit_generator.random_raw(2).tolist()
         kept = self._drawn.get(number)
         if kept is not None and kept[0] == key and kept[1].shape == shape:
             return kept[1]
-        image = self._draw(key, shape)
+        image = self._draw(number, shape)
         self._drawn = {n: drawn for n, drawn in self._drawn.items() if abs(n - number) == 1} | {number: (key, image)}
         return image
 
-    def _draw(self, key: Key, shape: tuple[int, int]) -> Floats:
+    def _draw(self, number: int, shape: tuple[int, int]) -> Floats:
         """Draw an independent image."""
         window = self._window
         padded = shape[0] + window - 1, shape[1] + window - 1
         normals = new_image(padded, np.int16)
-        for rows, words in _word_strips(key, padded):
-            look_up(_integer_normals(), words, normals[rows])
+        next_words = word_source(self._stream, number)
+        for rows in strips(padded):
+            part = normals[rows]
+            look_up(_integer_normals(), next_words(part.size).reshape(part.shape), part)
         sums = normals
         if window > 1:
             sums = new_image(padded, np.int32)
