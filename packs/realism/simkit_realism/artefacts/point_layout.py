@@ -116,7 +116,8 @@ class PointLayout(Artefact):
         sweep = reading.sweep
         times: Vector = np.zeros(len(reading.ranges)) if sweep is None else sweep.ray_times
         which = self._order(times)
-        ranges, is_lost = reading.ranges[which], ~np.isfinite(reading.ranges[which])
+        ranges = reading.ranges[which]
+        is_lost = reading.infinite[which] | ~np.isfinite(ranges)
         if layout.lost is None:
             which, ranges = which[~is_lost], ranges[~is_lost]
             is_lost = is_lost[:0]
@@ -155,7 +156,8 @@ class PointLayout(Artefact):
             points["timestamp"] = time_ns + np.rint(times * 1e9)
         if "t" in names:
             points["t"] = np.rint(times * 1e9)
-            points["range"] = np.where(np.isfinite(reading.ranges[which]), reading.ranges[which] * 1000.0, 0.0)
+            has_return = np.isfinite(reading.ranges[which]) & ~reading.infinite[which]
+            points["range"] = np.where(has_return, reading.ranges[which] * 1000.0, 0.0)
             points["reflectivity"] = np.clip(intensities, 0.0, 65535.0)
 
     # ------------------------------------------------------------------ messages
