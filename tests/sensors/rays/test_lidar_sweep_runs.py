@@ -12,6 +12,8 @@ from sensor_worlds import box, sensor
 from sweep_worlds import ANGULAR, INERTIA, LINEAR, POSE, SWEEP, WALL, fan, flyer, launch, target, world
 
 import simkit
+from simkit.runtime.array_rules import CannotBatchError
+from simkit.sensors.base import sensor_rule
 from simkit.sensors.rays import ray_fan
 from simkit.sensors.rays.embree_rays import has_embree
 from simkit.sensors.rays.ray_targets import RayTargets
@@ -290,3 +292,19 @@ def test_a_falling_and_tumbling_sensor_has_the_poses_of_each_tick() -> None:
         first = next(t for t, p in positions.items() if np.array_equal(p, rows.positions[0, body]))
         for i in range(len(rows.positions)):
             assert np.array_equal(rows.positions[i, body], positions[first + i])
+
+
+def test_a_sweep_is_not_batched_and_the_message_says_so() -> None:
+    with load(MOVING) as sim, pytest.raises(CannotBatchError, match="sweep of sensor 'm::l::s'"):
+        sensor_rule(sim.sensor("m::l::s"))
+
+
+@pytest.mark.parametrize("plugin", ["velodyne_laser", "block_laser"])
+def test_clouds_of_plugins_arrive_after_the_last_ray(plugin: str) -> None:
+    cloud = f'<plugin name="p" filename="libgazebo_ros_{plugin}.so"><topicName>/cloud</topicName></plugin>'
+    text = sensor("ray", fan(40, 3, "ray"), rate=10, pose=POSE, extra=SWEEP + cloud)
+    with load(world(flyer(text), WALL)) as sim:
+        arrivals = []
+        sim.subscribe("/cloud", callback=lambda m: arrivals.append((sim.time, stamp(m))))
+        sim.run(0.25)
+    assert np.allclose(arrivals, [(0.1, 0.002), (0.198, 0.1)])
