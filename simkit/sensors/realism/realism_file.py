@@ -221,7 +221,7 @@ class _FileReader:
     def _params(self, name: str, node: yaml.Node) -> Iterator[Params]:
         """Yield the elements of a value: none for null, several for a list of mappings."""
         items = node.value if _kind(node) == "sequence" else []
-        if items and all(_kind(item) == "mapping" for item in items):
+        if items and all(_kind(item) in ("mapping", "sequence") for item in items):
             for item in items:
                 yield from self._params(name, item)
             return

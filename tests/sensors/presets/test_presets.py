@@ -80,7 +80,7 @@ def test_a_preset_is_complete(preset: Preset) -> None:
     assert preset.maker and len(preset.source) > 15
     assert preset.block in preset.settings
     for path, value in leaves(preset.elements):
-        for item in value if isinstance(value, list) else [value]:
+        for item in np.ravel(value).tolist():
             assert isinstance(item, (int, float, bool, str)), path
             if isinstance(item, float):
                 assert math.isfinite(item)
