@@ -13,6 +13,7 @@ from simkit.errors import InputError
 from simkit.install_command import install_command
 
 if TYPE_CHECKING:
+    from simkit_identification.comparison.compare import compare as compare
     from simkit_launch.launch import launch as launch
     from simkit_learning.gym import Batched as Batched
     from simkit_learning.gym import EnvironmentSpec as EnvironmentSpec
@@ -28,6 +29,7 @@ MODULES: Final[dict[str, str]] = {
     "sim.add_node": "simkit_nodes.lock_step",
     "sim.set_ros_parameters": "simkit_nodes.lock_step",
     "sim.view": "simkit_view.view.script_view",
+    "simkit.compare": "simkit_identification.comparison.compare",
     "simkit.gym": "simkit_learning.gym",
     "simkit.launch": "simkit_launch.launch",
     "simkit.sweep": "simkit_learning.sweeps.sweep",

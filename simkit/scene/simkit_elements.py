@@ -22,6 +22,8 @@ OWN_ELEMENTS: Final[Mapping[str, frozenset[str]]] = MappingProxyType(
         "visual": frozenset({"reflectivity", "specularity", "transmittance"}),
         "sensor": frozenset(
             {"dropout", "encoder", "jitter", "latency", "latency_jitter", "phase", "preset", "set_rate_topic", "solar"}
+            | {"depth_error", "depth_holes", "flying_pixels", "lost_depth", "multipath", "occlusion_shadow"}
+            | {"phase_wrap"}
             | {"bandwidth", "calibration_error", "clock", "gaps", "latency_histogram", "saturation"}
         ),
         "noise": frozenset({"bias_instability", "correlation_time", "noise_density", "random_walk"}),

@@ -337,7 +337,10 @@ OWN = """<sdf version="1.9"><world name="w"><gazebo_quirks>1</gazebo_quirks>
 <sensor name="lds" type="ray"><preset>LDS-01</preset>
   <dropout><probability>0.1</probability></dropout></sensor>
 <sensor name="eye" type="depth_camera"><camera><image><width>8</width><height>6</height></image>
-  <disparity_noise><baseline>0.05</baseline><stddev>0.1</stddev></disparity_noise></camera></sensor>
+  <disparity_noise><baseline>0.05</baseline><stddev>0.1</stddev></disparity_noise></camera>
+  <depth_error><scale>-0.01</scale></depth_error><depth_holes><probability>0.1</probability></depth_holes>
+  <flying_pixels/><multipath/><occlusion_shadow><baseline>0.05</baseline></occlusion_shadow>
+  <phase_wrap><range>50</range></phase_wrap><lost_depth><value>nan</value></lost_depth></sensor>
 <sensor name="mems" type="imu"><bandwidth><angular_velocity>40</angular_velocity></bandwidth><calibration_error>
   <angular_velocity><scale>0 0 0.01</scale></angular_velocity></calibration_error><saturation>
   <linear_acceleration>40</linear_acceleration></saturation><clock><offset>0.1</offset></clock>

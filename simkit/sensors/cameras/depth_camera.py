@@ -38,9 +38,9 @@ class DepthCamera(RgbdCamera):
         super().attach(sim)
 
     def shots(self) -> Sequence[Shot]:
-        if self._is_classic or "image" in self._topics:
-            return super().shots()
-        return (Shot(self._drawn_view(), depth=True, sharp=True),)  # colours have no reader
+        # without a reader of the colours, only depths are drawn
+        has_reader = self._is_classic or self.needs_colours or "image" in self._topics
+        return self._with_geoms(with_colours=has_reader)
 
     def default_topics(self) -> dict[str, str]:
         topic = self._default_topic("depth_image")
@@ -49,15 +49,15 @@ class DepthCamera(RgbdCamera):
     def _cloud_colours(self, reading: Reading) -> Colours:
         """Return shades from white at the camera to black at the farthest point (gz-sensors, DepthCameraSensor.cc).
 
-        Infinite points are black. Gazebo Classic's clouds have the image's colours.
+        Points without a depth are black. Gazebo Classic's clouds have the image's colours.
         """
         if self._is_classic:
             return super()._cloud_colours(reading)
         depths: Depths = reading.depths
-        infinite = np.isinf(depths)
-        farthest = np.max(depths, where=~infinite, initial=np.float32(0))
+        finite = np.isfinite(depths)
+        farthest = np.max(depths, where=finite, initial=np.float32(0))
         with np.errstate(invalid="ignore"):
             shades = np.multiply(depths, np.float32(-255.0 / farthest if farthest > 0 else 0.0))
         shades += np.float32(255.0)
-        np.copyto(shades, np.float32(0.0), where=infinite)
+        np.copyto(shades, np.float32(0.0), where=~finite)
         return shades.astype(np.uint8)

@@ -45,7 +45,7 @@ class DepthClouds:
     def message(
         self, header: msgs.Header, depths: Depths, colours: Colours, shift: Depths | None = None
     ) -> msgs.PointCloud2:
-        """Make a `PointCloud2` in which infinite points keep their index.
+        """Make a `PointCloud2` in which infinite points, and points that are NaN, keep their index.
 
         Args:
             header: header of the message.
@@ -67,7 +67,7 @@ class DepthClouds:
     def _fill(self, points: npt.NDArray[np.float32], depths: Depths, shift: Depths | None) -> bool:
         """Write the coordinates, and return True if all are finite."""
         points[..., self._axis] = depths
-        infinite = np.isinf(depths)
+        infinite = ~np.isfinite(depths)
         is_dense = not infinite.any()
         with np.errstate(invalid="ignore"):
             along = depths if shift is None else depths - shift

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from statistics import NormalDist
 
@@ -19,10 +19,48 @@ from simkit.sensors.noise import NoiseModel
 
 @dataclass(frozen=True)
 class CameraReading:
-    """Colours (h, w, 3), or brightness (h, w); depths (h, w) along the optical axis [m], None for a plain camera."""
+    """Colours (h, w, 3), or brightness (h, w); depths (h, w) along the optical axis [m], None for a plain camera.
+
+    Attributes:
+        geoms: geom that each pixel shows, shape (h, w), -1 for none; None if no artefact reads it.
+    """
 
     colours: npt.NDArray[np.uint8]
     depths: npt.NDArray[np.float32] | None
+    geoms: npt.NDArray[np.int32] | None = None
+
+
+class ChangedReading:
+    """Reading of a camera whose colours or depths an artefact changes when they are first read.
+
+    Args:
+        previous: reading before the change.
+        change_colours: function from the previous colours to the changed ones; None keeps them.
+        change_depths: function from the previous depths to the changed ones; None keeps them.
+    """
+
+    def __init__(
+        self,
+        previous: CameraReading,
+        change_colours: Callable[[AnyArray], AnyArray] | None = None,
+        change_depths: Callable[[AnyArray], AnyArray] | None = None,
+    ) -> None:
+        self._previous, self._change_colours, self._change_depths = previous, change_colours, change_depths
+
+    @functools.cached_property
+    def colours(self) -> npt.NDArray[np.uint8]:
+        """Colours (h, w, 3), or brightness (h, w)."""
+        colours = self._previous.colours
+        return colours if self._change_colours is None or not colours.size else self._change_colours(colours)
+
+    @functools.cached_property
+    def depths(self) -> npt.NDArray[np.float32] | None:
+        """Depths (h, w) along the optical axis [m], None for a plain camera."""
+        depths = self._previous.depths
+        return depths if self._change_depths is None or depths is None else self._change_depths(depths)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return DrawnReading, (self.colours, self.depths, getattr(self._previous, "true_depths", None))
 
 
 class NoisyCameraReading:
@@ -62,7 +100,7 @@ _OGRE_EXPONENT = 2.1
 
 
 @functools.cache
-def _normal_table() -> npt.NDArray[np.float64]:
+def normal_table() -> npt.NDArray[np.float64]:
     """Return the standard normal's value in the middle of each of 65536 equally likely slices, scaled to variance 1."""
     upper = [NormalDist().inv_cdf((i + 0.5) / _WORDS) for i in range(_WORDS // 2, _WORDS)]
     table = np.concatenate((-np.array(upper[::-1]), upper))
@@ -138,7 +176,7 @@ class ImageNoise:
 
     def _draw_noise(self) -> npt.NDArray[np.float64]:
         """Return the noise of each random word."""
-        return _normal_table() * self._model.stddev + self._model.mean
+        return normal_table() * self._model.stddev + self._model.mean
 
     @functools.cached_property
     def _step_tables(self) -> tuple[npt.NDArray[np.uint8], ...]:

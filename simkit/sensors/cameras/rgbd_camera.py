@@ -27,7 +27,7 @@ from simkit.sensors.cameras.disparity_noise import DisparityNoise, read_disparit
 from simkit.sensors.cameras.image_noise import CameraReading, ImageNoise, NoisyCameraReading
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
 from simkit.sensors.cameras.rendering.appearance import Appearance
-from simkit.sensors.cameras.rendering.view import Colours, Depths, DrawnView, Shot, View
+from simkit.sensors.cameras.rendering.view import Colours, Depths, DrawnView, Ids, Shot, View
 from simkit.sensors.particle_echoes import Echoes, find_echoes
 from simkit.sensors.sample import Reading
 from simkit.sensors.topics_and_frames import OPTICAL_POSE
@@ -44,23 +44,25 @@ class NoisyDepths(NoisyCameraReading):
         noise: noise of the colours.
         index: number of the sample.
         make_depths: function from true depths and the sample's index to noisy depths.
-
-    Attributes:
-        true_depths: depths without noise.
     """
 
     def __init__(
         self, picture: CameraReading, noise: ImageNoise, index: int, make_depths: Callable[[Depths, int], Depths]
     ) -> None:
-        assert picture.depths is not None
         super().__init__(picture, noise, index)
-        self.true_depths = picture.depths
         self._make_depths = make_depths
         self._depths: Depths | None = None
 
     @property
     def colours(self) -> Colours:
         return self._picture.colours if self._noise.is_silent else super().colours
+
+    @property
+    def true_depths(self) -> Depths:
+        """Depths without noise."""
+        depths = self._picture.depths  # an artefact before the noise may make them now
+        assert depths is not None
+        return depths
 
     @property
     def depths(self) -> Depths:
@@ -79,11 +81,15 @@ class RgbdCamera(RenderedCamera):
 
     Attributes:
         points_frame_id: frame of the cloud; empty for that of the images.
+        needs_colours: True if an artefact reads the colours, which are then always drawn; set in its `prepare`.
+        needs_geoms: True if an artefact reads which geom each pixel shows; set in its `prepare`.
     """
 
     kinds: ClassVar[tuple[str, ...]] = ("rgbd_camera",)
     artefact_families: ClassVar[tuple[str, ...]] = ("depth", "colour")
     has_depth = True
+    needs_colours = False
+    needs_geoms = False
 
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
         super().__init__(scene, diagnostics)
@@ -123,10 +129,18 @@ class RgbdCamera(RenderedCamera):
         return self._view
 
     def shots(self) -> Sequence[Shot]:
+        return self._with_geoms(with_colours=True)
+
+    def _with_geoms(self, *, with_colours: bool) -> tuple[Shot, ...]:
+        """Return the shots of a sample, and the shot of geoms if an artefact reads it."""
         view = self._drawn_view()
-        if self._is_blended:
-            return Shot(view), Shot(view, depth=True, sharp=True)
-        return (Shot(view, depth=True),)
+        if not with_colours:
+            shots: tuple[Shot, ...] = (Shot(view, depth=True, sharp=True),)
+        elif self._is_blended:
+            shots = Shot(view), Shot(view, depth=True, sharp=True)
+        else:
+            shots = (Shot(view, depth=True),)
+        return (*shots, Shot(view, ids=True)) if self.needs_geoms else shots
 
     def capture_context(self, model: mujoco.MjModel, data: mujoco.MjData) -> Echoes | None:
         """Return the echoes of particles."""
@@ -146,7 +160,14 @@ class RgbdCamera(RenderedCamera):
         depths = self._range.metres(raw, drawn_view.view, self._spare_depths.take())
         if context is not None:
             self._add_echoes(depths, context)
-        return CameraReading(colours, depths)
+        geoms = self._geoms_of(next(drawn_views)) if self.needs_geoms else None
+        return CameraReading(colours, depths, geoms)
+
+    def _geoms_of(self, drawn_view: DrawnView) -> Ids:
+        """Return the geom that each pixel shows, shape (h, w), -1 for none."""
+        assert drawn_view.ids is not None
+        distorter = self._pictures.distorter
+        return distorter.distort_ids(drawn_view.ids) if distorter else drawn_view.ids.copy()
 
     def _add_echoes(self, depths: Depths, echoes: Echoes) -> None:
         """Shorten the depths of the pixels that see a particle; an echo nearer than the range is -inf."""
@@ -236,13 +257,17 @@ class RgbdCamera(RenderedCamera):
             return reading
         return NoisyDepths(reading, self._pictures.noise, index, self._noisy_depths)
 
+    def limit_depths(self, depths: Depths) -> Depths:
+        """Apply the range in place to changed depths [m], shape (h, w): +inf beyond it, -inf before it."""
+        return self._range.clip(depths)
+
     def _noisy_depths(self, depths: Depths, index: int) -> Depths:
         """Add noise to the disparities and the depths, then apply the range again, as in Gazebo."""
         if self._disparity is not None and not self._disparity.is_silent:
             depths = self._disparity.on_depths(depths, index)
         if not self._pictures.noise.is_silent:
             depths = self._pictures.noise.on_depths(depths, index)
-        return self._range.clip(depths)
+        return self.limit_depths(depths)
 
     # ------------------------------------------------------------------ messages
 

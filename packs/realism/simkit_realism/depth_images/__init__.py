@@ -1,0 +1,1 @@
+"""Helpers of the artefacts of depth images: random images, laws of depth, angles of surfaces."""
