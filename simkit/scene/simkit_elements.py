@@ -23,8 +23,9 @@ OWN_ELEMENTS: Final[Mapping[str, frozenset[str]]] = MappingProxyType(
         "sensor": frozenset(
             {"dropout", "encoder", "jitter", "latency", "latency_jitter", "phase", "preset", "set_rate_topic", "solar"}
             | {"depth_error", "depth_holes", "flying_pixels", "lost_depth", "multipath", "occlusion_shadow"}
-            | {"phase_wrap"}
+            | {"phase_wrap", "sweep"}
             | {"bandwidth", "calibration_error", "clock", "gaps", "latency_histogram", "saturation"}
+            | {"fix_types", "multipath", "outages"}
         ),
         "noise": frozenset({"bias_instability", "correlation_time", "noise_density", "random_walk"}),
         "camera": frozenset({"disparity_noise"}),

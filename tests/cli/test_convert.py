@@ -334,7 +334,7 @@ OWN = """<sdf version="1.9"><world name="w"><gazebo_quirks>1</gazebo_quirks>
   <random_walk>0.3</random_walk><correlation_time>4</correlation_time></noise></x></angular_velocity></imu></sensor>
 <sensor name="sonar" type="sonar"><sonar><axis>1 0 0</axis><noise type="gaussian"><stddev>0.1</stddev></noise></sonar>
 </sensor><sensor name="field" type="magnetometer"><magnetometer><date>2026.5</date></magnetometer></sensor>
-<sensor name="lds" type="ray"><preset>LDS-01</preset>
+<sensor name="lds" type="ray"><preset>LDS-01</preset><sweep>true</sweep>
   <dropout><probability>0.1</probability></dropout></sensor>
 <sensor name="eye" type="depth_camera"><camera><image><width>8</width><height>6</height></image>
   <disparity_noise><baseline>0.05</baseline><stddev>0.1</stddev></disparity_noise></camera>
@@ -345,6 +345,8 @@ OWN = """<sdf version="1.9"><world name="w"><gazebo_quirks>1</gazebo_quirks>
   <angular_velocity><scale>0 0 0.01</scale></angular_velocity></calibration_error><saturation>
   <linear_acceleration>40</linear_acceleration></saturation><clock><offset>0.1</offset></clock>
   <gaps><probability>0.1</probability></gaps><latency_histogram><values>0.01</values></latency_histogram></sensor>
+<sensor name="gps" type="navsat"><outages><window>1 2</window></outages><multipath><stddev>1</stddev></multipath>
+  <fix_types><fix><status>sbas</status></fix></fix_types></sensor>
 <sensor name="solar" type="custom" gz:type="solar"><update_rate>50</update_rate><solar><normal>0 0 1</normal></solar>
 </sensor><collision name="c"><geometry><box><size>1 1 1</size></box></geometry><reflectivity>0.1</reflectivity>
 <transmittance>0.2</transmittance><specularity>0.3</specularity></collision></link><link name="k"/><joint name="j" type="revolute"><parent>l</parent><child>k</child><axis/>

@@ -76,6 +76,9 @@ class AttachedSensor(Protocol):
     def timetable(self) -> Timetable | None:
         """Return the ticks at which the sensor is sampled; None for every tick."""
 
+    def scene_timetable(self) -> Timetable | None:
+        """Return the ticks at which the scenery must have its pose; None for every tick."""
+
     def sample(self, tick: int) -> None:
         """Measure at a tick."""
 

@@ -177,6 +177,12 @@ class TriangleBody:
         if self.body > 0:
             turn = data.xmat[self.body].reshape(3, 3)
             origin, directions = matmul(origin - data.xpos[self.body], turn), rotate_vectors(directions, turn)
+        return self.cast_local(origin, directions, start, limit)
+
+    def cast_local(
+        self, origin: Vector, directions: Vector, start: float, limit: npt.NDArray[np.float32]
+    ) -> tuple[Ids, Vector, npt.NDArray[np.int32]]:
+        """Cast rays given in the body's frame, each from its own origin, shape (n, 3), or all from one."""
         hits, distances, triangles = self._scene.nearest(origin, directions, start, limit)
         return hits, distances, self._geom_of.take(triangles)
 

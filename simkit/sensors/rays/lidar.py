@@ -73,21 +73,28 @@ class Lidar(LidarMeasurement):
         """Make a scan of all rays, or of the middle layer if there are several layers."""
         o, n = self.options, self.options.horizontal.samples
         first = o.vertical.samples // 2 * n
+        low, high, step = o.horizontal.low, o.horizontal.high, o.horizontal.step
+        ranges = reading.ranges[first : first + n]
+        is_clockwise = o.sweep is not None and o.sweep.is_clockwise
+        if is_clockwise:  # the first ray of the message is the first one in time
+            low, high, step, ranges = high, low, -step, ranges[::-1]
         if self._retro is None and self.min_intensity <= 0:
             intensities = self._dark_layer
         else:
             intensities = reading.intensities[first : first + n].astype(np.float32)
             np.maximum(intensities, self.min_intensity, out=intensities)
+            if is_clockwise:
+                intensities = np.ascontiguousarray(intensities[::-1])
         message: msgs.LaserScan = msgs.type_of(SCAN)(
             msgs.header(time_ns, self.frame_id),
-            o.horizontal.low,
-            o.horizontal.high,
-            o.horizontal.step,
-            0.0,
+            low,
+            high,
+            step,
+            self.time_increment,
             min(1.0 / self.update_rate, MAX_RANGE) if self.update_rate > 0 else self.sim.timestep,
             o.range_min,
             o.range_max,
-            reading.ranges[first : first + n].astype(np.float32),
+            ranges.astype(np.float32),
             intensities,
         )
         return message
@@ -110,7 +117,7 @@ class Lidar(LidarMeasurement):
         ranges = reading.ranges[which]
         points = np.zeros(len(ranges), dtype)
         with np.errstate(invalid="ignore"):
-            positions = self._directions[which] * ranges[:, None]
+            positions = self._directions_of(reading)[which] * ranges[:, None]
         for axis, name in enumerate("xyz"):
             points[name] = positions[:, axis]
         points["intensity"] = np.maximum(reading.intensities[which], self.min_intensity)
@@ -135,13 +142,13 @@ class Lidar(LidarMeasurement):
 
     def _old_cloud(self, reading: LidarReading, time_ns: int) -> msgs.PointCloud:
         hit = np.flatnonzero(np.isfinite(reading.ranges))
-        positions = self._directions[hit] * reading.ranges[hit, None]
+        positions = self._directions_of(reading)[hit] * reading.ranges[hit, None]
         intensities = np.maximum(reading.intensities[hit], self.min_intensity)
         return legacy_point_cloud(msgs.header(time_ns, self.frame_id), positions, intensities)
 
     def _block_cloud(self, reading: LidarReading, time_ns: int) -> msgs.PointCloud:
         """Make a cloud of all rays, layer by layer from the lowest; rays without a hit end at the range limit."""
-        positions = self._directions * np.clip(reading.ranges, *self._limits)[:, None]
+        positions = self._directions_of(reading) * np.clip(reading.ranges, *self._limits)[:, None]
         intensities = np.maximum(reading.intensities, self.min_intensity)
         if reading.scatter is not None:
             positions[~reading.infinite] += reading.scatter[~reading.infinite, :3]
