@@ -160,6 +160,18 @@ class RenderedCamera(RenderedSampler):
         if options.triggered:
             self.trigger_on(self._trigger_topic())
 
+    @property
+    def camera_models(self) -> tuple[CameraModel, ...]:
+        """Optics of each camera of the sensor."""
+        return (self.options.model,)
+
+    def true_colours(self) -> tuple[npt.NDArray[np.uint8], ...]:
+        """Return the colours of each camera in the newest sample without noise; empty before the first sample."""
+        reading = self._true_reading()
+        if reading is None:
+            return ()
+        return tuple(picture.colours for picture in (reading if isinstance(reading, tuple) else (reading,)))
+
     def _drawn_view(self) -> View:
         """Return the view that is drawn."""
         return self._pictures.view
@@ -265,16 +277,21 @@ class RenderedCamera(RenderedSampler):
         return self._pictures.perturb(reading, index)
 
     def memory(self) -> object:
-        return self._trigger.pending if self._trigger else 0, self._zoom
+        return self._trigger.pending if self._trigger else 0, self._zoom, super().memory()
 
     def remember(self, memory: Memory) -> None:
-        pending, zoom = memory
+        pending, zoom, noise = memory
+        self._set_trigger_and_zoom(pending, zoom)
+        super().remember(noise)
+
+    def restart(self) -> None:
+        self._set_trigger_and_zoom(0, 1.0)
+        super().restart()
+
+    def _set_trigger_and_zoom(self, pending: int, zoom: float) -> None:
         if self._trigger:
             self._trigger.pending = pending
         self._apply_zoom(zoom)
-
-    def restart(self) -> None:
-        self.remember((0, 1.0))
 
     # ------------------------------------------------------------------ saved images
 

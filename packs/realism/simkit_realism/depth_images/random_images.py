@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.runtime.engine.random_streams import RandomStream
-from simkit.sensors.cameras.image_noise import normal_table
+from simkit.sensors.cameras.random_pixels import normal_table
 
 Floats = npt.NDArray[np.float32]
 _UNIT = 4096.0  # integer that stands for one standard deviation
