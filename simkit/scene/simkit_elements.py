@@ -27,6 +27,7 @@ OWN_ELEMENTS: Final[Mapping[str, frozenset[str]]] = MappingProxyType(
             | {"phase_wrap", "sweep"}
             | {"bandwidth", "calibration_error", "clock", "gaps", "latency_histogram", "saturation"}
             | {"fix_types", "multipath", "outages"}
+            | {"beam", "blind_zone", "glass_and_mirrors", "intensity", "no_return", "range_error", "signal", "sun"}
         ),
         "noise": frozenset({"bias_instability", "correlation_time", "noise_density", "random_walk"}),
         "camera": frozenset({"disparity_noise"}),

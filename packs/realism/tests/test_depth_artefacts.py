@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 from typing import Any
 
 import numpy as np
@@ -288,6 +289,37 @@ def test_named_surfaces_and_dull_materials_have_no_return() -> None:
     assert 0.1 < lost.mean() < 0.9
 
 
+X3 = """<simkit:depth_error><scale>-0.011858</scale><stddev>0.002</stddev><coefficient>0.0019</coefficient>
+  <exponent>2.36</exponent></simkit:depth_error>
+<simkit:depth_holes><probability>0.05</probability><correlation_length>5</correlation_length><border>0 21 0 0</border>
+  <incidence><start>1.05</start><end>1.13</end></incidence>
+  <wedge><start>0.6</start><end>0.363</end><direction>0.785</direction></wedge></simkit:depth_holes>"""
+
+
+@pytest.mark.parametrize(("reported", "published"), [(0.45, 0.354), (0.63, 0.611), (1.12, 0.57), (3.6, 0.48)])
+def test_the_x3_sees_as_many_pixels_of_a_wall_as_its_owners_measured(reported: float, published: float) -> None:
+    """The camera is 0.109 m above a floor that never returns, before a wall (AIRclub-UdeSA/physical_rosmaster)."""
+    wall = box("wall", f"{reported * 1.012 + 0.5} 0 1 0 0 0", "1 20 9") + box("floor", "0 0 -0.159 0 0 0", "30 30 0.1")
+    text = world(X3, wall, far=8).replace(f"<horizontal_fov>{FOV}<", "<horizontal_fov>1.06406<")
+    text = text.replace(f"<width>{WIDTH}<", "<width>320<").replace(f"<height>{HEIGHT}<", "<height>240<")
+    depths, _ = seen(text, 3)
+    assert np.isfinite(depths).mean() == pytest.approx(published, abs=0.05)
+    assert np.median(depths[np.isfinite(depths)]) == pytest.approx(reported, abs=0.002)
+
+
+def test_a_lens_with_distortion_has_the_same_angles_and_shadows() -> None:
+    lens = "<distortion><k1>-0.15</k1><k2>0.03</k2></distortion>"
+    floor = box("floor", "0 0 -0.3 0 0 0", "40 40 0.001")
+    artefacts = holes("<incidence><start>1.2</start><end>1.2</end></incidence>")
+    (depths,), truth = seen(world(artefacts, WALL + floor, camera=lens))
+    is_floor, lost = truth < 1.99, np.isinf(depths)
+    assert not lost[~is_floor].any()
+    column = slice(WIDTH // 2 - 5, WIDTH // 2 + 5)
+    down = 0.3 / truth[:, column]  # slope of the ray to the floor
+    expected = is_floor[:, column] & (down / np.sqrt(1 + down**2) <= math.cos(1.2))
+    assert np.count_nonzero(lost[:, column] != expected) <= 20
+
+
 # ---------------------------------------------------------------------- messages and repetition
 
 ALL = (
@@ -337,6 +369,8 @@ def test_the_bits_repeat_after_a_reset_and_a_restored_snapshot_and_depend_on_the
         assert sensor.depth.tobytes() == first
         sim.run(0.3)
         assert sensor.depth.tobytes() == later
+        sim.restore(pickle.loads(pickle.dumps(held)))
+        assert sensor.depth.tobytes() == first
         sim.reset()
         sim.run(0.85)
         assert sensor.depth.tobytes() == later
