@@ -1,7 +1,7 @@
 """Real robots beside simulated ones: tables of rows and plots of `docs/realism.md`.
 
-`python benchmarks/realism.py` prints the tables; `--write docs/realism.md` replaces those of the page and draws the plots
-again. The runs have a fixed seed, so the numbers are the same on every machine.
+`python benchmarks/realism.py` prints the tables; `--write docs/realism.md` replaces those of the page and draws the
+plots again. The runs have a fixed seed, so the numbers are the same on every machine.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 import realism_turtlebot3
-from realism_rows import SCREENS, measure, wall_row
+from realism_rows import SCREENS, measure, reached_speed, wall_row
 
 HERE = Path(__file__).resolve().parent
 DURATION = 30.0
@@ -32,6 +32,12 @@ FRAMES = {1: 0.331, 2: 0.1852, 3: 0.1538, 4: 0.0901, 5: 0.0526, 6: 0.0466, 7: 0.
           11: 0.0132, 12: 0.0061, 13: 0.0091, 14: 0.0051, 15: 0.004, 16: 0.001, 17: 0.004, 18: 0.004, 19: 0.002,
           20: 0.002, 23: 0.001, 24: 0.001, 25: 0.001, 28: 0.001, 32: 0.001, 34: 0.001}  # fmt: skip
 """Shares of the frames from one cloud to the next, from sensor_profiles.yaml."""
+
+
+COMMANDS = (("linear", "x", 0.1, 0.0957), ("linear", "x", 0.2, 0.1896), ("linear", "x", 0.3, 0.2906),
+            ("linear", "x", -0.1, -0.0727), ("linear", "x", -0.2, -0.1776), ("angular", "z", 1.0, 0.685),
+            ("angular", "z", -1.0, -0.507))  # fmt: skip
+"""Constant commands and the speeds that the odometry of the real robot showed, from real_robot_contract.yaml."""
 
 
 def value_text(value: Any) -> str:
@@ -68,7 +74,7 @@ def x3_values(realism: str | None) -> tuple[dict[str, Any], dict[str, Any], dict
 def x3_table(values: dict[str, dict[str, Any]]) -> Iterator[str]:
     """Yield the lines of the table of the X3."""
     rows = tomllib.loads((HERE / "realism_x3.toml").read_text(encoding="utf-8"))["row"]
-    reached = {name: 0 for name in values}
+    reached = dict.fromkeys(values, 0)
     lines = []
     for row in rows:
         cells = []
@@ -78,7 +84,8 @@ def x3_table(values: dict[str, dict[str, Any]]) -> Iterator[str]:
             text = value_text(found[row["key"]]) if "key" in row else "-"
             cells.append(f"**{text}**" if is_good else text)
         note = row.get("missing", "")
-        lines.append(f"| {row['name']} | {value_text(row['real'])} | {value_text(row['gazebo'])} | {' | '.join(cells)} | {note} |")
+        published = f"{value_text(row['real'])} | {value_text(row['gazebo'])}"
+        lines.append(f"| {row['name']} | {published} | {' | '.join(cells)} | {note} |")
     counts = ", ".join(f"{count} with {name}" for name, count in reached.items())
     yield f"Of {len(rows)} rows, these are within the tolerance: {counts} (bold).\n"
     yield f"| row | real X3 | Gazebo | {' | '.join(f'simkit, {name}' for name in values)} | remark |"
@@ -93,6 +100,16 @@ def wall_table(walls: dict[float, dict[str, Any]]) -> Iterator[str]:
     for distance, wall in walls.items():
         share = SHARES.get(distance, "")
         yield f"| {distance} | {SIGMAS[distance]} | {1e3 * wall['sigma']:.1f} | {share} | {wall['valid']:.1f} |"
+
+
+def command_table() -> Iterator[str]:
+    """Yield the lines of the table of commands and the speeds that the odometry shows."""
+    yield "| command | real X3 | simkit, ideal | simkit, rosmaster_x3 |"
+    yield "|---|---|---|---|"
+    for part, axis, command, real in COMMANDS:
+        speeds = [reached_speed(X3_WORLD, choice, part, axis, command) for choice in ("ideal", X3_SET)]
+        unit = "m/s" if part == "linear" else "rad/s"
+        yield f"| {command:g} {unit} | {real:g} | {speeds[0]:.4g} | {speeds[1]:.4g} |"
 
 
 def replace_part(page: str, name: str, lines: list[str]) -> str:
@@ -112,6 +129,7 @@ def main(arguments: list[str]) -> None:
     parts = {
         "X3 rows": list(x3_table({"ideal": ideal[0], X3_SET: real[0]})),
         "X3 walls": list(wall_table(real[2])),
+        "X3 commands": list(command_table()),
         "TurtleBot3 rows": list(realism_turtlebot3.table()),
     }
     if page is None:

@@ -42,13 +42,16 @@ def _save(figure: Any, file: Path) -> None:
     plt.close(figure)
 
 
-def _draw_depth(file: Path, walls: Mapping[float, Any], sigmas: Mapping[float, float], shares: Mapping[float, float]) -> None:
+def _draw_depth(
+    file: Path, walls: Mapping[float, Any], sigmas: Mapping[float, float], shares: Mapping[float, float]
+) -> None:
     figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.4))
     distances = sorted(walls)
     left.loglog(list(sigmas), list(sigmas.values()), "ko", label="real camera")
     left.loglog(distances, [1e3 * walls[d]["sigma"] for d in distances], "C0-", label="simkit")
     left.set(xlabel="distance of the wall [m]", ylabel="σ of the depths [mm]")
     left.set_xticks([0.5, 1, 2, 3], ["0.5", "1", "2", "3"])
+    left.set_yticks([1, 2, 5, 10, 20, 40], ["1", "2", "5", "10", "20", "40"])
     left.minorticks_off()
     right.plot(list(shares), list(shares.values()), "ko", label="real camera")
     right.plot(distances, [walls[d]["valid"] for d in distances], "C0-", label="simkit")
@@ -59,13 +62,17 @@ def _draw_depth(file: Path, walls: Mapping[float, Any], sigmas: Mapping[float, f
     _save(figure, file)
 
 
-def _draw_wedge(file: Path, real: Mapping[str, Any], ideal: Mapping[str, Any], cells: Sequence[Sequence[float]]) -> None:
+def _draw_wedge(
+    file: Path, real: Mapping[str, Any], ideal: Mapping[str, Any], cells: Sequence[Sequence[float]]
+) -> None:
     figure, axes = plt.subplots(1, 3, figsize=(10, 2.9))
     titles = "real camera, valid pixels [%]", "simkit, rosmaster_x3", "simkit, ideal"
     for plot, title, grid in zip(axes, titles, (np.array(cells), real["grid"], ideal["grid"]), strict=True):
         plot.imshow(grid, vmin=0, vmax=100, cmap="viridis", aspect="auto")
         for (row, column), share in np.ndenumerate(grid):
-            plot.text(column, row, f"{share:.0f}", ha="center", va="center", fontsize=7, color="w" if share < 60 else "k")
+            plot.text(
+                column, row, f"{share:.0f}", ha="center", va="center", fontsize=7, color="w" if share < 60 else "k"
+            )
         plot.set_title(title, fontsize=9)
         plot.set_xticks([])
         plot.set_yticks([])
@@ -80,10 +87,12 @@ def _draw_scan(file: Path, real: Mapping[str, Any], ideal: Mapping[str, Any]) ->
         seen = np.isfinite(ranges)
         plot.plot((ranges * np.cos(angles))[seen], (ranges * np.sin(angles))[seen], ".", markersize=2)
         lost = angles[~seen]
-        plot.plot(0.8 * np.cos(lost), 0.8 * np.sin(lost), "r.", markersize=2, label="rays without a return")
+        for radius in (0.4, 0.6, 0.8):
+            label = "rays without a return" if radius == 0.8 else None
+            plot.plot(radius * np.cos(lost), radius * np.sin(lost), "r.", markersize=0.6, label=label)
         plot.set(title=f"scan, {title}", xlabel="x [m]", ylabel="y [m]", aspect="equal")
         if lost.size:
-            plot.legend(loc="upper right", fontsize=8)
+            plot.legend(loc="lower left", fontsize=8)
     _save(figure, file)
 
 

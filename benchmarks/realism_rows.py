@@ -144,19 +144,27 @@ def _layout(message: Any) -> Iterator[tuple[str, Any]]:
     yield "no_points", ("left out" if message.height == 1 else "none") if not odd.size else str(abs(odd.flat[0]))
 
 
-def _limits(world: str, realism: str | None) -> dict[str, Any]:
-    """Return the speeds that the robot reaches with commands beyond its limits, and the track of its odometry."""
-    found: dict[str, Any] = {}
-    for key, part, axis, command in (
-        ("limit_x", "linear", "x", 1.5), ("limit_y", "linear", "y", 1.5), ("limit_turn", "angular", "z", 7.0)
-    ):  # fmt: skip
-        with simkit.load(world, realism=realism) as sim:
+def reached_speed(world: str, realism: str | None, part: str, axis: str, command: float) -> float:
+    """Return the speed [m/s or rad/s] that the odometry shows for a constant command."""
+    with simkit.load(world, realism=realism) as sim:
+        speeds = Probe(sim, "/odom", lambda m: getattr(getattr(m.twist.twist, part), axis))
+        for _ in range(6):
             sim.publish("/cmd_vel", {part: {axis: command}})
-            speeds = Probe(sim, "/odom", lambda m, part=part, axis=axis: getattr(getattr(m.twist.twist, part), axis))
-            sim.run(1.2)
-            found[key] = float(np.median(speeds.kept[-4:]))
-            plugin = next(p for p in sim.world.models[-1].plugins if "Mecanum" in p.name)
-            found["track"] = plugin.params.number("wheel_separation", 0.0)
+            sim.run(0.2)
+        return float(np.median(speeds.kept[-4:]))
+
+
+def _limits(world: str, realism: str | None) -> dict[str, Any]:
+    """Return the largest commands that have an effect, and the track of the robot's odometry."""
+    found: dict[str, Any] = {}
+    for key, part, axis, small in (
+        ("limit_x", "linear", "x", 0.5), ("limit_y", "linear", "y", 0.5), ("limit_turn", "angular", "z", 2.0)
+    ):  # fmt: skip
+        gain = reached_speed(world, realism, part, axis, small) / small
+        found[key] = reached_speed(world, realism, part, axis, 3.5 * small) / gain
+    with simkit.load(world, realism=realism) as sim:
+        plugin = next(p for p in sim.world.models[-1].plugins if "Mecanum" in p.name)
+        found["track"] = plugin.params.number("wheel_separation", 0.0)
     return found
 
 
@@ -184,6 +192,7 @@ def wall_row(realism: str | None, distance: float, images: int = 12, seed: int =
     grid = cells[: 6 * rows, : 8 * columns].reshape(6, rows, 8, columns).mean(axis=(1, 3))
     return {
         "valid": 100 * float(np.isfinite(depths).mean()), "mean": float(seen.mean()), "sigma": float(seen.std()),
-        "scale": 100 * (float(seen.mean()) / distance - 1), "floor": 100 * float(np.isfinite(depths[:, is_floor]).mean()),
+        "scale": 100 * (float(seen.mean()) / distance - 1),
+        "floor": 100 * float(np.isfinite(depths[:, is_floor]).mean()),
         "grid": 100 * grid, "image": depths[-1],
     }  # fmt: skip

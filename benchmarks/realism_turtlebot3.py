@@ -16,15 +16,18 @@ WALLS = """<sdf version="1.9"><world name="w"><physics type="ode"><max_step_size
     <size>20 20</size></plane></geometry></collision></link></model>
   <model name="ring"><static>true</static><link name="l">{boxes}</link></model></world></sdf>"""
 ROBOT, LIDAR, IMU = "turtlebot3_burger", "turtlebot3_burger::base_scan::lds", "turtlebot3_burger::imu_link::imu"
-GYRO_DENSITY, FORCE_DENSITY = math.radians(0.01), 300e-6 * 9.80665
-"""Noise densities of the MPU-9250 [rad/s/√Hz, m/s²/√Hz]: PS-MPU-9250A-01 rev. 1.1."""
 
 
 def world() -> str:
     """Return a room with walls 0.4 m and 2 m from the scanner, which is 0.032 m behind the middle of the robot."""
-    shapes = (("near", "0.418 0 0.5", "0.1 0.3 1"), ("far", "-2.082 0 0.5", "0.1 3 1"), ("left", "0 3.05 0.5", "4 0.1 1"))
+    shapes = (
+        ("near", "0.418 0 0.5", "0.1 0.3 1"),
+        ("far", "-2.082 0 0.5", "0.1 3 1"),
+        ("left", "0 3.05 0.5", "4 0.1 1"),
+    )
     boxes = "".join(
-        f'<collision name="{name}"><pose>{place} 0 0 0</pose><geometry><box><size>{size}</size></box></geometry></collision>'
+        f'<collision name="{name}"><pose>{place} 0 0 0</pose>'
+        f"<geometry><box><size>{size}</size></box></geometry></collision>"
         for name, place, size in shapes
     )
     return WALLS.format(boxes=boxes)
@@ -40,7 +43,7 @@ def measure(realism: str, duration: float = 20.0) -> dict[str, Any]:
         truth, ranges = np.array(sim.sensor(LIDAR).truth.ranges), np.array(scans.kept)
         last, motion = scans.last, np.array(imu.kept)
     near, far = (truth < 0.45), (truth > 1.9) & (truth < 2.1)
-    errors = ranges - truth
+    errors = ranges - np.where(np.isfinite(truth), truth, 0.0)
     root = math.sqrt(imu.rate)
     missing = ranges[:, ~np.isfinite(truth)]
     return {
@@ -48,7 +51,8 @@ def measure(realism: str, duration: float = 20.0) -> dict[str, Any]:
         "near": 1e3 * float(errors[:, near].std()), "far": 1e3 * float(errors[:, far].std()),
         "inside": 100 * float((np.abs(errors[:, far]) < 0.035 * truth[far]).mean()),
         "no_return": float(missing.flat[0]) if missing.size else math.nan,
-        "gyro": math.degrees(float(motion[:, 0].std()) / root), "force": 1e6 * float(motion[:, 1].std()) / root / 9.80665,
+        "gyro": math.degrees(float(motion[:, 0].std()) / root),
+        "force": 1e6 * float(motion[:, 1].std()) / root / 9.80665,
         "gravity": 100 * (float(motion[:, 1].mean()) / 9.8 - 1),
     }  # fmt: skip
 

@@ -69,7 +69,10 @@ def _usable_elements(sensor: SceneSensor, preset: Preset) -> tuple[Settings, lis
     """
     elements: dict[str, object] = {}
     missing: list[str] = []
+    rate = sensor.rate if sensor.params.has("update_rate") else preset.rate
     for name, value in preset.elements.items():
+        if name == "sweep" and not rate > 0:
+            continue  # a scan at every step has no duration
         if name in preset.beside:
             own = next((child for child in sensor.params.children if child.name == name), None)
             if own is not None and not (own.where.file or "").startswith(SOURCE_PREFIX):

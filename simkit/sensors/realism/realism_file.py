@@ -200,7 +200,9 @@ class _FileReader:
             if key in found:
                 entries = self._items(node, key)
                 places = {str(name.value): self._where(name) for name, _ in node.value} if entries else {}
-                found[key] = tuple(self._rule(key, pattern, entry, places[pattern]) for pattern, entry in entries.items())
+                found[key] = tuple(
+                    self._rule(key, pattern, entry, places[pattern]) for pattern, entry in entries.items()
+                )
         if not any(found.values()) and not self._diagnostics.has_errors:
             self._error(root, "the file has neither sensors nor plugins", _form())
         return found["sensors"], found["plugins"]
