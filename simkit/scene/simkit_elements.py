@@ -22,7 +22,7 @@ OWN_ELEMENTS: Final[Mapping[str, frozenset[str]]] = MappingProxyType(
         "visual": frozenset({"reflectivity", "specularity", "transmittance"}),
         "sensor": frozenset(
             {"dropout", "encoder", "jitter", "latency", "latency_jitter", "phase", "preset", "set_rate_topic", "solar"}
-            | {"exposure_control", "image_sensor", "tone_curve", "vignetting", "white_balance"}
+            | {"exposure_control", "image_sensor", "shutter", "tone_curve", "vignetting", "white_balance"}
             | {"depth_error", "depth_holes", "flying_pixels", "lost_depth", "multipath", "occlusion_shadow"}
             | {"phase_wrap", "sweep"}
             | {"bandwidth", "calibration_error", "clock", "gaps", "latency_histogram", "saturation"}
