@@ -422,7 +422,7 @@ class LidarMeasurement(Sensor):
         poses = SweepPoses(self._poses_since(sample.start, tick, data), sample.start, self.sim.timestep)
         rays = self._caster.world_rays(progress.pattern, poses, columns)
         self._caster.cast(data, rays, self._start, hits)
-        numbers = rays.numbers
+        numbers = rays.numbers.ravel()
         part = ScanPart(numbers, hits.distances[numbers], hits.geoms[numbers], self._retro, self._names)
         return ScanProgress(progress.pattern, until, (*progress.parts, part))
 
