@@ -53,7 +53,7 @@ if TYPE_CHECKING:
         SimkitError,
         SimulationDiverged,
     )
-    from simkit.facade import compare, launch, sweep
+    from simkit.facade import compare, fit, launch, sweep
     from simkit.params import Params
     from simkit.plugins.base import ModelPlugin, Plugin, SensorPlugin, VisualPlugin, WorldPlugin
     from simkit.pose import Pose
@@ -96,6 +96,7 @@ __all__ = [
     "check",
     "compare",
     "describe",
+    "fit",
     "launch",
     "load",
     "render_view",
@@ -122,7 +123,7 @@ _MODULES = {
     "simkit.pose": ("Pose",),
     "simkit.recording.export.data_frames": ("to_dataframe",),
     "simkit.run_spec": ("Check", "RunSpec"),
-    "simkit.facade": ("compare", "launch", "sweep"),
+    "simkit.facade": ("compare", "fit", "launch", "sweep"),
     "simkit.plugins.base": ("Plugin", "WorldPlugin", "ModelPlugin", "SensorPlugin", "VisualPlugin"),
     "simkit.deferred_response": ("DeferredResponse",),
     "simkit.runtime.world_variation": ("apply_overrides",),

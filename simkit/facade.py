@@ -14,6 +14,7 @@ from simkit.install_command import install_command
 
 if TYPE_CHECKING:
     from simkit_identification.comparison.compare import compare as compare
+    from simkit_identification.fitting.fit import fit as fit
     from simkit_launch.launch import launch as launch
     from simkit_learning.gym import Batched as Batched
     from simkit_learning.gym import EnvironmentSpec as EnvironmentSpec
@@ -30,6 +31,7 @@ MODULES: Final[dict[str, str]] = {
     "sim.set_ros_parameters": "simkit_nodes.lock_step",
     "sim.view": "simkit_view.view.script_view",
     "simkit.compare": "simkit_identification.comparison.compare",
+    "simkit.fit": "simkit_identification.fitting.fit",
     "simkit.gym": "simkit_learning.gym",
     "simkit.launch": "simkit_launch.launch",
     "simkit.sweep": "simkit_learning.sweeps.sweep",

@@ -44,6 +44,8 @@ INTEGERS = {
     ("compiler/meshes/convex_decomposition.py", "p.is_solid for p in pieces"): "solid pieces",
     ("compiler/meshes/parallel_conversion.py", "sizes.values()"): "bytes",
     ("compiler/meshes/parallel_conversion.py", "sizes[file] for file in files"): "bytes",
+    ("simkit_identification/fitting/fit.py", "recording.size for recording in recordings"): "readings",
+    ("simkit_identification/fitting/problem.py", "reading.values.size for reading in self.readings"): "readings",
     ("simkit_learning/sweeps/report.py", "n for status, n in statuses.items() if status != 'ok'"): "runs",
     (
         "loaders/sdf/solid_moments.py",

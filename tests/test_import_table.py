@@ -88,6 +88,7 @@ ROOMS: dict[str, set[str]] = {
 """The rooms that each room may use, beside the small modules."""
 
 PACKS_OF_PACKS = {
+    "simkit_identification": {"simkit_learning"},
     "simkit_launch": {"simkit_nodes", "simkit_terminal"},
     "simkit_learning": {"simkit_verification"},
     "simkit_motion": {"simkit_control", "simkit_nodes"},
@@ -114,6 +115,7 @@ HEAVY = {
     "coal": "optional: the extra `labs`",
     "cloudpickle": "optional: the extra `experiments`",
     "ctypes": "only functions of Windows need it",
+    "cmaes": "optional: the extra `fit`",
     "cv2": "0.1 s",
     "embreex": "optional: has no wheels for some machines",
     "concurrent": "0.02 s; few commands start processes",

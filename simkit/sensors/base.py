@@ -17,6 +17,7 @@ from simkit.compiler import Compiled, SpecBuilder
 from simkit.compiler.name_map import NameMap
 from simkit.diagnostic_record import TEXT_SOURCE
 from simkit.diagnostics import Diagnostics, Severity, Where
+from simkit.errors import InputError
 from simkit.linear_algebra import matmul
 from simkit.msgs.message_types import Message
 from simkit.msgs.topic_names import valid_topic
@@ -207,14 +208,22 @@ class Sensor(Sampler):
 
         Raises:
             ValueError: the rate is negative, NaN or infinite.
+            InputError: SK-SENSOR-203 the sensor cannot measure at this rate.
         """
         rate = checked_number(rate, "rate", 0.0, unit="Hz")
         self.sim.engine.check_open()
+        problem = self.rate_problem(rate)
+        if problem:
+            raise InputError("SK-SENSOR-203", f"sensor {self.scoped!r} cannot sample at {rate:g} Hz: {problem}")
         self.sim.communication.bus.settle()
         if self._noises and self._sample is not None:
             self.latest  # noqa: B018 - make this message now, because it may contain the rate of its sample
         self._apply_rate(rate)
         self.sim.engine.reschedule()
+
+    def rate_problem(self, rate: float) -> str:
+        """Return why the sensor cannot measure at a rate [Hz]; empty if it can."""
+        return ""
 
     def optical_frames(self) -> dict[str, Pose]:
         """Return the poses of all other frames that the messages name, in the sensor's frame."""
@@ -257,7 +266,7 @@ class Sensor(Sampler):
         options, quirks = self.timing, sim.world.gazebo_quirks
         self._times = SampleTimes(options, sim.engine.clock, sim.engine.streams, self.scoped, in_milliseconds=quirks)
         delays, keeps_order = self._message_delays()
-        if options.latency > 0 or delays:
+        if options.latency > 0 or delays or self.lasting is not None:
             origin = options, sim.engine.clock, sim.engine.streams, self.scoped
             self._delayed = DelayedReadings(*origin, delays, keeps_order)
         self._report_timing(sim)
@@ -380,6 +389,7 @@ class Sensor(Sampler):
             problem = "expected a finite number of at least 0"
         elif self.sim.world.gazebo_quirks and file_rate > 0 and not 0 < rate <= file_rate:
             problem = f"Gazebo allows at most {file_rate:g} Hz, the rate of the file"
+        problem = problem or self.rate_problem(rate)
         if not problem:
             self.set_rate(rate)
             return
@@ -418,6 +428,8 @@ def sensor_rule(sensor: Sensor) -> SensorRule:
     """
     if "array_rule" not in vars(type(sensor)):
         raise CannotBatchError(f"sensor {sensor.scoped!r} ({sensor.kind})")
+    if sensor.lasting is not None:
+        raise CannotBatchError(f"the sweep of sensor {sensor.scoped!r}")
     if not sensor.keeps_to_grid:
         raise CannotBatchError(f"latency, jitter, drifting noise or a battery of sensor {sensor.scoped!r}")
     if sensor.artefacts:

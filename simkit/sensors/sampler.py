@@ -16,6 +16,7 @@ from simkit.runtime.communication.subscription import LazyMessage, PendingWork
 from simkit.runtime.engine.physics_state import HeldState
 from simkit.runtime.engine.scheduler import Timetable
 from simkit.sensors.artefacts import Artefact, MessageArtefact
+from simkit.sensors.lasting_samples import LastingSample, LastingSamples, LastingTimetable
 from simkit.sensors.noise import NoiseKeeper
 from simkit.sensors.sample import Batch, Memory, Product, Reading, Sample
 from simkit.sensors.sample_packing import SampleGroup
@@ -36,6 +37,7 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
     timing: TimingOptions
     batch: Batch | None = None
     batch_index = 0
+    lasting: LastingSamples | None = None  # samples that are being measured, of a kind whose measurement lasts
     is_manual = False  # True if only calls of `sample` take samples, and none are taken at the rate
     _times: SampleTimes
 
@@ -123,6 +125,22 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         """
         return ()
 
+    # a kind whose measurement lasts sets `lasting` before it is attached, and overrides the next four methods and
+    # `capture_held`, which makes the reading from the surroundings that `end_measurement` returns
+
+    def measurement_ticks(self, index: int) -> int:
+        """Return the number of ticks from the time stamp of a sample to the end of its measurement."""
+        return 0
+
+    def begin_measurement(self, index: int, tick: int) -> Memory:
+        """Begin the measurement of a sample, and return its progress: values that are never modified."""
+
+    def continue_measurement(self, sample: LastingSample, tick: int) -> Memory:
+        """Measure what the sample has had time for, because the model is about to be modified; return the progress."""
+
+    def end_measurement(self, sample: LastingSample, tick: int) -> Memory:
+        """Return what `capture_held` needs besides the physics of this tick, at which the measurement ends."""
+
     @classmethod
     def make_batches(cls, sensors: Sequence[Self]) -> None:
         """Make batches of the sensors of this kind that can sample together; see `simkit.sensors.sensor_batch`."""
@@ -149,6 +167,8 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
 
     def sample_now(self, tick: int) -> None:
         """Take a sample at the present tick unless there is one, and measure it now."""
+        if self.lasting is not None:  # its samples take their time
+            return
         now = self.sim.time_ns
         if self._sample is None or self._sample.time_ns != now:
             self.sample(tick)
@@ -172,16 +192,27 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
     def timetable(self) -> Timetable | None:
         """Return the ticks at which `sample` must be called at the current rate; None is every step."""
         grid = self._times.grid(self.update_rate)
+        if self.lasting is not None and self._delayed is not None and grid is not None:
+            times = grid, self._delayed, lambda: self._index + 1, self.lasting, self.measurement_ticks
+            self._latency_timetable = LastingTimetable(*times)
+            return self._latency_timetable
         if self._delayed is None or grid is None:
             self._latency_timetable = None
             return grid
         self._latency_timetable = LatencyTimetable(grid, self._delayed, lambda: self._index + 1)
         return self._latency_timetable
 
+    def scene_timetable(self) -> Timetable | None:
+        """Return the ticks at which the scenery must have its pose; None is every step."""
+        return None if self.lasting is not None else self.timetable()
+
     def sample(self, tick: int) -> None:
         """Sample at a due tick: measure and publish if the sensor has a reader, else keep the physics state."""
-        if self._delayed is not None and not self._deliver_and_check_due(self._delayed, tick):
-            return
+        if self._delayed is not None:
+            if self.lasting is not None:
+                self._end_measurements(self.lasting, self._delayed, tick)
+            if not self._deliver_and_check_due(self._delayed, tick):
+                return
         if self._selects_ticks and not (self._is_on() and self.accepts(tick)):
             return
         sim = self.sim
@@ -209,6 +240,12 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         sample, read_publishers = self._begin_sample(tick), self._read_publishers
         if self._message_artefacts and self._loses(sample):
             return
+        if self.lasting is not None and self._delayed is not None:
+            end = tick + self.measurement_ticks(sample.index)
+            self.lasting.begin(sample, tick, end, self.begin_measurement(sample.index, tick))
+            self._end_measurements(self.lasting, self._delayed, tick)
+            self._deliver(self._delayed, tick)
+            return
         if self._is_read:
             # the noise and the message can wait, but the data change with the next step
             sample.raw = self._capture_now(tick)
@@ -232,6 +269,9 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         """Capture the samples that are not captured yet, before their model is modified."""
         for sample in self._kept_samples():
             self._capture_sample(sample)
+        if self.lasting is not None and self.lasting.samples:
+            tick = self.sim.engine.tick
+            self.lasting.advance(lambda sample: self.continue_measurement(sample, tick))
 
     def leave(self) -> None:
         """Finish the samples that may still be read; called when the sensor's model is removed."""
@@ -250,11 +290,14 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         self._process_pending()
         # a sample is completed and never changed afterwards, so snapshots may share it
         flight = tuple(self._delayed.samples) if self._delayed is not None else ()
-        return self._index, self._time_ns, self._sample, flight, self.update_rate, self.memory()
+        lasting = self.lasting.samples if self.lasting is not None else ()
+        return self._index, self._time_ns, self._sample, flight, self.update_rate, self.memory(), lasting
 
     def set_state(self, state: Memory) -> None:
         self._process_pending()  # pending captures belong to the present run; later they would follow restored samples
-        self._index, self._time_ns, self._sample, flight, rate, memory = state
+        self._index, self._time_ns, self._sample, flight, rate, memory, lasting = state
+        if self.lasting is not None:
+            self.lasting.samples = lasting
         if self._delayed is not None:
             self._delayed.samples.clear()
             self._delayed.samples.extend(flight)
@@ -385,6 +428,21 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         self._sample = None
         if self._delayed is not None:
             self._delayed.samples.clear()
+        if self.lasting is not None:
+            self.lasting.samples = ()
+
+    def _end_measurements(self, lasting: LastingSamples, delayed: DelayedReadings, tick: int) -> None:
+        """Capture the samples whose measurement ends at this tick; they arrive after the sensor's latency."""
+        for begun in lasting.take_ended(tick):
+            sample = begun.ended()
+            sample.surroundings = self.end_measurement(begun, tick)
+            if self.is_read_now:
+                sample.raw = self.capture_held(self.sim.mj_model, self.computed_data(), sample)
+            else:
+                sample.held = self.sim.engine.physics.hold()
+            arrival = delayed.add(tick, sample)
+            if self._message_artefacts:
+                self._stamp(sample, arrival)
 
     def _deliver_and_check_due(self, delayed: DelayedReadings, tick: int) -> bool:
         """Deliver the samples that have arrived, and check whether a sample is due as well."""

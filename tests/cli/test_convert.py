@@ -334,26 +334,36 @@ OWN = """<sdf version="1.9"><world name="w"><gazebo_quirks>1</gazebo_quirks>
   <random_walk>0.3</random_walk><correlation_time>4</correlation_time></noise></x></angular_velocity></imu></sensor>
 <sensor name="sonar" type="sonar"><sonar><axis>1 0 0</axis><noise type="gaussian"><stddev>0.1</stddev></noise></sonar>
 </sensor><sensor name="field" type="magnetometer"><magnetometer><date>2026.5</date></magnetometer></sensor>
-<sensor name="lds" type="ray"><preset>LDS-01</preset>
-  <dropout><probability>0.1</probability></dropout></sensor>
+<sensor name="lds" type="ray"><preset>LDS-01</preset><sweep>true</sweep>
+  <dropout><probability>0.1</probability></dropout><signal><range>3</range></signal><intensity/><glass_and_mirrors/>
+  <range_error><bias>0.01</bias></range_error><no_return><value>zero</value></no_return><sun/>
+  <beam><divergence>0.01</divergence></beam><blind_zone><range>0.2</range></blind_zone></sensor>
 <sensor name="eye" type="depth_camera"><camera><image><width>8</width><height>6</height></image>
   <disparity_noise><baseline>0.05</baseline><stddev>0.1</stddev></disparity_noise></camera>
   <depth_error><scale>-0.01</scale></depth_error><depth_holes><probability>0.1</probability></depth_holes>
   <flying_pixels/><multipath/><occlusion_shadow><baseline>0.05</baseline></occlusion_shadow>
   <phase_wrap><range>50</range></phase_wrap><lost_depth><value>nan</value></lost_depth></sensor>
+<sensor name="colour" type="camera"><update_rate>30</update_rate>
+  <camera><image><width>8</width><height>6</height></image></camera>
+  <shutter><exposure>0.01</exposure></shutter><vignetting/><exposure_control/><image_sensor/><white_balance/><tone_curve/>
+</sensor>
 <sensor name="mems" type="imu"><bandwidth><angular_velocity>40</angular_velocity></bandwidth><calibration_error>
   <angular_velocity><scale>0 0 0.01</scale></angular_velocity></calibration_error><saturation>
   <linear_acceleration>40</linear_acceleration></saturation><clock><offset>0.1</offset></clock>
   <gaps><probability>0.1</probability></gaps><latency_histogram><values>0.01</values></latency_histogram></sensor>
+<sensor name="gps" type="navsat"><outages><window>1 2</window></outages><multipath><stddev>1</stddev></multipath>
+  <fix_types><fix><status>sbas</status></fix></fix_types></sensor>
 <sensor name="solar" type="custom" gz:type="solar"><update_rate>50</update_rate><solar><normal>0 0 1</normal></solar>
 </sensor><collision name="c"><geometry><box><size>1 1 1</size></box></geometry><reflectivity>0.1</reflectivity>
-<transmittance>0.2</transmittance><specularity>0.3</specularity></collision></link><link name="k"/><joint name="j" type="revolute"><parent>l</parent><child>k</child><axis/>
+<transmittance>0.2</transmittance><specularity>0.3</specularity></collision></link>
+<link name="k"/><joint name="j" type="revolute"><parent>l</parent><child>k</child><axis/>
 <sensor name="e" type="custom" gz:type="encoder"><encoder><resolution>0.001</resolution></encoder></sensor></joint>
 <link name="o"/><joint name="i" type="revolute"><parent>l</parent><child>o</child><axis/></joint>
 <plugin filename="user" name="user"><latency>1</latency><sensor><phase>0</phase></sensor>
 <on_error>disable</on_error></plugin>
 <plugin filename="libgazebo_ros_diff_drive.so" name="d"><left_joint>j</left_joint><right_joint>i</right_joint>
-<odometry_noise><wheel_variance>1e-4</wheel_variance></odometry_noise></plugin>
+<odometry_noise><wheel_variance>1e-4</wheel_variance></odometry_noise>
+<actuation_error><forward_error>0.1</forward_error></actuation_error></plugin>
 <plugin filename="gz-sim-joint-trajectory-controller-system" name="t"><interpolation>cubic</interpolation></plugin>
 <plugin filename="libgazebo_ros_joint_pose_trajectory.so" name="p"><point_times>from_start</point_times></plugin>
 <plugin filename="gz-sim-pose-publisher-system" name="gz::sim::systems::PosePublisher">

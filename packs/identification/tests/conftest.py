@@ -1,8 +1,8 @@
-"""Import path for the bags of the tests."""
+"""Import path for the shared test data."""
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent / "comparison"))
+sys.path.insert(0, str(Path(__file__).parent))

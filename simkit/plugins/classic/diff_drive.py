@@ -22,6 +22,7 @@ from simkit.params import Params
 from simkit.plugins.classic.commanded_drive import CommandedDrive
 from simkit.plugins.drives.drive_outputs import DriveOutputOptions, DriveOutputs
 from simkit.plugins.drives.drive_rule import DifferentialDriveRule, DriveWheel
+from simkit.plugins.drives.motion_errors import MotionErrorOptions, with_errors
 from simkit.plugins.drives.odometry import (
     COMMAND_TYPES,
     DeadReckoning,
@@ -93,12 +94,14 @@ class CommonDiffDriveOptions(DriveOutputOptions, abc.ABC):
     covariance_y: float = number(1e-5, minimum=0)
     covariance_yaw: float = number(1e-3, minimum=0)
     odometry_noise: OdometryNoiseOptions = block(OdometryNoiseOptions)
+    actuation_error: MotionErrorOptions = block(MotionErrorOptions)
 
     def read_all(self) -> Self:
         """Read the pairs of wheels, then all other options, and convert `<odometry_noise>`."""
         self.pairs = self._read_pairs()
         super().read_all()
         self.noise = odometry_noise(self.odometry_noise)
+        self.actuation = self.actuation_error.motion_errors
         return self
 
     @abc.abstractmethod
@@ -199,7 +202,8 @@ class GazeboRosDiffDrive(CommandedDrive):
 
     The last command stays active until the next. `<publish_ground_truth>` (simkit's own) publishes the model's true
     pose on `ground_truth/odom`, at the same instants as the odometry. `<odometry_noise>` (simkit's own) adds errors to
-    the odometry of either source; the covariance of the odometry accumulates the wheels' errors.
+    the odometry of either source; the covariance of the odometry accumulates the wheels' errors. `<actuation_error>`
+    (simkit's own) makes the wheels turn faster or slower than commanded.
     """
 
     endpoints: ClassVar[tuple[Endpoint, ...]] = (
@@ -248,7 +252,7 @@ class GazeboRosDiffDrive(CommandedDrive):
 
     def before_step(self) -> None:
         """Move each wheel's rim speed towards its target, by at most the acceleration limit."""
-        (forward, turn), elapsed = self._command, self._elapsed()
+        (forward, turn), elapsed = with_errors(self.options.actuation, self._command), self._elapsed()
         for index, pair in enumerate(self.options.pairs):
             for side, target in enumerate(rim_speeds(forward, turn, pair.separation)):
                 wheel = 2 * index + side
@@ -341,6 +345,8 @@ class GazeboRosDiffDriveRule(DifferentialDriveRule):
     """Drive of Gazebo Classic in n simulations, with any number of pairs of wheels."""
 
     def __init__(self, plugin: GazeboRosDiffDrive) -> None:
+        if plugin.options.actuation is not None:
+            raise CannotBatchError(f"<actuation_error> of plugin {type(plugin).__name__}")
         pairs = [(side, pair) for pair in plugin.options.pairs for side in (0, 1)]
         wheels = [
             DriveWheel(joint, servo, side, pair.separation, pair.radius)

@@ -10,11 +10,13 @@ import numpy as np
 from simkit.params import Params
 from simkit.plugins.drives.drive_outputs import DriveOutputOptions, DriveOutputs
 from simkit.plugins.drives.kinematic_motion import KinematicMotion, KinematicMover, KinematicPlugin, VelocityTarget
+from simkit.plugins.drives.motion_errors import MotionErrorOptions, with_errors
 from simkit.plugins.drives.odometry import COMMAND_TYPES, TrueMotion, planar_covariance
 from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, BodyTwist
+from simkit.plugins.drives.odometry_noise import ErringOdometry, WheellessOdometryNoiseOptions, odometry_noise
 from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.one_time_warnings import are_usable
-from simkit.plugins.options import boolean, number, text
+from simkit.plugins.options import block, boolean, number, text
 from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import Pose, quat_from_rpy
 
@@ -43,6 +45,8 @@ class PlanarMoveOptions(DriveOutputOptions):
     covariance_x: float = number(1e-5, minimum=0)
     covariance_y: float = number(1e-5, minimum=0)
     covariance_yaw: float = number(1e-3, minimum=0)
+    odometry_noise: WheellessOdometryNoiseOptions = block(WheellessOdometryNoiseOptions)
+    actuation_error: MotionErrorOptions = block(MotionErrorOptions)
     odometry_frame: str = text("odom")
     robot_base_frame: str = text("base_footprint")
     update_rate: float = number(20.0, "Hz", minimum=0)
@@ -57,6 +61,8 @@ class PlanarMoveRos1Options(DriveOutputOptions):
     update_rate = 0.0
     is_level = True
 
+    odometry_noise: WheellessOdometryNoiseOptions = block(WheellessOdometryNoiseOptions)
+    actuation_error: MotionErrorOptions = block(MotionErrorOptions)
     publish_rate: float = number(20.0, "Hz", element="odometryRate", minimum=0)
     publishes_transform: bool = boolean(True, element="publishOdometryTf")
     cmd_timeout: float = number(-1.0, "s", element="cmdTimeout")
@@ -95,6 +101,8 @@ class GazeboRosPlanarMove(KinematicPlugin):
 
     `libgazebo_ros_force_based_move.so` of ROS 1 reaches the same velocities by forces; its gains are not used.
 
+    `<odometry_noise>` and `<actuation_error>` (simkit's own) add errors to the odometry and to the motion.
+
     Gazebo sets the velocity only at `<update_rate>` (20 Hz), and friction brakes the model in between. simkit reads
     commands at this rate, but sets the velocity at every step.
     """
@@ -123,6 +131,13 @@ class GazeboRosPlanarMove(KinematicPlugin):
         self._requested = self._command = (0.0, 0.0, 0.0)
         self._requested_ns = self.sim.time_ns
         self._next = 0
+        self._actuation = options.actuation_error.motion_errors
+        self._erring: ErringOdometry | None = None
+        noise = odometry_noise(options.odometry_noise)
+        if noise is not None:
+            sizes = options.odometry_noise.wheel_radius, options.odometry_noise.wheel_separation
+            stream = self.random("odometry_noise", 2)
+            self._erring = ErringOdometry(noise, *sizes, stream, self._true.state()[0], self.sim.time_ns)
         self._motion = KinematicMotion(self.sim, self._links, self._canonical, self._in_canonical)
         self._mover = KinematicMover(self.sim)
         if not self._motion:
@@ -138,6 +153,7 @@ class GazeboRosPlanarMove(KinematicPlugin):
         requested = float(twist.linear.x), float(twist.linear.y), float(twist.angular.z)
         if are_usable(*requested):
             (ahead, aside, _), (_, _, turn) = self.bounded((*requested[:2], 0.0), (0.0, 0.0, requested[2]))
+            ahead, aside, turn = with_errors(self._actuation, (ahead, aside, turn))
             self._requested, self._requested_ns = (ahead, aside, turn), self.sim.time_ns
         else:
             self._once.not_finite()
@@ -162,12 +178,18 @@ class GazeboRosPlanarMove(KinematicPlugin):
 
     def after_step(self) -> None:
         """Publish the odometry and its transform."""
+        erring = self._erring
+        if erring is not None:
+            erring.follow(self._true.state()[0], self.sim.time_ns)
         if self._outputs.wants_odometry:
-            self._outputs.tell(*self._reading(), *self._covariances)
+            spread = self._covariances if erring is None else erring.covariances or self._covariances
+            self._outputs.tell(*self._reading(), *spread)
 
     def _reading(self) -> tuple[Pose, BodyTwist]:
-        """Return the true pose, and the twist in the plane along the heading."""
+        """Return the pose, and the twist in the plane along the heading; the true ones without errors."""
         pose, twist = self._true.state()
+        if self._erring is not None:
+            return self._erring.pose(pose), self._erring.twist
         level = quat_from_rpy(0.0, 0.0, -float(pose.rpy[2]))
         x, y, _ = Pose((0.0, 0.0, 0.0), level).rotate(pose.rotate(twist.linear)).tolist()
         return pose, BodyTwist((x, y, 0.0), (0.0, 0.0, float(pose.rotate(twist.angular)[2])))

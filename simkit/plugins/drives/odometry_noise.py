@@ -18,16 +18,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from simkit.linear_algebra import matmul
+from simkit.plugins.drives.motion_errors import FAR, MotionErrorOptions, MotionErrors
 from simkit.plugins.drives.odometry import UNKNOWN, DeadReckoning, base_motion
 from simkit.plugins.drives.odometry_messages import BodyTwist
-from simkit.plugins.options import Options, number
+from simkit.plugins.options import number
 from simkit.pose import Pose, Vector, quat_from_rpy, quat_multiply, wrap_angle
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.random_streams import RandomStream
 
 _PLANAR = np.ix_((0, 1, 5), (0, 1, 5))
-_FAR = 0.9  # largest relative error; at 1 the assumed size would be zero
+_LARGEST_SLIP = 0.9  # greatest share that slip adds to the measured motion
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +41,9 @@ class OdometryNoise:
             large.
         separation_error: Relative error of the wheel separation that the drive assumes.
         resolution: Encoder resolution [rad per count]; 0 for exact angles.
+        motion: Relative errors of the measured motion by direction.
+        turn_slip: Relative slip per turning rate [s/rad]: the wheels roll farther than the base moves.
+        acceleration_slip: Relative slip per acceleration along the heading [s²/m], by the load on the wheels.
     """
 
     wheel_variance: float = 0.0
@@ -47,16 +51,33 @@ class OdometryNoise:
     right_radius_error: float = 0.0
     separation_error: float = 0.0
     resolution: float = 0.0
+    motion: MotionErrors | None = None
+    turn_slip: float = 0.0
+    acceleration_slip: float = 0.0
+
+    @property
+    def slips(self) -> bool:
+        """True if the wheels slip."""
+        return self.turn_slip > 0 or self.acceleration_slip > 0
 
 
-class OdometryNoiseOptions(Options):
+class OdometryNoiseOptions(MotionErrorOptions):
     """Options of the `<odometry_noise>` block."""
 
     counts_per_revolution: float = number(1.0, minimum=1)
     wheel_variance: float = number(0.0, minimum=0, maximum=1e3)
-    left_radius_error: float = number(0.0, minimum=-_FAR, maximum=_FAR)
-    right_radius_error: float = number(0.0, minimum=-_FAR, maximum=_FAR)
-    separation_error: float = number(0.0, minimum=-_FAR, maximum=_FAR)
+    left_radius_error: float = number(0.0, minimum=-FAR, maximum=FAR)
+    right_radius_error: float = number(0.0, minimum=-FAR, maximum=FAR)
+    separation_error: float = number(0.0, minimum=-FAR, maximum=FAR)
+    turn_slip: float = number(0.0, "s/rad", minimum=0, maximum=1e3)
+    acceleration_slip: float = number(0.0, "s²/m", minimum=0, maximum=1e3)
+
+
+class WheellessOdometryNoiseOptions(OdometryNoiseOptions):
+    """Options of the `<odometry_noise>` block of a drive that has no wheels itself, with the sizes of its wheels."""
+
+    wheel_radius: float = number(0.1, "m", minimum=1e-6)
+    wheel_separation: float = number(0.4, "m", minimum=1e-6)
 
 
 def odometry_noise(options: OdometryNoiseOptions) -> OdometryNoise | None:
@@ -70,6 +91,9 @@ def odometry_noise(options: OdometryNoiseOptions) -> OdometryNoise | None:
         right_radius_error=options.right_radius_error,
         separation_error=options.separation_error,
         resolution=2 * math.pi / counts,
+        motion=options.motion_errors,
+        turn_slip=options.turn_slip,
+        acceleration_slip=options.acceleration_slip,
     )
 
 
@@ -107,6 +131,7 @@ class NoisyOdometry:
         self._separation = separation * (1 + noise.separation_error)
         self._stream, self._index = stream, 0
         self._counted = tuple(self._count(angle) for angle in angles)
+        self._angles, self._speed = angles, 0.0
         self.reckoning = replace(start) if start is not None else DeadReckoning()
         self.covariance: Vector = np.zeros((3, 3))
         self.twist, self.twist_covariance = BodyTwist(), np.zeros((2, 2))
@@ -124,12 +149,14 @@ class NoisyOdometry:
             left: Angle of the left wheel [rad].
             right: Angle of the right wheel [rad].
             elapsed: Time since the last update [s].
-            sideways: True displacement to the left [m]. Wheels do not measure this displacement, so no error is added.
+            sideways: True displacement to the left [m], with the errors by direction and slip only.
         """
         self._index += 1
         counted = tuple(self._count(angle) for angle in (left, right))
         rolled = [(b - a) * r for a, b, r in zip(self._counted, counted, self._radii, strict=True)]
         self._counted = counted
+        if self.noise.motion is not None or self.noise.slips:
+            rolled, sideways = self._with_motion_errors(rolled, sideways, self._slip(left, right, elapsed))
         variances = np.array([self.noise.wheel_variance * abs(distance) for distance in rolled])
         if self.noise.wheel_variance > 0:
             errors = np.sqrt(variances) * self._stream.normal(self._index)
@@ -139,6 +166,27 @@ class NoisyOdometry:
         self.reckoning.advance(left_distance, right_distance, self._separation, sideways)
         if elapsed > 0:
             self._update_twist(rolled, variances, elapsed, sideways)
+
+    def _slip(self, left: float, right: float, elapsed: float) -> float:
+        """Return the share by which the wheels roll farther than the base moves, from the angles without counts."""
+        if not self.noise.slips or elapsed <= 0:
+            return 0.0
+        rolled = [(b - a) * r for a, b, r in zip(self._angles, (left, right), self._radii, strict=True)]
+        ahead, _, turn = base_motion(rolled[0], rolled[1], self._separation)
+        speed, before = ahead / elapsed, self._speed
+        self._angles, self._speed = (left, right), speed
+        slip: float = self.noise.turn_slip * abs(turn) / elapsed
+        slip += self.noise.acceleration_slip * abs(speed - before) / elapsed
+        return min(slip, _LARGEST_SLIP)
+
+    def _with_motion_errors(self, rolled: list[float], sideways: float, slip: float) -> tuple[list[float], float]:
+        """Return the distances that the wheels roll and the displacement to the left, as they are measured [m]."""
+        ahead, _, turn = base_motion(rolled[0], rolled[1], self._separation)
+        if self.noise.motion is not None:
+            ahead, sideways, turn = self.noise.motion.apply(ahead, sideways, turn)
+        ahead, sideways, turn = (part * (1.0 + slip) for part in (ahead, sideways, turn))
+        half = turn * self._separation / 2
+        return [ahead - half, ahead + half], sideways
 
     def messages_covariance(self) -> tuple[Vector, Vector]:
         """Return the row-major 6×6 covariances of pose and twist in ROS order, shape (36,) each.
@@ -218,6 +266,49 @@ class EquivalentWheelAngles:
         self.angles = (left + (ahead - half) / self._radius, right + (ahead + half) / self._radius)
         self._last = (x, y, yaw)
         return (*self.angles, across)
+
+
+class ErringOdometry:
+    """Odometry that repeats the motion of another odometry with errors, for a drive of any kind.
+
+    The errors are those of two wheels that make the same motion, left and right.
+
+    Args:
+        noise: Errors of the wheels.
+        radius: Radius of the wheels [m].
+        separation: Distance between the wheels [m].
+        stream: Random stream; every update draws two normal numbers.
+        pose: Initial pose of the odometry without errors.
+        time_ns: Time of this pose [ns].
+    """
+
+    def __init__(
+        self, noise: OdometryNoise, radius: float, separation: float, stream: RandomStream, pose: Pose, time_ns: int
+    ) -> None:
+        self._wheels = EquivalentWheelAngles(pose, radius, separation)
+        self._noisy = NoisyOdometry(noise, radius, separation, stream, self._wheels.angles, self._wheels.start)
+        self._time_ns = time_ns
+        self._is_random = noise.wheel_variance > 0
+
+    def follow(self, pose: Pose, time_ns: int) -> None:
+        """Advance to the next pose of the odometry without errors, at a time [ns]."""
+        left, right, sideways = self._wheels.follow(pose)
+        self._noisy.advance(left, right, (time_ns - self._time_ns) * 1e-9, sideways)
+        self._time_ns = time_ns
+
+    def pose(self, ideal: Pose) -> Pose:
+        """Return the pose with errors, with height and tilt of the pose without them."""
+        return replace_planar_pose(ideal, self._noisy.reckoning)
+
+    @property
+    def twist(self) -> BodyTwist:
+        """Twist over the last update, in the body's axes."""
+        return self._noisy.twist
+
+    @property
+    def covariances(self) -> tuple[Vector, ...]:
+        """Covariances of pose and twist; none without random errors."""
+        return self._noisy.messages_covariance() if self._is_random else ()
 
 
 def replace_planar_pose(pose: Pose, reckoned: DeadReckoning) -> Pose:

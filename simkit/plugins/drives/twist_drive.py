@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING, cast
 
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
+from simkit.plugins.drives.motion_errors import MotionErrorOptions, MotionErrors, with_errors
 from simkit.plugins.drives.odometry import COMMAND_TYPES
 from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, BodyTwist, odometry_message, transforms
+from simkit.plugins.drives.odometry_noise import ErringOdometry, OdometryNoiseOptions, odometry_noise
 from simkit.plugins.drives.speed_limits import SpeedLimiter, SpeedLimitOptions, limit_each
 from simkit.plugins.drives.wheel_joints import find_wheels
 from simkit.plugins.find_entities import read_topic
 from simkit.plugins.one_time_warnings import are_usable
-from simkit.plugins.options import Options, number, text
+from simkit.plugins.options import Options, block, number, text
 
 if TYPE_CHECKING:
     from simkit.compiler import ActuatorRef, SpecBuilder
@@ -42,6 +44,8 @@ class WheeledDriveOptions(SpeedLimitOptions, OdometryOptions):
 
     wheel_separation: float = number(1.0, "m", minimum=1e-6)
     wheel_radius: float = number(0.2, "m", minimum=1e-6)
+    odometry_noise: OdometryNoiseOptions = block(OdometryNoiseOptions)
+    actuation_error: MotionErrorOptions = block(MotionErrorOptions)
 
 
 class TwistDrive(ModelPlugin):
@@ -51,6 +55,8 @@ class TwistDrive(ModelPlugin):
     _limiters: Sequence[SpeedLimiter]  # one for each speed
     _canonical: str  # scoped name of the link that is the odometry's child frame
     _radius: float  # wheel radius [m]
+    actuation: MotionErrors | None = None  # differences between the speeds and their commands
+    _erring: ErringOdometry | None = None
 
     def add_wheels(
         self, scene: SceneModel, builder: SpecBuilder, named: Mapping[str, Sequence[str]]
@@ -126,11 +132,11 @@ class TwistDrive(ModelPlugin):
         self._target, self._settled = speeds, False
 
     def next_speeds(self) -> Speeds:
-        """Advance the limited speeds by one step towards the target, and return them."""
+        """Advance the limited speeds by one step towards the target; return them with the errors of the actuation."""
         speeds = limit_each(self._limiters, self._target, self._last, self._before_last, self.period)
         self._settled = speeds == self._last == self._before_last
         self._before_last, self._last = self._last, speeds
-        return speeds
+        return with_errors(self.actuation, speeds)
 
     def turn_wheels(self, rims: Sequence[float]) -> None:
         """Set the wheel speed of each side.
@@ -147,6 +153,27 @@ class TwistDrive(ModelPlugin):
     @abc.abstractmethod
     def odometry_pose(self) -> Pose:
         """Return the pose of the base in the odometry frame."""
+
+    def add_odometry_errors(self, options: WheeledDriveOptions, pose: Pose) -> None:
+        """Repeat the odometry with the errors of `<odometry_noise>`, from an initial pose on; `load` calls this."""
+        noise = odometry_noise(options.odometry_noise)
+        if noise is not None:
+            sizes = options.wheel_radius, options.wheel_separation
+            stream = self.random("odometry_noise", 2)
+            self._erring = ErringOdometry(noise, *sizes, stream, pose, self.sim.time_ns)
+
+    def publish_reckoned(self, pose: Pose, twist: BodyTwist) -> None:
+        """Publish the odometry, with its errors if there are any."""
+        erring = self._erring
+        if erring is None:
+            self.publish_odometry(pose, twist)
+        else:
+            erring.follow(pose, self.sim.time_ns)
+            self.publish_odometry(erring.pose(pose), erring.twist, *erring.covariances)
+
+    def reckoned_pose(self, pose: Pose) -> Pose:
+        """Return a pose of the odometry, with its errors if there are any."""
+        return pose if self._erring is None else self._erring.pose(pose)
 
     def publish_odometry(self, pose: Pose, twist: BodyTwist, *covariances: Vector) -> None:
         """Publish the pose of the base and its transform, if the topics have subscribers.

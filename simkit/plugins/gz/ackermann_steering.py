@@ -101,6 +101,7 @@ class AckermannSteering(TwistDrive):
         self._separation = self.options.wheel_separation
         self._limit = self.options.steering_limit
         self._limiters = speed_limits(self.options)
+        self.actuation = None if self._only else self.options.actuation_error.motion_errors
         self._canonical = scene.canonical_link
         self._steering = [self._prepare_steering(f"{side}_steering_joint", scene, params, builder) for side in _SIDES]
         self.after_step_rate = NEVER
@@ -139,6 +140,7 @@ class AckermannSteering(TwistDrive):
             return
         self._wheels = [self.sim.joint(joints[0]) for joints in self._joint_names]
         self._odometry = AckermannOdometry(self._radius, self._base, self.period)
+        self.add_odometry_errors(self.options, self._odometry.reckoning.pose)
         self.open_odometry(parent, params)
 
     def _read_rest_of_gains(self, params: Params) -> None:
@@ -245,11 +247,11 @@ class AckermannSteering(TwistDrive):
     # ------------------------------------------------------------------ readings
 
     def odometry_pose(self) -> Pose:
-        return self._odometry.reckoning.pose
+        return self.reckoned_pose(self._odometry.reckoning.pose)
 
     def after_step(self) -> None:
         """Publish odometry and its transform."""
         if self._only:
             return
         self._odometry.reckon(joint_angles((*self._wheels, *self._turners)))
-        self.publish_odometry(self._odometry.reckoning.pose, self._odometry.twist)
+        self.publish_reckoned(self._odometry.reckoning.pose, self._odometry.twist)

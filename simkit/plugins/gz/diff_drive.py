@@ -13,12 +13,12 @@ from simkit.params import Params
 from simkit.plugins.drives.drive_rule import DifferentialDriveRule, DriveWheel
 from simkit.plugins.drives.odometry import FleetOdometry, TrueMotion, WheelOdometry, WheelOdometryRows, rim_speeds
 from simkit.plugins.drives.odometry_messages import ODOMETRY, odometry_message, planar_odometry, planar_transform
-from simkit.plugins.drives.odometry_noise import NoisyOdometry, OdometryNoiseOptions, odometry_noise
+from simkit.plugins.drives.odometry_noise import NoisyOdometry, odometry_noise
 from simkit.plugins.drives.speed_limits import limit_each, speed_limits
 from simkit.plugins.drives.twist_drive import Speeds, TwistDrive, WheeledDriveOptions
-from simkit.plugins.options import OptionsOf, block, boolean, texts
+from simkit.plugins.options import OptionsOf, boolean, texts
 from simkit.pose import Pose
-from simkit.runtime.array_rules import NEVER, Floats, Ids, Ticks, TopicRule, is_due
+from simkit.runtime.array_rules import NEVER, CannotBatchError, Floats, Ids, Ticks, TopicRule, is_due
 from simkit.runtime.handles.joint import wheel_angles
 
 if TYPE_CHECKING:
@@ -34,7 +34,6 @@ class DiffDriveOptions(WheeledDriveOptions):
 
     left_joint: tuple[str, ...] = texts(required=True)
     right_joint: tuple[str, ...] = texts(required=True)
-    odometry_noise: OdometryNoiseOptions = block(OdometryNoiseOptions)
     publish_ground_truth: bool = boolean()
 
 
@@ -42,9 +41,9 @@ class DiffDrive(TwistDrive):
     """Drives the wheels from `/model/<model>/cmd_vel`, and publishes wheel odometry on `/model/<model>/odometry`.
 
     The odometry is computed from the first pair of wheels. Its pose starts at zero and describes the point between
-    these wheels. Its twist is the mean over the last ten steps. Two options do not exist in Gazebo.
+    these wheels. Its twist is the mean over the last ten steps. Three options do not exist in Gazebo.
     `<publish_ground_truth>` publishes the true pose on `/model/<model>/ground_truth/odom`. `<odometry_noise>` adds
-    errors to the odometry, with their covariance.
+    errors to the odometry, with their covariance. `<actuation_error>` makes the wheels turn faster or slower.
     """
 
     options = OptionsOf(DiffDriveOptions)
@@ -55,6 +54,7 @@ class DiffDrive(TwistDrive):
         self._separation = self.options.wheel_separation
         self._radius = self.options.wheel_radius
         self._limiters = speed_limits(self.options)
+        self.actuation = self.options.actuation_error.motion_errors
         self._canonical = scene.canonical_link
         # a frequency of zero means every step, as in Gazebo
         self.after_step_rate = self.options.odom_publish_frequency
@@ -245,6 +245,8 @@ class DiffDriveRule(DifferentialDriveRule):
             for side, wheels_of_side in enumerate(plugin.wheels)
             for name, servo in wheels_of_side
         ]
+        if plugin.actuation is not None:
+            raise CannotBatchError(f"<actuation_error> of plugin {type(plugin).__name__}")
         super().__init__(plugin, plugin.command_topic, wheels)
         self._drive = plugin
 

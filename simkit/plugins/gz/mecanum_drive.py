@@ -81,6 +81,7 @@ class MecanumDrive(TwistDrive):
         self._radius = self.options.wheel_radius
         linear, angular = speed_limits(self.options)
         self._limiters = (linear, linear, angular)
+        self.actuation = self.options.actuation_error.motion_errors
         self._canonical = scene.canonical_link
         # a frequency of zero means every step, as in Gazebo
         self.after_step_rate = self.options.odom_publish_frequency
@@ -96,6 +97,7 @@ class MecanumDrive(TwistDrive):
         self.start()
         self._wheels = [self.sim.joint(joints[0]) for joints in self._joint_names]
         self._odometry = MecanumOdometry(self._radius, self._arm, self.period)
+        self.add_odometry_errors(self.options, self._odometry.reckoning.pose)
         self.open_topics(parent, params)
 
     def speeds_of(self, twist: Twist) -> Speeds:
@@ -109,12 +111,12 @@ class MecanumDrive(TwistDrive):
             self.turn_wheels([a * ahead + b * left + c * turn * self._arm for a, b, c in _SIGNS])
 
     def odometry_pose(self) -> Pose:
-        return self._odometry.reckoning.pose
+        return self.reckoned_pose(self._odometry.reckoning.pose)
 
     def after_step(self) -> None:
         """Publish odometry and its transform."""
         self._odometry.reckon(joint_angles(self._wheels))
-        self.publish_odometry(self._odometry.reckoning.pose, self._odometry.twist)
+        self.publish_reckoned(self._odometry.reckoning.pose, self._odometry.twist)
 
 
 def _report_missing_rollers(scene: SceneModel, wheels: Sequence[SceneJoint], params: Params) -> None:

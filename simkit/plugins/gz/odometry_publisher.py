@@ -14,8 +14,9 @@ from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import MEAN_STEPS, TrueMotion
 from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, BodyTwist, odometry_message, transforms
+from simkit.plugins.drives.odometry_noise import ErringOdometry, WheellessOdometryNoiseOptions, odometry_noise
 from simkit.plugins.find_entities import read_topic
-from simkit.plugins.options import Options, OptionsOf, integer, number, text, vector3
+from simkit.plugins.options import Options, OptionsOf, block, integer, number, text, vector3
 from simkit.pose import IDENTITY, Pose, Vector, quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate
 from simkit.runtime.array_rules import CannotBatchError, Floats, Ids, PluginRule, Ticks, TopicRule, next_due
 
@@ -37,6 +38,7 @@ class OdometryPublisherOptions(Options):
     odom_covariance_topic: str = text()
     odom_topic: str = text()
     tf_topic: str = text()
+    odometry_noise: WheellessOdometryNoiseOptions = block(WheellessOdometryNoiseOptions)
 
 
 class OdometryPublisher(ModelPlugin):
@@ -46,7 +48,7 @@ class OdometryPublisher(ModelPlugin):
     three angles. `<xyz_offset>` and `<rpy_offset>` are the pose of the base frame in the model. `<gaussian_noise>` is
     the standard deviation of the noise on each component of the twist [m/s, rad/s]; its square is on the diagonals of
     the odometry with covariance. The twist is the mean over the last ten steps, as in Gazebo, which is a delay of 4.5
-    steps.
+    steps. `<odometry_noise>` (simkit's own) replaces pose and twist by those of wheels with errors.
     """
 
     options = OptionsOf(OdometryPublisherOptions)
@@ -74,11 +76,17 @@ class OdometryPublisher(ModelPlugin):
         self._trail: deque[tuple[float, ...]] = deque(maxlen=MEAN_STEPS)
         self._stream = self.random("gaussian_noise", 6) if self._noise > 0 else None
         self._index = 0
+        self._erring: ErringOdometry | None = None
+        noise = odometry_noise(self.options.odometry_noise)
+        if noise is not None:
+            sizes = self.options.odometry_noise.wheel_radius, self.options.odometry_noise.wheel_separation
+            stream = self.random("odometry_noise", 2)
+            self._erring = ErringOdometry(noise, *sizes, stream, self._reading()[0], self.sim.time_ns)
         covariance = read_topic(params, "odom_covariance_topic", f"{model_topic}/odometry_with_covariance")
         self._odom = self.advertise(read_topic(params, "odom_topic", f"{model_topic}/odometry"), ODOMETRY)
         self._noisy = self.advertise(covariance, ODOMETRY)
         self._tf = self.advertise(read_topic(params, "tf_topic", f"{model_topic}/pose"), TRANSFORMS)
-        self._tf.present = lambda: transforms(self.sim.time_ns, (self._frame, self._base, self._reading()[0]))
+        self._tf.present = lambda: transforms(self.sim.time_ns, (self._frame, self._base, self._present_pose()))
 
     def before_step(self) -> None:
         """Store the pose of the model."""
@@ -87,16 +95,27 @@ class OdometryPublisher(ModelPlugin):
     def after_step(self) -> None:
         """Publish odometry and its transform."""
         self._index += 1  # counted even without subscribers, because the noise depends on this number
+        erring = self._erring
+        spread: tuple[Vector, ...] = ()
+        if erring is not None:
+            erring.follow(self._reading()[0], self.sim.time_ns)
+            spread = erring.covariances
         if not (self._odom.wanted or self._noisy.wanted or self._tf.wanted):
             return
         now, (pose, twist) = self.sim.time_ns, self._reading()
+        if erring is not None:
+            pose, twist = erring.pose(pose), erring.twist
         if self._odom.wanted:
             self._odom.publish_later(partial(odometry_message, now, self._frame, self._base, pose, twist))
         if self._noisy.wanted:
-            spread = np.diag([self._noise**2] * 6).reshape(36)
-            self._noisy.publish_later(partial(odometry_message, now, self._frame, self._base, pose, twist, spread))
+            spread = spread or (np.diag([self._noise**2] * 6).reshape(36),)
+            self._noisy.publish_later(partial(odometry_message, now, self._frame, self._base, pose, twist, *spread))
         if self._tf.wanted:
             self._tf.publish_later(partial(transforms, now, (self._frame, self._base, pose)))
+
+    def _present_pose(self) -> Pose:
+        pose = self._reading()[0]
+        return pose if self._erring is None else self._erring.pose(pose)
 
     def _reading(self) -> tuple[Pose, BodyTwist]:
         return self.reading_of(np.array((*self._trail, self._true.place())))
@@ -162,8 +181,9 @@ class OdometryPublisherRule(PluginRule):
         if topic not in (plugin._odom.topic, plugin._noisy.topic):
             return None
         poses = plugin._true.place_rows(self._states)
-        if plugin._stream is not None:
-            raise CannotBatchError(f"topic {plugin._odom.topic} with <gaussian_noise>")
+        if plugin._stream is not None or plugin._erring is not None:
+            name = "gaussian_noise" if plugin._stream is not None else "odometry_noise"
+            raise CannotBatchError(f"topic {plugin._odom.topic} with <{name}>")
         return MeanMotionRows(plugin, self._states.count, poses)
 
 

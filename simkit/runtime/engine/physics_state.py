@@ -18,6 +18,7 @@ from simkit.runtime.contact.open_space import OpenSpace
 from simkit.runtime.contact.speculative_contacts import SPECULATIVE_FLAG, ApproachCallback, FastBodyDetector
 from simkit.runtime.engine.free_motion import FreeMotionIntegrator
 from simkit.runtime.engine.passive_trees import joint_friction
+from simkit.runtime.engine.pose_history import PoseHistory, PoseRows
 from simkit.runtime.engine.simulated_time import Clock
 from simkit.runtime.engine.sleep import RestState, Sleep
 
@@ -129,6 +130,7 @@ class PhysicsMemory:
         last_pushed: forces and torques on bodies that lasted for the last step only [N, N·m], shape (nbody, 6).
         window: step method up to the next check of the contacts.
         sleep: bodies that sleep.
+        poses: recorded poses of all bodies; None if no sensor needs them.
     """
 
     tick: int
@@ -137,6 +139,7 @@ class PhysicsMemory:
     last_pushed: npt.NDArray[np.float64]
     window: StepWindow
     sleep: RestState
+    poses: PoseRows | None = None
 
 
 @dataclass(slots=True, eq=False)
@@ -179,6 +182,7 @@ class PhysicsState:
         law: forces of contacts that slide, hit or overlap; for the present model.
         shaper: function object that changes contacts before the solve; None without changes; for the present model.
         edition: counter that changes with every write to the state, but not with steps.
+        poses: record of the poses of all bodies; None if no sensor needs it.
     """
 
     def __init__(
@@ -194,11 +198,14 @@ class PhysicsState:
         ENGINE_WARNINGS.clear()
         self.clock, self._may_sleep, self._on_approach = clock, may_sleep, on_approach
         self.tick = self.edition = 0
+        self.poses: PoseHistory | None = None
         self.rebind(model, data)
 
     def rebind(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         """Replace the engine objects (after a spawn, a removal or a restore)."""
         self.model, self.data = model, data
+        if self.poses is not None:
+            self.poses.clear()
         self._uses_law: LawUse
         self._until: int
         self._is_fast: bool
@@ -324,6 +331,17 @@ class PhysicsState:
         """Record that forces in the data last for the next step only, or that there are no such forces."""
         self.one_shot = is_pushed
 
+    def record_poses(self, user: object, ticks: int) -> None:
+        """Record the poses of all bodies, and keep those of at least a number of ticks for a user."""
+        if self.poses is None:
+            self.poses = PoseHistory()
+        self.poses.require(user, ticks)
+
+    def end_record_of_poses(self, user: object) -> None:
+        """End the record of a user; the poses of the next steps are not recorded if there is no other user."""
+        if self.poses is not None and not self.poses.release(user):
+            self.poses = None
+
     def changed_surface(self) -> None:
         """Record a changed motion of a surface; wake all bodies that may lie on it."""
         if self.sleep.is_drowsy or (self.data.tree_asleep >= 0).any():
@@ -383,7 +401,8 @@ class PhysicsState:
     def get_state(self) -> PhysicsMemory:
         """Return the state beside MuJoCo's data, for a snapshot."""
         applied, pushed = self.last_applied.copy(), self.last_pushed.copy()
-        return PhysicsMemory(self.tick, self.one_shot, applied, pushed, self.window, self.sleep.get_state())
+        poses = None if self.poses is None else self.poses.get_state()
+        return PhysicsMemory(self.tick, self.one_shot, applied, pushed, self.window, self.sleep.get_state(), poses)
 
     def set_state(self, state: PhysicsMemory, *, is_model_changed: bool) -> None:
         """Restore a state from `get_state`, after the data.
@@ -402,6 +421,11 @@ class PhysicsState:
         self.shows_applied = True
         self.window = state.window
         self.sleep.set_state(state.sleep)
+        if self.poses is not None:
+            if state.poses is None:
+                self.poses.clear()
+            else:
+                self.poses.set_state(state.poses)
 
     # ------------------------------------------------------------------ how the next steps are made
 

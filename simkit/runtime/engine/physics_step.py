@@ -18,6 +18,7 @@ from simkit.runtime.engine.control_callback import call_before_forces
 from simkit.runtime.engine.forward_pass import SKIPPED_STAGE, ForwardPass
 from simkit.runtime.engine.free_motion import Integrator
 from simkit.runtime.engine.physics_state import CONTROL, FRESH, STALE, VELOCITY
+from simkit.runtime.engine.pose_history import PoseHistory
 from simkit.runtime.engine.simulated_time import Clock
 
 __all__ = ["CONTROL", "FRESH", "STALE", "VELOCITY", "Physics"]
@@ -56,6 +57,9 @@ class Physics(ForwardPass):
 
     def advance(self, count: int) -> None:
         """Make `count` steps; forces that last for one step only are cleared after the first."""
+        if self.poses is not None:
+            self._advance_recorded(self.poses, count)
+            return
         sleep = self.sleep
         # the usual call of a loop with sensors: few steps, and nothing to do before and after them
         if not (self.shows_applied or self.one_shot or sleep.counts or sleep.wants_all_awake) and count <= self._short:
@@ -94,12 +98,28 @@ class Physics(ForwardPass):
     def single(self) -> None:
         """Make one step."""
         is_special = self._uses_law or self._probes or self.one_shot or self.shows_applied or self.sleep.watches
-        is_special = is_special or self.shaper is not None or self._corrects_all
+        is_special = is_special or self.shaper is not None or self._corrects_all or self.poses is not None
         if not is_special and self.stage == STALE and self.tick < self._until:  # saves the cost of `advance`
             mj_step(self.model, self.data)
             self.tick += 1
         else:
             self.advance(1)
+
+    def _advance_recorded(self, poses: PoseHistory, count: int) -> None:
+        """Make `count` steps one by one, and record the poses of all bodies before each of them."""
+        self.poses = None
+        try:
+            for _ in range(count):
+                tick = self.tick
+                # the inner stages of these integrators leave poses between two ticks, and a resting step leaves none
+                if self._integrate is None or self._has_stages or self.free_motion is not None or self.sleep.rests:
+                    poses.add(tick, self.fresh())
+                    self.single()
+                else:
+                    self.single()
+                    poses.add(tick, self.data)
+        finally:
+            self.poses = poses
 
     def _advance_time(self, count: int) -> None:
         """Advance the time alone, with the same floating-point sum as the engine."""

@@ -197,7 +197,7 @@ def _schedule_scenery(engine: Engine, scheduler: Scheduler, plugins: Sequence[An
             scheduler.every(plugin.scenery_rate, task, "sense")
             for sensor in engine.structure.all_sensors():
                 if sensor.sees_scene:
-                    scheduler.on(sensor.timetable(), task, "sense")
+                    scheduler.on(sensor.scene_timetable(), task, "sense")
 
 
 def _group_sensors(engine: Engine) -> None:

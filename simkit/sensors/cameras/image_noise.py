@@ -1,4 +1,4 @@
-"""Readings of cameras, and their Gaussian noise: a random word of 16 bits per pixel selects a value of a table."""
+"""Readings of cameras, and their Gaussian noise, drawn from tables."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import functools
 import threading
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from statistics import NormalDist
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +13,7 @@ import numpy.typing as npt
 from simkit.elementary_functions import power
 from simkit.runtime.engine.random_streams import RandomStreams
 from simkit.sensors.cameras.array_pool import AnyArray, ArrayPool
+from simkit.sensors.cameras.random_pixels import look_up, normal_table, word_source
 from simkit.sensors.noise import NoiseModel
 
 
@@ -91,38 +91,11 @@ class DrawnReading:
     true_depths: npt.NDArray[np.float32] | None
 
 
-_WORDS = 1 << 16
 _LONGEST = 1e30  # [m] limit of the noise of a 32-bit depth
 # number of pixels processed at once: so few fit into a processor's cache, and OpenCV uses one thread for them
 _PIXELS = 1 << 16
 _MIDDLE = 128  # value for "no change" in a table that contains both increases and decreases
 _OGRE_EXPONENT = 2.1
-
-
-@functools.cache
-def normal_table() -> npt.NDArray[np.float64]:
-    """Return the standard normal's value in the middle of each of 65536 equally likely slices, scaled to variance 1."""
-    upper = [NormalDist().inv_cdf((i + 0.5) / _WORDS) for i in range(_WORDS // 2, _WORDS)]
-    table = np.concatenate((-np.array(upper[::-1]), upper))
-    table /= table.std()
-    return table
-
-
-@functools.cache
-def _looks_up_words() -> bool:
-    import cv2
-
-    return int(cv2.__version__.split(".")[0]) >= 5
-
-
-def _look_up(table: npt.NDArray[np.generic], words: npt.NDArray[np.uint16], out: npt.NDArray[np.generic]) -> None:
-    """Set `out[...] = table[words]`; OpenCV 5 and newer are three times as fast as NumPy."""
-    if _looks_up_words():
-        import cv2
-
-        cv2.LUT(words, table, out)
-    else:
-        np.take(table, words, out=out, mode="wrap")
 
 
 class ImageNoise:
@@ -148,14 +121,12 @@ class ImageNoise:
     ) -> Iterator[tuple[slice, npt.NDArray[np.uint16]]]:
         """Yield the rows of an image, strip by strip, with a random word for each of their pixels."""
         height, width = shape[:2]
-        # a generator per frame, so that earlier draws have no influence; SFC64 is the fastest for many numbers
-        key = self._streams[channel].generator(index).bit_generator
-        bits = np.random.SFC64(np.random.SeedSequence(key.random_raw(2).tolist()))
+        next_words = word_source(self._streams[channel], index)
         for first in range(0, height, _strip_height(width)):
             last = min(first + _strip_height(width), height)
             count = (last - first) * width
             if self._model.stddev > 0:
-                words = bits.random_raw(-(-count // 4)).view(np.uint16)[:count]
+                words = next_words(count)
             else:
                 words = np.zeros(count, np.uint16)  # all values of the table are equal
             yield slice(first, last), words.reshape(last - first, width)
@@ -217,7 +188,7 @@ class ImageNoise:
         out = self._output_buffer(depths)
         for rows, words in self._strips("depth", index, depths.shape):
             part = out[rows]
-            _look_up(self._length_table, words, part)
+            look_up(self._length_table, words, part)
             np.add(part, depths[rows], out=part)
         return out
 
@@ -243,9 +214,9 @@ class _BrightnessChanges:
 
         count = len(words)
         up, down = (flat[:count] for flat in self._flat)
-        _look_up(self._steps[-1], words, down)
+        look_up(self._steps[-1], words, down)
         if len(self._steps) == 2:
-            _look_up(self._steps[0], words, up)
+            look_up(self._steps[0], words, up)
         else:
             middle = self._middle[:count]
             cv2.subtract(down, middle, up)

@@ -93,6 +93,7 @@ class MultiCamera(RenderedCamera):
     """
 
     kinds = ("multicamera",)
+    artefact_families = ("colour",)
     example = '<camera name="left"/><camera name="right"><pose>0 -0.1 0 0 0 0</pose></camera>'
     options: CameraOptions
 
@@ -129,6 +130,10 @@ class MultiCamera(RenderedCamera):
                     f"found {len(values)} different values of {element}; the sensor uses the first for all cameras"
                 )
                 self.diagnostics.warning("SK-SENSOR-125", message, self.scene.where, "use one sensor per camera")
+
+    @property
+    def camera_models(self) -> tuple[CameraModel, ...]:
+        return tuple(eye.options.model for eye in self.eyes)
 
     @property
     def reference(self) -> CameraUnit:

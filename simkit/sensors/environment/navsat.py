@@ -20,7 +20,8 @@ from simkit.sensors.noise import Noise, NoiseModel, read_noise
 
 FIX, VELOCITY, GPS = "sensor_msgs/msg/NavSatFix", "geometry_msgs/msg/Vector3Stamped", "gps_msgs/msg/GPSFix"
 _UNKNOWN, _DIAGONAL = 0, 2  # covariance types of NavSatFix
-_STATUS_FIX, _SERVICE_GPS = 0, 1
+NO_FIX: Final = -1  # status of NavSatStatus and GPSStatus without a position
+_SERVICE_GPS = 1
 _SOURCE_GPS, _SOURCE_DOPPLER = 1, 4
 # gpsd's uncertainties contain 95 % of the readings; factors of the standard deviation, for one axis and for two axes
 _SIGMAS_95_ONE_AXIS, _SIGMAS_95_TWO_AXES = 1.959964, math.sqrt(-2.0 * math.log(0.05))
@@ -46,6 +47,10 @@ class NavSatReading:
         latitude, longitude: geodetic position [rad].
         altitude: height above the ellipsoid [m].
         velocity: velocity to east, north and up at the position [m/s], shape (3,).
+        status: type of the fix as in `NavSatStatus`: -1 without a fix, 0 with one, 1 and 2 with corrections from
+            satellites and from the ground.
+        variances: horizontal and vertical variance [m²] that the receiver adds to those of the noise.
+        satellites: number of satellites in use; 0 if it is not known.
     """
 
     east: float
@@ -54,6 +59,9 @@ class NavSatReading:
     longitude: float
     altitude: float
     velocity: Vector
+    status: int = 0
+    variances: tuple[float, float] = (0.0, 0.0)
+    satellites: int = 0
 
 
 class NavSat(Sensor):
@@ -158,10 +166,15 @@ class NavSat(Sensor):
         if self._quirks:
             latitude, longitude = wrap_angle(math.radians(first)), wrap_angle(math.radians(second))
         else:
-            latitude, longitude = self._move_over_ground(reading, first - reading.east, second - reading.north)
+            latitude, longitude = self.move_over_ground(reading, first - reading.east, second - reading.north)
         return NavSatReading(reading.east, reading.north, latitude, longitude, altitude, values[3:])
 
-    def _move_over_ground(self, reading: NavSatReading, east: float, north: float) -> tuple[float, float]:
+    def plane_position(self, reading: NavSatReading) -> tuple[float, float]:
+        """Return x and y [m] in the world of the position without noise."""
+        x, y = matmul(self._heading.T, np.array((reading.east, reading.north))).tolist()
+        return x, y
+
+    def move_over_ground(self, reading: NavSatReading, east: float, north: float) -> tuple[float, float]:
         """Return the latitude and longitude [rad] of a reading displaced by `east` and `north` on the ground [m]."""
         planet = self._planet
         assert planet is not None
@@ -175,15 +188,22 @@ class NavSat(Sensor):
 
     # ------------------------------------------------------------------ messages
 
-    def _covariance(self) -> tuple[Vector, int]:
+    def _covariance(self, reading: NavSatReading) -> tuple[Vector, int]:
         """Return the covariance of the position to east, north and up [m²], and its type."""
-        return (np.zeros(9), _UNKNOWN) if self._quirks else (self.noise.covariance(), _DIAGONAL)
+        if self._quirks or reading.status == NO_FIX:
+            return np.zeros(9), _UNKNOWN
+        covariance = self.noise.covariance()
+        horizontal, vertical = reading.variances
+        if horizontal or vertical:
+            covariance = covariance.copy()
+            covariance[[0, 4, 8]] += (horizontal, horizontal, vertical)
+        return covariance, _DIAGONAL
 
     def _fix_of(self, reading: NavSatReading, time_ns: int) -> msgs.NavSatFix:
-        covariance, kind = self._covariance()
+        covariance, kind = self._covariance(reading)
         return msgs.NavSatFix(
             header=msgs.header(time_ns, self.frame_id),
-            status=msgs.NavSatStatus(_STATUS_FIX, _SERVICE_GPS),
+            status=msgs.NavSatStatus(reading.status, _SERVICE_GPS),
             latitude=math.degrees(reading.latitude),
             longitude=math.degrees(reading.longitude),
             altitude=reading.altitude,
@@ -197,15 +217,19 @@ class NavSat(Sensor):
 
     def _gps_fix_of(self, reading: NavSatReading, time_ns: int) -> msgs.GPSFix:
         east, north, up = reading.velocity.tolist()
-        covariance, kind = self._covariance()
-        deviations = (math.sqrt(self.noise.variance(channel)) for channel in (0, 2, 3, 5))
+        covariance, kind = self._covariance(reading)
+        more = (*reading.variances, 0.0, 0.0)
+        variances = [self.noise.variance(channel) + extra for channel, extra in zip((0, 2, 3, 5), more, strict=True)]
+        unknown = 0.0 if reading.status != NO_FIX else math.nan
+        deviations = (math.sqrt(variance) + unknown for variance in variances)
         horizontal, vertical, horizontal_rate, vertical_rate = deviations
         message: msgs.GPSFix = msgs.make(
             GPS,
             header=msgs.header(time_ns, self.frame_id),
             status={
                 "header": msgs.header(time_ns, self.frame_id),
-                "status": _STATUS_FIX,
+                "status": reading.status,
+                "satellites_used": reading.satellites,
                 "motion_source": _SOURCE_DOPPLER,
                 "position_source": _SOURCE_GPS,
             },

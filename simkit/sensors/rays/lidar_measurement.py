@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import mujoco
 import numpy as np
@@ -17,12 +18,27 @@ from simkit.linear_algebra import matmul
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.runtime.array_rules import CannotBatchError, Ids, SensorRule, Ticks
+from simkit.runtime.engine.pose_history import PoseRows
 from simkit.runtime.particle_clouds import has_sources
 from simkit.scene import SceneSensor
 from simkit.sensors.base import Sensor
+from simkit.sensors.lasting_samples import LastingSample, LastingSamples
 from simkit.sensors.noise import Noise, NoiseModel, UniformNoise, read_noise
 from simkit.sensors.particle_echoes import find_echoes
 from simkit.sensors.rays.ray_fan import RayFan, RayFanRows, fan_directions
+from simkit.sensors.rays.ray_probes import HitSurfaces, RayProbes
+from simkit.sensors.rays.sweep import (
+    RayPattern,
+    SweepOptions,
+    column_interval,
+    last_time,
+    make_pattern,
+    read_sweep,
+)
+from simkit.sensors.rays.sweep_poses import SweepPoses
+from simkit.sensors.rays.swept_rays import SweptCaster, SweptHits
+from simkit.sensors.rays.swept_scan import EndedScan, ScanPart, ScanProgress, SweptRays
+from simkit.sensors.sample import Sample
 from simkit.sensors.visibility_mask import ALL_VISIBLE, hidden_geoms, read_visibility_mask
 
 if TYPE_CHECKING:
@@ -59,6 +75,7 @@ class LidarOptions:
 
     Attributes:
         visibility_mask: mask of the visible visuals; one of its bits must be in their `<visibility_flags>`.
+        sweep: times of the rays; None for a scan at one instant.
     """
 
     horizontal: Sweep
@@ -67,6 +84,7 @@ class LidarOptions:
     range_max: float
     noise: NoiseModel
     visibility_mask: int = ALL_VISIBLE
+    sweep: SweepOptions | None = None
 
 
 @dataclass(slots=True)
@@ -81,6 +99,10 @@ class LidarReading:
         geoms: MuJoCo's geom ids; the last entry is -1.
         names: scoped names by geom id; the last is empty.
         scatter: noise of x, y, z [m] and intensity of each ray in a `block` cloud, shape (layers · samples, 4).
+        surfaces: surfaces that were hit; None if no artefact wants them.
+        second: second return of each ray, infinite for none; None for a lidar with one return.
+        probed: results of the probes of artefacts by their names.
+        sweep: times and poses of the rays; None for a scan at one instant.
     """
 
     ranges: Vector
@@ -90,10 +112,14 @@ class LidarReading:
     geoms: npt.NDArray[np.int32]
     names: npt.NDArray[np.object_]
     scatter: Vector | None = None
+    sweep: SweptRays | None = None
+    surfaces: HitSurfaces | None = None
+    second: LidarReading | None = None
+    probed: Mapping[str, Any] | None = None
 
 
 class LidarMeasurement(Sensor):
-    """Base of the lidars: a fan of rays cast at one instant, with noise, without messages.
+    """Base of the lidars: a fan of rays, cast at one instant or in a sweep, with noise, without messages.
 
     A reading beyond the maximum is +inf. The rays of `lidar` and `ray` start at the minimum range, so that they pass
     through nearer surfaces. Rendered lidars read -inf for a nearer surface. The sensor's own link is never hit.
@@ -102,6 +128,8 @@ class LidarMeasurement(Sensor):
         ray_noise: noise of each ray [m] that a plugin adds to the noise of the file.
         range_noise: noise [m] with one draw for all rays of a sample, added to the noise of each ray.
         point_noise: noise of x, y, z [m] and intensity of each ray in a `block` cloud.
+        second_noise: noise of each second return [m]; None for a lidar with one return.
+        has_second_returns: True if readings have second returns, with messages of their own.
     """
 
     options: LidarOptions
@@ -109,6 +137,9 @@ class LidarMeasurement(Sensor):
     ray_noise: UniformNoise | None = None
     range_noise: Noise | None = None
     point_noise: UniformNoise | None = None
+    second_noise: UniformNoise | None = None
+    has_second_returns = False
+    _probes: RayProbes | None = None
     _ignores_own_model = False
 
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
@@ -127,6 +158,10 @@ class LidarMeasurement(Sensor):
         # shared by all readings and messages, and therefore read-only
         self._dark, self._dark_layer = np.zeros(self.fan.count), np.zeros(options.horizontal.samples, np.float32)
         self._dark.flags.writeable = self._dark_layer.flags.writeable = False
+        if options.sweep is not None:
+            self.lasting = LastingSamples()
+        self._pattern: tuple[float, RayPattern] | None = None
+        self._caster: SweptCaster | None = None
         # arrays, because NumPy needs as long to convert a number as to process a whole planar scan
         self._limits = np.array(options.range_min), np.array(options.range_max)
 
@@ -148,7 +183,10 @@ class LidarMeasurement(Sensor):
             rays = horizontal.samples * vertical.samples
             scan.error("SK-PARAM-002", f"found {rays} rays; expected at most {_MAX_RAYS}")
             horizontal = vertical = Sweep(1, 0.0, 0.0)
-        return LidarOptions(horizontal, vertical, low, high, read_noise(block, "gaussian"), read_visibility_mask(block))
+        noise, mask = read_noise(block, "gaussian"), read_visibility_mask(block)
+        fan = horizontal.samples, vertical.samples, horizontal.high - horizontal.low
+        sweep = read_sweep(params, block, *fan, self.update_rate)
+        return LidarOptions(horizontal, vertical, low, high, noise, mask, sweep)
 
     def describe(self) -> dict[str, object]:
         o = self.options
@@ -181,9 +219,35 @@ class LidarMeasurement(Sensor):
             links = [part for scoped, part in names.links.items() if scoped.startswith(model)]
             hidden += [geom for part in links for geom in (part.visuals if self.sees_visuals else part.ray_geoms)]
         self.fan.bind(compiled.model, names, self._body, link_geoms, hidden=hidden, offset=self._offset)
+        if self._probes is not None:
+
+            def bind_fan(fan: RayFan, seen_through: Sequence[int]) -> None:
+                unseen = [*hidden, *seen_through]
+                fan.bind(compiled.model, names, self._body, link_geoms, hidden=unseen, offset=self._offset)
+
+            offset = self._offset_position, self._offset_rotation
+            self._probes.bind(compiled, bind_fan, None if self.lasting is None else offset)
         kind = "visuals" if self.sees_visuals else "collisions"
         self._retro = names.shared(f"laser_retro of {kind}", lambda: self._reflectances(compiled))
         self._names = names.shared("scoped names of geoms", lambda: _scoped_names(compiled))
+        if self.lasting is not None:
+            self._caster = SweptCaster(self.fan, (self._offset_position, self._offset_rotation))
+            self._record_poses()
+
+    @property
+    def probes(self) -> RayProbes:
+        """Further measurements of the rays; artefacts add theirs in `prepare`."""
+        if self._probes is None:
+            self._probes = RayProbes(self.fan, self.sees_visuals, self._start)
+        return self._probes
+
+    def add_second_returns(self) -> None:
+        """Give the second returns the noise of the file, with random numbers of their own."""
+        self.second_noise = self._make_uniform_noise(self.options.noise, self.fan.count, "second ranges")
+
+    def retro_of(self, geoms: npt.NDArray[np.int32]) -> Vector:
+        """Return `laser_retro` by geoms of the compiled model; 0 for -1."""
+        return np.zeros(len(geoms)) if self._retro is None else self._retro[geoms]
 
     def ignore_own_model(self) -> None:
         """Let the rays pass through all links of the sensor's model, as real sensors look out of their housing."""
@@ -235,18 +299,26 @@ class LidarMeasurement(Sensor):
             return None
         reading: LidarReading = sample.noisy
         ranges = np.where(np.isfinite(reading.ranges), reading.ranges, np.nan)
-        ends: Vector = self._directions * ranges[:, None]
+        ends: Vector = self._directions_of(reading) * ranges[:, None]
         return ends
 
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> LidarReading:
         origin, rotation = self.ray_frame(data)
         self.fan.cast(model, data, origin, rotation, self._start)
-        reading = self.reading_of_cast()
+        return self._with_echoes(self.reading_of_cast(), data, origin, rotation)
+
+    def _with_echoes(
+        self, reading: LidarReading, data: mujoco.MjData, origin: Vector, rotation: Vector
+    ) -> LidarReading:
+        """Shorten the ranges of rays that particles reflect, in the reading, and return it."""
         if self.sees_visuals and has_sources(self.sim):
             echoes = find_echoes(self.sim, self.scoped, float(data.time), origin, rotation)
             if echoes is not None:
-                reading.ranges = echoes.shorten(self._directions, reading.ranges)
+                directions = self._directions if reading.sweep is None else reading.sweep.directions
+                reading.ranges = echoes.shorten(directions, reading.ranges)
                 reading.infinite = np.isinf(reading.ranges)
+        if self._probes is not None:
+            reading.surfaces, reading.probed = self._probes.measure(data, origin, rotation, reading.sweep)
         return reading
 
     def measure_now(self) -> LidarReading:
@@ -266,6 +338,122 @@ class LidarMeasurement(Sensor):
             ranges[too_near] = -np.inf
             infinite = infinite | too_near
         return infinite
+
+    def _directions_of(self, reading: LidarReading) -> Vector:
+        """Return the directions of the rays in the sensor's frame, shape (layers · samples, 3)."""
+        return self._directions if reading.sweep is None else reading.sweep.directions
+
+    # ------------------------------------------------------------------ sweep
+
+    def ray_pattern(self, index: int) -> RayPattern:
+        """Return the directions and times of the rays of a sample.
+
+        Only lidars with a `<sweep>` use it. A class or an artefact may replace it, for a scan with another pattern.
+        """
+        if self._pattern is None or self._pattern[0] != self.update_rate:
+            assert self.options.sweep is not None
+            columns, rate = self._columns_and_angle(), self.update_rate
+            self._pattern = rate, make_pattern(self.options.sweep, self._directions, *columns, rate)
+        return self._pattern[1]
+
+    def _columns_and_angle(self) -> tuple[int, float]:
+        horizontal = self.options.horizontal
+        return horizontal.samples, horizontal.high - horizontal.low
+
+    @property
+    def ray_times(self) -> Vector | None:
+        """Time of each ray after the stamp of the next scan [s], shape (layers · samples,); None without a sweep."""
+        return None if self.lasting is None else self.ray_pattern(self._index + 1).ray_times
+
+    @property
+    def time_increment(self) -> float:
+        """Time between two neighbouring columns [s], as messages have it; 0 for a scan at one instant."""
+        sweep = self.options.sweep
+        return 0.0 if sweep is None else column_interval(sweep, *self._columns_and_angle(), self.update_rate)
+
+    def _apply_rate(self, rate: float) -> None:
+        super()._apply_rate(rate)
+        if self.lasting is not None:
+            self._record_poses()
+
+    def rate_problem(self, rate: float) -> str:
+        sweep = self.options.sweep
+        if sweep is None:
+            return ""
+        if not rate > 0:
+            return "a lidar that sweeps needs a rate above 0 Hz"
+        length = last_time(sweep, *self._columns_and_angle(), rate)
+        return f"its scan takes {length:g} s" if length * rate > 1 + 1e-9 else ""
+
+    def _record_poses(self) -> None:
+        """Let the physics record the poses of the bodies during a scan."""
+        if self._caster is not None and self._caster.needs_poses:
+            ticks = self.measurement_ticks(self._index + 1)
+            ticks = max(
+                [ticks, *(sample.end - sample.start for sample in self.lasting.samples)] if self.lasting else [0]
+            )
+            self.sim.engine.physics.record_poses(self, ticks + 1)
+
+    def leave(self) -> None:
+        super().leave()
+        if self.lasting is not None:
+            self.sim.engine.physics.end_record_of_poses(self)
+
+    def measurement_ticks(self, index: int) -> int:
+        times = self.ray_pattern(index).times
+        return math.ceil(float(times.max()) / self.sim.timestep - 1e-6) if len(times) else 0
+
+    def begin_measurement(self, index: int, tick: int) -> ScanProgress:
+        return ScanProgress(self.ray_pattern(index))
+
+    def _poses_since(self, start: int, tick: int, data: mujoco.MjData) -> PoseRows:
+        history = self.sim.engine.physics.poses
+        if history is None or not (self._caster is not None and self._caster.needs_poses):
+            return PoseRows(tick, (data.xpos.tobytes(),), (data.xquat.tobytes(),))
+        return history.rows(start, tick, data)
+
+    def continue_measurement(self, sample: LastingSample, tick: int) -> ScanProgress:
+        progress: ScanProgress = sample.progress
+        until = (tick - sample.start) * self.sim.timestep * (1 + 1e-12)
+        columns = progress.columns(until)
+        if not len(columns) or self._caster is None:
+            return progress
+        data, hits = self.computed_data(), SweptHits.of(len(progress.pattern.directions))
+        poses = SweepPoses(self._poses_since(sample.start, tick, data), sample.start, self.sim.timestep)
+        rays = self._caster.world_rays(progress.pattern, poses, columns)
+        self._caster.cast(data, rays, self._start, hits)
+        numbers = rays.numbers.ravel()
+        part = ScanPart(numbers, hits.distances[numbers], hits.geoms[numbers], self._retro, self._names)
+        return ScanProgress(progress.pattern, until, (*progress.parts, part))
+
+    def end_measurement(self, sample: LastingSample, tick: int) -> EndedScan:
+        poses = self._poses_since(sample.start, tick, self.computed_data())
+        return EndedScan(sample.progress, sample.start, poses)
+
+    def capture_held(self, model: mujoco.MjModel, data: mujoco.MjData, sample: Sample) -> LidarReading:
+        scan: EndedScan | None = sample.surroundings
+        if scan is None or self._caster is None:
+            return self.measure(model, data)
+        progress, fan = scan.progress, self.fan
+        poses = SweepPoses(scan.poses, scan.start, self.sim.timestep)
+        hits = SweptHits.of(len(progress.pattern.directions))
+        columns = progress.columns(math.inf)
+        if len(columns):
+            rays = self._caster.world_rays(progress.pattern, poses, columns)
+            self._caster.cast(data, rays, self._start, hits)
+        for part in progress.parts:
+            hits.distances[part.numbers], hits.geoms[part.numbers] = part.distances, part.geoms_in(self._names)
+        fan.use(hits.distances, hits.geoms)
+        reading = self.reading_of_cast()
+        for part in progress.parts:
+            if part.names is not self._names and (part.retro is not None or self._retro is not None):
+                reading.intensities = np.array(reading.intensities)
+                found = 0.0 if part.retro is None else part.retro[part.geoms]
+                reading.intensities[part.numbers] = np.where(reading.infinite[part.numbers], 0.0, found)
+        reading.sweep = SweptRays(
+            progress.pattern, poses, self.fan.body, (self._offset.position, self._offset.quaternion)
+        )
+        return self._with_echoes(reading, data, *self.ray_frame(data))
 
     def _limit(self, ranges: Vector, exact: Vector, infinite: npt.NDArray[np.bool_]) -> None:
         """Limit ranges with noise in place; infinite ranges have no noise. The arrays have any shape."""
@@ -304,8 +492,14 @@ class LidarMeasurement(Sensor):
         scatter = None
         if self.point_noise is not None:
             scatter = self.point_noise.apply(np.zeros(4 * self.fan.count), index).reshape(-1, 4)
+        second = reading.second
+        if second is not None and self.second_noise is not None:
+            second_ranges = self.second_noise.apply(second.ranges, index)
+            self._limit(second_ranges, second.ranges, second.infinite)
+            second = replace(second, ranges=second_ranges)
         r = reading
-        return LidarReading(ranges, r.intensities, r.infinite, r.hits, r.geoms, r.names, scatter)
+        fixed = r.intensities, r.infinite, r.hits, r.geoms, r.names
+        return LidarReading(ranges, *fixed, scatter, r.sweep, r.surfaces, second, r.probed)
 
     def add_ray_noise(self, stddev: float) -> None:
         """Set `ray_noise` with a standard deviation [m]."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Sequence
+from contextlib import AbstractContextManager
 
 import mujoco
 import numpy as np
@@ -22,8 +23,8 @@ _MJCF_HEADER = (
 )
 _GEOM_TYPE_NAMES = {0: "plane", 2: "sphere", 3: "capsule", 4: "ellipsoid", 5: "cylinder", 6: "box"}
 _SOLID, _FLAT = 0, 1  # geom groups of the reduced models
-_SOLIDS = np.array((1, 0, 0, 0, 0, 0), dtype=np.uint8)
-_SOLIDS_AND_PLANES = np.array((1, 1, 0, 0, 0, 0), dtype=np.uint8)
+SOLIDS = np.array((1, 0, 0, 0, 0, 0), dtype=np.uint8)
+SOLIDS_AND_PLANES = np.array((1, 1, 0, 0, 0, 0), dtype=np.uint8)
 
 
 def _cast(
@@ -74,8 +75,12 @@ class WholeModelCaster:
             body: moving body that is not hit, or 0.
             excluded: geoms that are not hit if `body` is 0; excluding the world body would exclude all static geoms.
         """
-        with temporary_values(self.model.geom_group, excluded if body <= 0 else (), _UNSEEN):
-            return _cast(self.model, data, rays, _SOLIDS, body if body > 0 else -1)
+        with self.without(excluded if body <= 0 else ()):
+            return _cast(self.model, data, rays, SOLIDS, body if body > 0 else -1)
+
+    def without(self, geoms: Sequence[int]) -> AbstractContextManager[None]:
+        """Hide geoms from the rays in a `with` block."""
+        return temporary_values(self.model.geom_group, geoms, _UNSEEN)
 
 
 class ReducedModelCaster:
@@ -130,6 +135,16 @@ class ReducedModelCaster:
             is_reachable &= can_reach(self._model, body, offset, self.movers, lowest, highest)
         return np.flatnonzero(is_reachable)
 
+    @property
+    def static_model(self) -> mujoco.MjModel:
+        """Model of the planes and shapes that do not move; its geoms are the first of `ids`."""
+        return self._static[0]
+
+    @property
+    def has_planes(self) -> bool:
+        """True if the static model has planes."""
+        return bool(self._planes)
+
     def model_for_rows(self, has_movers: bool) -> mujoco.MjModel:
         """Return the model in which the rays of many simulations are cast, with all movers or with none."""
         return (self._all if has_movers else self._static)[0]
@@ -145,12 +160,12 @@ class ReducedModelCaster:
         """
         reached = nearby.reached(data, rays)
         if not reached.size:
-            groups = _SOLIDS_AND_PLANES if self._planes and self._reaches_plane(rays) else _SOLIDS
+            groups = SOLIDS_AND_PLANES if self._planes and self._reaches_plane(rays) else SOLIDS
             return _cast(*self._static, rays, groups)
         is_reached = np.zeros(len(self.movers), dtype=np.bool_)
         is_reached[reached] = True
         self._move(data, is_reached)
-        return _cast(*self._all, rays, _SOLIDS_AND_PLANES)
+        return _cast(*self._all, rays, SOLIDS_AND_PLANES)
 
     def _move(self, data: mujoco.MjData, is_reached: npt.NDArray[np.bool_]) -> None:
         """Set the poses of the movers; movers that no ray reaches go far away, where the engine rejects them first."""

@@ -103,13 +103,14 @@ def _capsule(o: Vector, d: Vector, size: Vector) -> Interval:
     return near, far
 
 
-_INTERVALS: dict[int, Callable[[Vector, Vector, Vector], Interval]] = {
+INTERVALS: dict[int, Callable[[Vector, Vector, Vector], Interval]] = {
     SPHERE: _sphere,
     ELLIPSOID: _unit_ball,
     BOX: _box,
     CYLINDER: _cylinder,
     CAPSULE: _capsule,
 }
+"""Function of each geom type that returns the distances at which rays enter and leave the shape."""
 
 
 class FanDirections:
@@ -271,7 +272,7 @@ def cast_on_shapes(
         chosen = np.flatnonzero(near & (shapes.kinds == kind))
         selected, begin = shapes.only(chosen), firsts.take(chosen)
         origins, sizes = -np.einsum("gi,gij->jg", selected.positions, selected.turns), selected.sizes.T
-        function = _INTERVALS[kind]
+        function = INTERVALS[kind]
         for owners, rays in fan.pairs(selected.positions, selected.radii):
             directions = fan.columns.take(rays, 1)
             rays = rays + begin.take(owners)

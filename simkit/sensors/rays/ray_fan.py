@@ -61,6 +61,8 @@ class RayFan:
         bounds: lowest and highest elevation of the rays [rad].
         by_engine: True if the engine casts on shapes, False if NumPy does.
         numpy_directions: directions for casts in NumPy; None if the engine casts.
+        offset: pose of the fan in the body's frame; None if it may change.
+        own_geoms: geoms of a static carrier that are not hit.
 
     Args:
         directions: unit vectors in the sensor's frame, shape (n, 3).
@@ -127,13 +129,13 @@ class RayFan:
                 ray can ever hit.
         """
         self.body = body if body > 0 else 0
-        self._own = [] if body > 0 else list(own_geoms)
+        self.own_geoms = [] if body > 0 else list(own_geoms)
         self.targets = self._find_targets(model, names, hidden)
-        self.carrier = self.targets.carrier_of(self.body, self._own)
+        self.carrier = self.targets.carrier_of(self.body, self.own_geoms)
         if self.carrier < 0 and not self.targets.needs_engine:
-            self.targets = self._find_targets(model, names, (*hidden, *self._own))
+            self.targets = self._find_targets(model, names, (*hidden, *self.own_geoms))
             self.carrier = 0
-        self._offset, self._static, self._nearby = offset, None, None
+        self.offset, self._static, self._nearby = offset, None, None
         targets = self.targets
         # ids of the compiled model; `cast` replaces them with the ids of the reduced model if it casts all rays
         self.ids = np.append(np.arange(model.ngeom), -1).astype(np.int32)
@@ -170,13 +172,13 @@ class RayFan:
         """
         rays, targets = self.rays_from(origin, rotation, start), self.targets
         if targets.needs_engine:
-            self.distances, self.hits, self.infinite = targets.whole.cast(data, rays, self.body, self._own)
+            self.distances, self.hits, self.infinite = targets.whole.cast(data, rays, self.body, self.own_geoms)
             return
         if self.by_engine:
             shapes = targets.shapes_by_engine
             if shapes is not None:
                 if self._nearby is None:
-                    movers = shapes.reachable_movers(self.carrier, self.body, self._offset, *self.bounds)
+                    movers = shapes.reachable_movers(self.carrier, self.body, self.offset, *self.bounds)
                     self._nearby = NearbyGeoms(targets.model, movers, shapes.movers[movers])
                 self.distances, self.hits, self.infinite = shapes.cast(data, rays, self._nearby)
                 if not targets.triangles_for_engine:
@@ -190,6 +192,13 @@ class RayFan:
             self._clear()
             self.cast_on_planes_and_triangles(data, rays)
             self._cast_on_shapes(data, rays, rotation)
+        self.finish()
+
+    def use(self, distances: Vector, geoms: npt.NDArray[np.int32]) -> None:
+        """Set the results of a cast by other code: distances [m], infinite for no hit, and geoms of the model."""
+        if len(self.ids) != self.targets.model.ngeom + 1:
+            self.ids = np.append(np.arange(self.targets.model.ngeom), -1).astype(np.int32)
+        self.distances, self.hits = distances, geoms
         self.finish()
 
     def rays_from(self, origin: Vector, rotation: Vector, start: float) -> RayBundle:
@@ -260,9 +269,9 @@ class RayFan:
     def _can_reach(self, body: TriangleBody) -> bool:
         if body.carrier == self.carrier:
             return False
-        if self._offset is None:
+        if self.offset is None:
             return True
-        return bool(can_reach(self.targets.model, self.body, self._offset, body.geoms, *self.bounds).any())
+        return bool(can_reach(self.targets.model, self.body, self.offset, body.geoms, *self.bounds).any())
 
 
 class RayFanRows:
@@ -297,7 +306,7 @@ class RayFanRows:
         shapes = next((caster for caster in self._casters if caster is not None), None)
         if shapes is None:
             return
-        has_movers = len(shapes.reachable_movers(fan.carrier, fan.body, fan._offset, *fan.bounds)) > 0
+        has_movers = len(shapes.reachable_movers(fan.carrier, fan.body, fan.offset, *fan.bounds)) > 0
         models = [(caster or shapes).model_for_rows(has_movers) for caster in self._casters]
         self._batch = Batch(models[0], states.count, states.threads)
         if any(model is not models[0] for model in models):

@@ -136,7 +136,7 @@ class Observations:
         """Sample sensors without a subscriber only for observations, not at their rates."""
         for sensor in self._env.sim.contents.sensors.values():
             is_free = not sensor.has_subscriber and (sensor not in self._sensors or self._sync)
-            sensor.is_manual = is_free and sensor.timing.latency <= 0.0
+            sensor.is_manual = is_free and sensor.timing.latency <= 0.0 and sensor.lasting is None
         self._env.sim.engine.reschedule()
 
     def read(self) -> Array | dict[str, Array]:

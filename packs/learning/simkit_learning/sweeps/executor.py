@@ -69,4 +69,4 @@ def make_executor(
     if cluster is None and jobs == 1 and not always_processes:
         return SerialExecutor(runner)
     runner.close()
-    return ProcessExecutor(spec, jobs) if cluster is None else RayExecutor(spec, cluster)
+    return ProcessExecutor(spec, jobs, type(runner)) if cluster is None else RayExecutor(spec, cluster)

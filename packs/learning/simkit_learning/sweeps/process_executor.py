@@ -21,7 +21,7 @@ from typing import IO, Final
 from simkit.errors import InputError
 from simkit.install_command import install_command
 from simkit.process_control import kill_process_tree
-from simkit_learning.sweeps.row_runner import CRASHED, RowResult, SweepTask
+from simkit_learning.sweeps.row_runner import CRASHED, RowResult, RowRunner, SweepTask
 from simkit_learning.sweeps.sweep_spec import SweepSpec
 from simkit_learning.sweeps.worker import WorkerStart, receive_message, send_message
 
@@ -33,8 +33,8 @@ _MOST_OUTPUT: Final = 4 << 20  # [bytes] stored output of a worker, which is rea
 _POLL: Final = 1.0  # [s]
 
 
-def pickled_spec(spec: SweepSpec) -> bytes:
-    """Return a sweep as bytes for other processes.
+def pickled_spec(spec: object) -> bytes:
+    """Return a sweep, or what else workers need, as bytes for other processes.
 
     Functions of the main script need `cloudpickle`, because another process cannot import them.
 
@@ -133,13 +133,14 @@ class ProcessExecutor:
     Args:
         spec: sweep.
         jobs: number of processes.
+        runner: class of the runners in the processes.
 
     Raises:
         InputError: SK-SWEEP-009 the sweep cannot be sent to other processes.
     """
 
-    def __init__(self, spec: SweepSpec, jobs: int) -> None:
-        start: WorkerStart = (sys.path, str(Path.cwd()), pickled_spec(spec))
+    def __init__(self, spec: SweepSpec, jobs: int, runner: type[RowRunner] = RowRunner) -> None:
+        start: WorkerStart = (sys.path, str(Path.cwd()), pickled_spec((runner, spec)))
         self._first = pickle.dumps(start)
         self._jobs = jobs
         limit = spec.run.wall_timeout

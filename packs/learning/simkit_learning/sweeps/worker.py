@@ -25,7 +25,7 @@ _LENGTH: Final = struct.Struct("<Q")
 
 
 WorkerStart: TypeAlias = tuple[list[str], str, bytes]
-"""First message to a worker: import path and working folder of the parent process, and the pickled sweep."""
+"""First message to a worker: import path and folder of the parent process, pickled class of runners and sweep."""
 
 
 def send_message(pipe: IO[bytes], content: bytes) -> None:
@@ -75,7 +75,8 @@ def main() -> None:
 
 def _runner(spec: bytes) -> Callable[[SweepTask], RowResult]:
     """Return the function that runs a task; the import path of the parent process is set."""
-    runner = RowRunner(pickle.loads(spec))
+    runner_class, sweep = pickle.loads(spec)
+    runner: RowRunner = runner_class(sweep)
     is_frozen = False  # `gc.get_freeze_count` would count all frozen objects, which takes 5 ms
 
     def run(task: SweepTask) -> RowResult:

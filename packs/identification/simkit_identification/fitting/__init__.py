@@ -1,0 +1,1 @@
+"""Parameters of a world identified from recordings: search, intervals, identifiability, cross-validation, report."""
