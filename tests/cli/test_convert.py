@@ -335,14 +335,17 @@ OWN = """<sdf version="1.9"><world name="w"><gazebo_quirks>1</gazebo_quirks>
 <sensor name="sonar" type="sonar"><sonar><axis>1 0 0</axis><noise type="gaussian"><stddev>0.1</stddev></noise></sonar>
 </sensor><sensor name="field" type="magnetometer"><magnetometer><date>2026.5</date></magnetometer></sensor>
 <sensor name="lds" type="ray"><preset>LDS-01</preset><sweep>true</sweep>
-  <dropout><probability>0.1</probability></dropout></sensor>
+  <dropout><probability>0.1</probability></dropout><signal><range>3</range></signal><intensity/><glass_and_mirrors/>
+  <range_error><bias>0.01</bias></range_error><no_return><value>zero</value></no_return><sun/>
+  <beam><divergence>0.01</divergence></beam><blind_zone><range>0.2</range></blind_zone></sensor>
 <sensor name="eye" type="depth_camera"><camera><image><width>8</width><height>6</height></image>
   <disparity_noise><baseline>0.05</baseline><stddev>0.1</stddev></disparity_noise></camera>
   <depth_error><scale>-0.01</scale></depth_error><depth_holes><probability>0.1</probability></depth_holes>
   <flying_pixels/><multipath/><occlusion_shadow><baseline>0.05</baseline></occlusion_shadow>
   <phase_wrap><range>50</range></phase_wrap><lost_depth><value>nan</value></lost_depth></sensor>
-<sensor name="colour" type="camera"><camera><image><width>8</width><height>6</height></image></camera>
-  <vignetting/><exposure_control/><image_sensor/><white_balance/><tone_curve/>
+<sensor name="colour" type="camera"><update_rate>30</update_rate>
+  <camera><image><width>8</width><height>6</height></image></camera>
+  <shutter><exposure>0.01</exposure></shutter><vignetting/><exposure_control/><image_sensor/><white_balance/><tone_curve/>
 </sensor>
 <sensor name="mems" type="imu"><bandwidth><angular_velocity>40</angular_velocity></bandwidth><calibration_error>
   <angular_velocity><scale>0 0 0.01</scale></angular_velocity></calibration_error><saturation>

@@ -76,6 +76,9 @@ class AttachedSensor(Protocol):
     def timetable(self) -> Timetable | None:
         """Return the ticks at which the sensor is sampled; None for every tick."""
 
+    def build_with_artefacts(self, builder: SpecBuilder) -> None:
+        """Add what the sensor and its artefacts need to the specification, before it is compiled."""
+
     def scene_timetable(self) -> Timetable | None:
         """Return the ticks at which the scenery must have its pose; None for every tick."""
 

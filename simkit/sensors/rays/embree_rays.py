@@ -118,6 +118,11 @@ class TriangleScene:
         np.maximum(distances, start, out=distances)
         return hits, distances, triangles
 
+    def normals_of(self, triangles: npt.NDArray[np.int32]) -> Vector:
+        """Return the unit normals of triangles, shape (k, 3)."""
+        normals: Vector = self._planes.take(triangles, 0)[:, :3]
+        return normals
+
     def _clamp_grazing(
         self, distances: Vector, origin: Vector, directions: Vector, triangles: npt.NDArray[np.int32]
     ) -> Vector:
@@ -185,6 +190,13 @@ class TriangleBody:
         """Cast rays given in the body's frame, each from its own origin, shape (n, 3), or all from one."""
         hits, distances, triangles = self._scene.nearest(origin, directions, start, limit)
         return hits, distances, self._geom_of.take(triangles)
+
+    def hit_normals(
+        self, origins: Vector, directions: Vector, start: float, limit: npt.NDArray[np.float32]
+    ) -> tuple[Ids, Vector]:
+        """Return the rays that hit and the normals of their triangles; all in the body's frame, one origin per ray."""
+        hits, _, triangles = self._scene.nearest(origins, directions, start, limit)
+        return hits, self._scene.normals_of(triangles)
 
 
 class MovingBodies:

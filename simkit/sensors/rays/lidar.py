@@ -16,6 +16,7 @@ from simkit.sensors.rays.lidar_batch import LidarBatch, lidar_batch_key
 from simkit.sensors.rays.lidar_measurement import MAX_RANGE, LidarMeasurement, LidarReading, LidarRule
 from simkit.sensors.sensor_batch import form_batches
 
+ECHOES = "sensor_msgs/msg/MultiEchoLaserScan"
 SCAN, CLOUD = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2"
 RANGE = "sensor_msgs/msg/Range"
 _NAMES, _FORMATS = ["x", "y", "z", "intensity", "ring"], ["<f4", "<f4", "<f4", "<f4", "<u2"]
@@ -61,11 +62,16 @@ class Lidar(LidarMeasurement):
             "block": Product(LEGACY_CLOUD_TYPE, self._block_cloud),
             "range": Product(RANGE, self._range_message),
             "velodyne": Product(CLOUD, self._velodyne_cloud),
+            "second_points": Product(CLOUD, self._cloud_of_second_returns),
+            "echoes": Product(ECHOES, self._echo_message),
         }
 
     def default_topics(self) -> dict[str, str]:
         topic = self._default_topic("scan" if self.sees_visuals else "lidar")
-        return {"scan": topic, "points": topic + "/points"}
+        topics = {"scan": topic, "points": topic + "/points"}
+        if self.has_second_returns:
+            topics |= {"second_points": topic + "/points2", "echoes": topic + "/echoes"}
+        return topics
 
     # ------------------------------------------------------------------ messages
 
@@ -78,7 +84,7 @@ class Lidar(LidarMeasurement):
         is_clockwise = o.sweep is not None and o.sweep.is_clockwise
         if is_clockwise:  # the first ray of the message is the first one in time
             low, high, step, ranges = high, low, -step, ranges[::-1]
-        if self._retro is None and self.min_intensity <= 0:
+        if self._retro is None and self.min_intensity <= 0 and not self.artefacts:
             intensities = self._dark_layer
         else:
             intensities = reading.intensities[first : first + n].astype(np.float32)
@@ -107,14 +113,42 @@ class Lidar(LidarMeasurement):
         dense = bool(np.isfinite(reading.ranges).all())
         return point_cloud(msgs.header(time_ns, self.frame_id), points, height, width, dense)
 
+    def _cloud_of_second_returns(self, reading: LidarReading, time_ns: int) -> msgs.PointCloud2:
+        """Make a cloud of the second returns of all rays, as the driver of Ouster does; empty in the ground truth."""
+        if reading.second is None:
+            return point_cloud(msgs.header(time_ns, self.frame_id), np.zeros(0, _RING_POINT), 1, 0, True)
+        return self._organised_cloud(reading.second, time_ns)
+
+    def _echo_message(self, reading: LidarReading, time_ns: int) -> msgs.MultiEchoLaserScan:
+        """Make a scan with all echoes of each ray, those with a reading, as the driver `urg_node` does."""
+        scan, parts = self._scan_message(reading, time_ns), [reading]
+        if reading.second is not None:
+            parts.append(reading.second)
+        n = self.options.horizontal.samples
+        first = self.options.vertical.samples // 2 * n
+        echoes = [[part for part in parts if not part.infinite[i]] for i in range(first, first + n)]
+        make = msgs.type_of("sensor_msgs/msg/LaserEcho")
+        names = "angle_min angle_max angle_increment time_increment scan_time range_min range_max"
+        message: msgs.MultiEchoLaserScan = msgs.type_of(ECHOES)(
+            header=scan.header,
+            **{name: getattr(scan, name) for name in names.split()},
+            ranges=[make(np.array([p.ranges[first + i] for p in ray], np.float32)) for i, ray in enumerate(echoes)],
+            intensities=[
+                make(np.array([p.intensities[first + i] for p in ray], np.float32)) for i, ray in enumerate(echoes)
+            ],
+        )
+        return message
+
     def _cloud_of_hits(self, reading: LidarReading, time_ns: int) -> msgs.PointCloud2:
         """Make a cloud of the rays with a reading, in one row."""
-        hit = np.flatnonzero(np.isfinite(reading.ranges))
+        hit = np.flatnonzero(np.isfinite(reading.ranges) & ~reading.infinite)
         return point_cloud(msgs.header(time_ns, self.frame_id), self._points(reading, hit, _POINT), 1, len(hit), True)
 
     def _points(self, reading: LidarReading, which: Ids | slice, dtype: np.dtype[np.void]) -> npt.NDArray[np.void]:
         """Return the points of some rays; fields other than position and intensity are 0."""
         ranges = reading.ranges[which]
+        if self.artefacts:  # a ray without a return may read a number
+            ranges = np.where(reading.infinite[which] & np.isfinite(ranges), np.inf, ranges)
         points = np.zeros(len(ranges), dtype)
         with np.errstate(invalid="ignore"):
             positions = self._directions_of(reading)[which] * ranges[:, None]
@@ -128,20 +162,27 @@ class Lidar(LidarMeasurement):
 
         If `keeps_order` is set, the cloud has a point for every ray, which is NaN outside the range.
         """
-        height, width = self.options.vertical.samples, self.options.horizontal.samples
-        low, high = self.cloud_range
-        in_range = (reading.ranges > low) & (reading.ranges < high) & (reading.intensities >= self.min_intensity)
-        which = np.arange(self.fan.count) if self.keeps_order else np.flatnonzero(in_range)
-        points = self._points(reading, which, _WIDE_POINT)
-        points["ring"] = which // width
         if not self.keeps_order:
+            parts = [self._velodyne_points(part)[0] for part in (reading, reading.second) if part is not None]
+            points = parts[0] if len(parts) == 1 else np.concatenate(parts)  # the driver writes both into one cloud
             return point_cloud(msgs.header(time_ns, self.frame_id), points, 1, len(points), True)
+        height, width = self.options.vertical.samples, self.options.horizontal.samples
+        points, in_range = self._velodyne_points(reading)
         for axis in "xyz":
             points[axis][~in_range] = np.nan
         return point_cloud(msgs.header(time_ns, self.frame_id), points, height, width, bool(in_range.all()))
 
+    def _velodyne_points(self, reading: LidarReading) -> tuple[npt.NDArray[np.void], npt.NDArray[np.bool_]]:
+        """Return the points of a `velodyne` cloud, and which rays are within `cloud_range`."""
+        low, high = self.cloud_range
+        in_range = (reading.ranges > low) & (reading.ranges < high) & (reading.intensities >= self.min_intensity)
+        which = np.arange(self.fan.count) if self.keeps_order else np.flatnonzero(in_range)
+        points = self._points(reading, which, _WIDE_POINT)
+        points["ring"] = which // self.options.horizontal.samples
+        return points, in_range
+
     def _old_cloud(self, reading: LidarReading, time_ns: int) -> msgs.PointCloud:
-        hit = np.flatnonzero(np.isfinite(reading.ranges))
+        hit = np.flatnonzero(np.isfinite(reading.ranges) & ~reading.infinite)
         positions = self._directions_of(reading)[hit] * reading.ranges[hit, None]
         intensities = np.maximum(reading.intensities[hit], self.min_intensity)
         return legacy_point_cloud(msgs.header(time_ns, self.frame_id), positions, intensities)

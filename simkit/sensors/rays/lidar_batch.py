@@ -26,6 +26,8 @@ def lidar_batch_key(lidar: LidarMeasurement) -> Hashable | None:
     fan = lidar.fan
     if fan.by_engine or fan.targets.needs_engine or fan.grid is None:
         return None
+    if lidar.artefacts:
+        return None
     if lidar.sees_visuals and has_sources(lidar.sim):
         return None
     common = fan.directions.tobytes(), fan.reach, id(fan.targets), fan.bounds

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import mujoco
 import numpy as np
@@ -25,6 +26,7 @@ from simkit.sensors.lasting_samples import LastingSample, LastingSamples
 from simkit.sensors.noise import Noise, NoiseModel, UniformNoise, read_noise
 from simkit.sensors.particle_echoes import find_echoes
 from simkit.sensors.rays.ray_fan import RayFan, RayFanRows, fan_directions
+from simkit.sensors.rays.ray_probes import HitSurfaces, RayProbes
 from simkit.sensors.rays.sweep import (
     RayPattern,
     SweepOptions,
@@ -97,6 +99,9 @@ class LidarReading:
         geoms: MuJoCo's geom ids; the last entry is -1.
         names: scoped names by geom id; the last is empty.
         scatter: noise of x, y, z [m] and intensity of each ray in a `block` cloud, shape (layers · samples, 4).
+        surfaces: surfaces that were hit; None if no artefact wants them.
+        second: second return of each ray, infinite for none; None for a lidar with one return.
+        probed: results of the probes of artefacts by their names.
         sweep: times and poses of the rays; None for a scan at one instant.
     """
 
@@ -108,6 +113,9 @@ class LidarReading:
     names: npt.NDArray[np.object_]
     scatter: Vector | None = None
     sweep: SweptRays | None = None
+    surfaces: HitSurfaces | None = None
+    second: LidarReading | None = None
+    probed: Mapping[str, Any] | None = None
 
 
 class LidarMeasurement(Sensor):
@@ -120,6 +128,8 @@ class LidarMeasurement(Sensor):
         ray_noise: noise of each ray [m] that a plugin adds to the noise of the file.
         range_noise: noise [m] with one draw for all rays of a sample, added to the noise of each ray.
         point_noise: noise of x, y, z [m] and intensity of each ray in a `block` cloud.
+        second_noise: noise of each second return [m]; None for a lidar with one return.
+        has_second_returns: True if readings have second returns, with messages of their own.
     """
 
     options: LidarOptions
@@ -127,6 +137,9 @@ class LidarMeasurement(Sensor):
     ray_noise: UniformNoise | None = None
     range_noise: Noise | None = None
     point_noise: UniformNoise | None = None
+    second_noise: UniformNoise | None = None
+    has_second_returns = False
+    _probes: RayProbes | None = None
     _ignores_own_model = False
 
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
@@ -206,12 +219,35 @@ class LidarMeasurement(Sensor):
             links = [part for scoped, part in names.links.items() if scoped.startswith(model)]
             hidden += [geom for part in links for geom in (part.visuals if self.sees_visuals else part.ray_geoms)]
         self.fan.bind(compiled.model, names, self._body, link_geoms, hidden=hidden, offset=self._offset)
+        if self._probes is not None:
+
+            def bind_fan(fan: RayFan, seen_through: Sequence[int]) -> None:
+                unseen = [*hidden, *seen_through]
+                fan.bind(compiled.model, names, self._body, link_geoms, hidden=unseen, offset=self._offset)
+
+            offset = self._offset_position, self._offset_rotation
+            self._probes.bind(compiled, bind_fan, None if self.lasting is None else offset)
         kind = "visuals" if self.sees_visuals else "collisions"
         self._retro = names.shared(f"laser_retro of {kind}", lambda: self._reflectances(compiled))
         self._names = names.shared("scoped names of geoms", lambda: _scoped_names(compiled))
         if self.lasting is not None:
             self._caster = SweptCaster(self.fan, (self._offset_position, self._offset_rotation))
             self._record_poses()
+
+    @property
+    def probes(self) -> RayProbes:
+        """Further measurements of the rays; artefacts add theirs in `prepare`."""
+        if self._probes is None:
+            self._probes = RayProbes(self.fan, self.sees_visuals, self._start)
+        return self._probes
+
+    def add_second_returns(self) -> None:
+        """Give the second returns the noise of the file, with random numbers of their own."""
+        self.second_noise = self._make_uniform_noise(self.options.noise, self.fan.count, "second ranges")
+
+    def retro_of(self, geoms: npt.NDArray[np.int32]) -> Vector:
+        """Return `laser_retro` by geoms of the compiled model; 0 for -1."""
+        return np.zeros(len(geoms)) if self._retro is None else self._retro[geoms]
 
     def ignore_own_model(self) -> None:
         """Let the rays pass through all links of the sensor's model, as real sensors look out of their housing."""
@@ -281,6 +317,8 @@ class LidarMeasurement(Sensor):
                 directions = self._directions if reading.sweep is None else reading.sweep.directions
                 reading.ranges = echoes.shorten(directions, reading.ranges)
                 reading.infinite = np.isinf(reading.ranges)
+        if self._probes is not None:
+            reading.surfaces, reading.probed = self._probes.measure(data, origin, rotation, reading.sweep)
         return reading
 
     def measure_now(self) -> LidarReading:
@@ -384,7 +422,7 @@ class LidarMeasurement(Sensor):
         poses = SweepPoses(self._poses_since(sample.start, tick, data), sample.start, self.sim.timestep)
         rays = self._caster.world_rays(progress.pattern, poses, columns)
         self._caster.cast(data, rays, self._start, hits)
-        numbers = rays.numbers
+        numbers = rays.numbers.ravel()
         part = ScanPart(numbers, hits.distances[numbers], hits.geoms[numbers], self._retro, self._names)
         return ScanProgress(progress.pattern, until, (*progress.parts, part))
 
@@ -454,8 +492,14 @@ class LidarMeasurement(Sensor):
         scatter = None
         if self.point_noise is not None:
             scatter = self.point_noise.apply(np.zeros(4 * self.fan.count), index).reshape(-1, 4)
+        second = reading.second
+        if second is not None and self.second_noise is not None:
+            second_ranges = self.second_noise.apply(second.ranges, index)
+            self._limit(second_ranges, second.ranges, second.infinite)
+            second = replace(second, ranges=second_ranges)
         r = reading
-        return LidarReading(ranges, r.intensities, r.infinite, r.hits, r.geoms, r.names, scatter, r.sweep)
+        fixed = r.intensities, r.infinite, r.hits, r.geoms, r.names
+        return LidarReading(ranges, *fixed, scatter, r.sweep, r.surfaces, second, r.probed)
 
     def add_ray_noise(self, stddev: float) -> None:
         """Set `ray_noise` with a standard deviation [m]."""
