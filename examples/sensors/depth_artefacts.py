@@ -1,4 +1,4 @@
-"""A room as an ideal depth camera sees it, and as three kinds of real ones do: `python depth_artefacts.py [OUT.png]`."""
+"""A room as an ideal depth camera and three kinds of real ones see it: `python depth_artefacts.py [OUT.png]`."""
 
 from __future__ import annotations
 
@@ -12,8 +12,9 @@ import simkit
 BOX = """<model name="{0}"><static>true</static><pose>{1}</pose><link name="l"><visual name="v"><geometry><box>
   <size>{2}</size></box></geometry></visual></link></model>"""
 BOXES = (
-    ("floor", "2 0 -0.05 0 0 0", "20 20 0.1"), ("wall", "3.05 0 1 0 0 0", "0.1 9 9"), ("side", "2 -1.4 1 0 0 0", "4 0.1 9"),
-    ("crate", "1.8 0.55 0.3 0 0 0.6", "0.5 0.5 0.6"), ("post", "1.0 -0.25 0.5 0 0 0", "0.06 0.06 2"),
+    ("floor", "2 0 -0.05 0 0 0", "20 20 0.1"), ("wall", "3.05 0 1 0 0 0", "0.1 9 9"),
+    ("side", "2 -1.4 1 0 0 0", "4 0.1 9"), ("crate", "1.8 0.55 0.3 0 0 0.6", "0.5 0.5 0.6"),
+    ("post", "1.0 -0.25 0.5 0 0 0", "0.06 0.06 2"),
 )  # fmt: skip
 STEREO = """<simkit:depth_error><coefficient>0.0022</coefficient><correlation_length>7</correlation_length>
   </simkit:depth_error>
@@ -33,7 +34,8 @@ FLIGHT = """<simkit:flying_pixels><width>2</width></simkit:flying_pixels>
   <simkit:depth_holes><vignetting>0.9</vignetting><correlation_length>3</correlation_length></simkit:depth_holes>"""
 CAMERAS = {"ideal": "", "stereo, 50 mm": STEREO, "structured light: the X3's": X3, "time of flight, 3.2 m": FLIGHT}
 WORLD = """<sdf version="1.9" xmlns:simkit="simkit"><world name="room">
-  <model name="rig"><static>true</static><pose>0 0 0.35 0 0.05 0</pose><link name="l">{}</link></model>{}</world></sdf>"""
+  <model name="rig"><static>true</static><pose>0 0 0.35 0 0.05 0</pose><link name="l">{}</link></model>{}
+</world></sdf>"""
 SENSOR = """<sensor name="s{}" type="depth_camera"><topic>d{}</topic><camera><horizontal_fov>1.06406</horizontal_fov>
   <image><width>320</width><height>240</height></image><clip><near>0.1</near><far>8</far></clip></camera>{}</sensor>"""
 

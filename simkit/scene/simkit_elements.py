@@ -35,8 +35,8 @@ OWN_ELEMENTS: Final[Mapping[str, frozenset[str]]] = MappingProxyType(
         "magnetometer": frozenset({"date"}),
         "sonar": frozenset({"axis", "noise"}),
         "plugin": frozenset(
-            {"actuation_error", "controllers", "interpolation", "odometry_noise", "on_error", "point_times", "pose_type"}
-            | {"ros2_control", "shadow_gz"}
+            {"actuation_error", "controllers", "interpolation", "odometry_noise", "on_error", "point_times"}
+            | {"pose_type", "ros2_control", "shadow_gz"}
         ),
     }
 )

@@ -330,6 +330,25 @@ ALL = (
 )  # fmt: skip
 
 
+@pytest.mark.parametrize("quality", ["", "<simkit:quality>high</simkit:quality>"])
+@pytest.mark.parametrize("kind", ["depth_camera", "rgbd_camera"])
+def test_surfaces_are_known_in_software_at_every_quality(kind: str, quality: str) -> None:
+    patch = box("patch", "1.9 0.5 0 0 0 0", "0.02 0.4 40")
+    reasons = "<surface><name>patch::l</name></surface><brightness><start>0.2</start><end>0.1</end></brightness>"
+    text = world(holes(reasons), WALL + patch, kind).replace("<background>", quality + "<background>")
+    (depths,), truth = seen(text, renderer="software")
+    np.testing.assert_array_equal(np.isinf(depths), truth < 1.95)
+
+
+def test_colours_and_depths_of_one_camera_have_their_own_artefacts() -> None:
+    with simkit.load(world(ALL + "<simkit:vignetting/>", kind="rgbd_camera")) as sim:
+        image, depths = sim.subscribe("c/image"), sim.subscribe("c/depth_image")
+        sim.run(0.05)
+        colours = msgs.image(image.latest)
+        assert colours[0, 0, 0] < colours[HEIGHT // 2, WIDTH // 2, 0] == 255
+        assert 0.2 < share_lost(msgs.image(depths.latest)) < 0.6
+
+
 @pytest.mark.parametrize(("name", "value"), [("nan", math.nan), ("zero", 0.0), ("inf", math.inf)])
 def test_lost_pixels_have_the_value_of_the_driver_in_images_and_clouds(name: str, value: float) -> None:
     text = world(ALL + f"<simkit:lost_depth><value>{name}</value></simkit:lost_depth>", kind="rgbd_camera")
@@ -430,6 +449,12 @@ def test_a_surface_that_does_not_exist_is_a_warning() -> None:
     with simkit.load(world(holes("<surface><name>flor</name></surface>"))) as sim:
         (found,) = (d for d in sim.diagnostics if d.severity == "warning")
         assert found.code == "SK-SENSOR-228"
+
+
+def test_a_law_beside_measured_points_is_a_warning() -> None:
+    text = "<simkit:depth_error><point>1 0.01</point><stddev>0.1</stddev></simkit:depth_error>"
+    with simkit.load(world(text)) as sim:
+        assert [d.code for d in sim.diagnostics if d.severity == "warning"] == ["SK-SENSOR-229"]
 
 
 def test_an_unknown_option_is_a_warning() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -146,3 +148,43 @@ def test_a_shutter_slower_than_the_images_is_an_error() -> None:
 def test_a_rolling_shutter_without_a_line_time_is_reported() -> None:
     with load(shutter(type="rolling"), speed=0) as sim:
         assert any(d.code == "SK-SENSOR-240" for d in sim.diagnostics)
+
+
+def test_pictures_of_a_pickled_snapshot_and_of_the_software_renderer_are_the_same_in_a_second_run() -> None:
+    element = shutter(type="rolling", line_time=0.0005, exposure=0.01)
+    world = WORLD.format(shutter=element, y=-0.4).replace(
+        "<scene>", "<scene><simkit:renderer>software</simkit:renderer>"
+    )
+    images = []
+    for _ in range(2):
+        with simkit.load(world) as sim:
+            sim.model("bar").set_velocity(linear=(0, SPEED, 0))
+            sim.run(0.12)
+            snapshot = pickle.loads(pickle.dumps(sim.snapshot()))
+            sim.run(0.06)
+            images.append(pixels(sim).copy())
+            sim.restore(snapshot)
+            sim.run(0.06)
+            images.append(pixels(sim).copy())
+    assert all((image == images[0]).all() for image in images)
+    assert images[0].any()
+
+
+def test_colours_of_depth_cameras_and_of_each_camera_of_a_rig_have_the_shutter() -> None:
+    element = shutter(type="rolling", line_time=0.0005, sub_frames=16)
+    text = WORLD.format(shutter=element, y=-0.4)
+    start, end = text.index("<camera>"), text.index("</camera>") + len("</camera>")
+    block = text[start:end]
+    depth = text.replace('type="camera"', 'type="rgbd_camera"')
+    rig = text.replace('type="camera"', 'type="multicamera"')
+    rig = rig.replace(
+        block, block.replace("<camera>", '<camera name="a">') + block.replace("<camera>", '<camera name="b">')
+    )
+    images = []
+    for world in (text, depth, rig):
+        with simkit.load(world) as sim:
+            sim.model("bar").set_velocity(linear=(0, SPEED, 0))
+            sim.run(0.18)
+            images.append(left_edges(light(sim)))
+    assert abs(images[0][0] - images[0][-1]) > 3
+    assert all(np.abs(edges - images[0]).max() <= 1 for edges in images)

@@ -76,6 +76,9 @@ def _read_law(params: Params) -> LawTable | None:
     points = [block.vector("point", 2) for block in params.each("point")]
     if not points:
         return power_law(floor, coefficient, exponent, start) if floor > 0 or coefficient > 0 else None
+    if floor > 0 or coefficient > 0:
+        message = "<stddev> and <coefficient> have no effect beside <point>, which gives the standard deviation"
+        params.warning("SK-SENSOR-229", message, "remove the <point> elements, or the law")
     depths = [point[0] for point in points]
     if min(min(point) for point in points) <= 0 or depths != sorted(set(depths)):
         message = "the <point> elements need depths and standard deviations above 0 [m], in ascending order of depth"
