@@ -23,6 +23,7 @@ from simkit.loaders.spawned_models import SpawnEntry, add_spawned_models, client
 from simkit.memory_error import memory_errors
 from simkit.mujoco_import import import_mujoco
 from simkit.plugins.adapters import with_entity_models
+from simkit.plugins.discovery.find_plugin_class import complete_sensor
 from simkit.plugins.discovery.left_out import LeftOutParts
 from simkit.plugins.discovery.make_instances import (
     InstanceMaker,
@@ -379,7 +380,7 @@ def describe_sensor(scene_sensor: SceneSensor, diagnostics: Diagnostics) -> tupl
 
     The options are None if this kind of sensor is not simulated.
     """
-    sensor = add_preset_defaults(scene_sensor, diagnostics)
+    sensor = complete_sensor(add_preset_defaults(scene_sensor, diagnostics))
     kind = sensor_kinds().get(sensor.kind)
     return sensor, None if kind is None else kind(sensor, diagnostics).describe()
 

@@ -38,7 +38,7 @@ PRIVATE_IMPORTS = {
     "control": 24,
     "fuel": 18,
     "gz_python": 14,
-    "identification": 19,
+    "identification": 24,
     "launch": 29,
     "learning": 45,
     "motion": 15,

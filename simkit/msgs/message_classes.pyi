@@ -3561,6 +3561,31 @@ class DetachLink_Response:
     message: str
     __msgtype__: ClassVar[str]
 
+# livox_ros_driver2
+
+@dataclass
+class CustomMsg:
+    """`livox_ros_driver2/msg/CustomMsg`"""
+    header: Header
+    timebase: int
+    point_num: int
+    lidar_id: int
+    rsvd: NDArray[np.uint8]
+    points: list[CustomPoint]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CustomPoint:
+    """`livox_ros_driver2/msg/CustomPoint`"""
+    offset_time: int
+    x: float
+    y: float
+    z: float
+    reflectivity: int
+    tag: int
+    line: int
+    __msgtype__: ClassVar[str]
+
 # map_msgs
 
 @dataclass

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from simkit.runtime.communication.service_server import Service
     from simkit.runtime.communication.subscription import Subscription
     from simkit.runtime.engine.random_streams import RandomStream
-    from simkit.scene import ScenePlugin
+    from simkit.scene import ScenePlugin, SceneSensor
     from simkit.sensors.base import Sensor
 
 T = TypeVar("T", bound="bool | int | float | str | tuple[float, ...]")
@@ -421,6 +421,16 @@ class SensorPlugin(Plugin):
     """Plugin of a sensor: `prepare` receives a `SceneSensor`, `load` the `Sensor`."""
 
     parent_kind = "sensor"
+
+    @classmethod
+    def complete(cls, sensor: SceneSensor, params: Params) -> SceneSensor:  # noqa: ARG003 - for overrides
+        """Return the sensor with the elements that its plugin has in place of it; called before the sensor is made.
+
+        Args:
+            sensor: sensor as read from the file.
+            params: the `<plugin>`.
+        """
+        return sensor
 
     def refuse(self, sensor: Sensor, required_kind: str) -> None:
         """Report that the plugin is attached to a sensor of the wrong type."""

@@ -22,9 +22,9 @@ OWN_ELEMENTS: Final[Mapping[str, frozenset[str]]] = MappingProxyType(
         "visual": frozenset({"reflectivity", "specularity", "transmittance"}),
         "sensor": frozenset(
             {"dropout", "encoder", "jitter", "latency", "latency_jitter", "phase", "preset", "set_rate_topic", "solar"}
-            | {"exposure_control", "image_sensor", "tone_curve", "vignetting", "white_balance"}
+            | {"exposure_control", "image_sensor", "shutter", "tone_curve", "vignetting", "white_balance"}
             | {"depth_error", "depth_holes", "flying_pixels", "lost_depth", "multipath", "occlusion_shadow"}
-            | {"phase_wrap", "sweep"}
+            | {"phase_wrap", "point_layout", "scan_pattern", "sweep"}
             | {"bandwidth", "calibration_error", "clock", "gaps", "latency_histogram", "saturation"}
             | {"fix_types", "multipath", "outages"}
             | {"beam", "blind_zone", "glass_and_mirrors", "intensity", "no_return", "range_error", "signal", "sun"}
@@ -35,8 +35,8 @@ OWN_ELEMENTS: Final[Mapping[str, frozenset[str]]] = MappingProxyType(
         "magnetometer": frozenset({"date"}),
         "sonar": frozenset({"axis", "noise"}),
         "plugin": frozenset(
-            {"actuation_error", "controllers", "interpolation", "odometry_noise", "on_error", "point_times", "pose_type"}
-            | {"ros2_control", "shadow_gz"}
+            {"actuation_error", "controllers", "interpolation", "odometry_noise", "on_error", "point_times"}
+            | {"pose_type", "ros2_control", "shadow_gz"}
         ),
     }
 )

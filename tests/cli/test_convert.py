@@ -334,7 +334,9 @@ OWN = """<sdf version="1.9"><world name="w"><gazebo_quirks>1</gazebo_quirks>
   <random_walk>0.3</random_walk><correlation_time>4</correlation_time></noise></x></angular_velocity></imu></sensor>
 <sensor name="sonar" type="sonar"><sonar><axis>1 0 0</axis><noise type="gaussian"><stddev>0.1</stddev></noise></sonar>
 </sensor><sensor name="field" type="magnetometer"><magnetometer><date>2026.5</date></magnetometer></sensor>
-<sensor name="lds" type="ray"><preset>LDS-01</preset><sweep>true</sweep>
+<sensor name="lds" type="ray"><preset>LDS-01</preset><sweep>true</sweep><point_layout>ouster</point_layout>
+  <scan_pattern><samples>9</samples><rosette><rate_1>7</rate_1><rate_2>3</rate_2><deflection_1>0.1</deflection_1>
+  <deflection_2>0.2</deflection_2></rosette></scan_pattern>
   <dropout><probability>0.1</probability></dropout><signal><range>3</range></signal><intensity/><glass_and_mirrors/>
   <range_error><bias>0.01</bias></range_error><no_return><value>zero</value></no_return><sun/>
   <beam><divergence>0.01</divergence></beam><blind_zone><range>0.2</range></blind_zone></sensor>
@@ -343,8 +345,9 @@ OWN = """<sdf version="1.9"><world name="w"><gazebo_quirks>1</gazebo_quirks>
   <depth_error><scale>-0.01</scale></depth_error><depth_holes><probability>0.1</probability></depth_holes>
   <flying_pixels/><multipath/><occlusion_shadow><baseline>0.05</baseline></occlusion_shadow>
   <phase_wrap><range>50</range></phase_wrap><lost_depth><value>nan</value></lost_depth></sensor>
-<sensor name="colour" type="camera"><camera><image><width>8</width><height>6</height></image></camera>
-  <vignetting/><exposure_control/><image_sensor/><white_balance/><tone_curve/>
+<sensor name="colour" type="camera"><update_rate>30</update_rate>
+  <camera><image><width>8</width><height>6</height></image></camera>
+  <shutter><exposure>0.01</exposure></shutter><vignetting/><exposure_control/><image_sensor/><white_balance/><tone_curve/>
 </sensor>
 <sensor name="mems" type="imu"><bandwidth><angular_velocity>40</angular_velocity></bandwidth><calibration_error>
   <angular_velocity><scale>0 0 0.01</scale></angular_velocity></calibration_error><saturation>

@@ -76,9 +76,7 @@ def turn(sim: simkit.Simulation) -> None:
         sim.run(0.6)
 
 
-def record(
-    world: str, path: Path, drive: Callable[[simkit.Simulation], Any], seed: int = 3, **options: Any
-) -> Path:
+def record(world: str, path: Path, drive: Callable[[simkit.Simulation], Any], seed: int = 3, **options: Any) -> Path:
     """Record a run of a world; return the bag."""
     with simkit.load(world, seed=seed) as sim, Recorder(sim, path, overwrite=True, **options):
         drive(sim)

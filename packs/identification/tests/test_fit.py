@@ -10,7 +10,8 @@ from fit_worlds import pendulum, push, record, servo, slider, swing, turn
 
 import simkit
 from simkit import InputError, RunSpec
-from simkit.testing import open_scenario, read_scenario
+from simkit.testing import open_scenario
+from simkit.testing.scenarios.scenario_file import read_scenario
 
 MASS, DAMPING = "cart::car.inertial.mass", "cart::slide.axis.dynamics.damping"
 
@@ -19,7 +20,9 @@ MASS, DAMPING = "cart::car.inertial.mass", "cart::slide.axis.dynamics.damping"
 def pushed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Recording of a slider with 2 kg, 1.5 N·s/m, a noise of 0.2 m/s² and a latency of 30 ms."""
     folder = tmp_path_factory.mktemp("bags")
-    return record(slider(2.0, 1.5, 0.2, 0.03), folder / "pushed.mcap", push, topics=["/imu", "/model/*", "/joint_states"])
+    return record(
+        slider(2.0, 1.5, 0.2, 0.03), folder / "pushed.mcap", push, topics=["/imu", "/model/*", "/joint_states"]
+    )
 
 
 def test_mass_and_damping_come_back_from_joint_states(pushed: Path) -> None:
@@ -56,17 +59,16 @@ def test_a_latency_comes_back_although_it_acts_in_whole_steps(pushed: Path) -> N
 
 def test_a_pendulum_gives_its_damping_and_its_centre_of_mass(tmp_path: Path) -> None:
     bag = record(pendulum(0.08, 0.4), tmp_path / "swing.mcap", swing)
-    vary = ["swing::hinge.axis.dynamics.damping", "swing::bob.inertial.pose.z"]
+    vary = ["swing::hinge.axis.dynamics.damping", "swing::bob.inertial.com.z"]
     result = simkit.fit(pendulum(), bag, vary)
     assert list(result.values.values()) == pytest.approx([0.08, -0.4], rel=1e-3)
 
 
 def test_gains_of_a_controller_come_back(tmp_path: Path) -> None:
     bag = record(servo(35.0, 3.0), tmp_path / "turn.mcap", turn)
-    names = [name for name in ("p_gain", "d_gain")]
     with open_scenario(RunSpec(servo())) as sim:
         plugin = next(p.name for p in sim.loaded.world.models[0].plugins if "Position" in p.name)
-    vary = [f"arm::{plugin}.{name}" for name in names]
+    vary = [f"arm::{plugin}.{name}" for name in ("p_gain", "d_gain")]
     result = simkit.fit(servo(), bag, vary)
     assert list(result.values.values()) == pytest.approx([35.0, 3.0], rel=1e-3)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 from typing import Any
 
 import numpy as np
@@ -288,6 +289,37 @@ def test_named_surfaces_and_dull_materials_have_no_return() -> None:
     assert 0.1 < lost.mean() < 0.9
 
 
+X3 = """<simkit:depth_error><scale>-0.011858</scale><stddev>0.002</stddev><coefficient>0.0019</coefficient>
+  <exponent>2.36</exponent></simkit:depth_error>
+<simkit:depth_holes><probability>0.05</probability><correlation_length>5</correlation_length><border>0 21 0 0</border>
+  <incidence><start>1.05</start><end>1.13</end></incidence>
+  <wedge><start>0.6</start><end>0.363</end><direction>0.785</direction></wedge></simkit:depth_holes>"""
+
+
+@pytest.mark.parametrize(("reported", "published"), [(0.45, 0.354), (0.63, 0.611), (1.12, 0.57), (3.6, 0.48)])
+def test_the_x3_sees_as_many_pixels_of_a_wall_as_its_owners_measured(reported: float, published: float) -> None:
+    """The camera is 0.109 m above a floor that never returns, before a wall (AIRclub-UdeSA/physical_rosmaster)."""
+    wall = box("wall", f"{reported * 1.012 + 0.5} 0 1 0 0 0", "1 20 9") + box("floor", "0 0 -0.159 0 0 0", "30 30 0.1")
+    text = world(X3, wall, far=8).replace(f"<horizontal_fov>{FOV}<", "<horizontal_fov>1.06406<")
+    text = text.replace(f"<width>{WIDTH}<", "<width>320<").replace(f"<height>{HEIGHT}<", "<height>240<")
+    depths, _ = seen(text, 3)
+    assert np.isfinite(depths).mean() == pytest.approx(published, abs=0.05)
+    assert np.median(depths[np.isfinite(depths)]) == pytest.approx(reported, abs=0.002)
+
+
+def test_a_lens_with_distortion_has_the_same_angles_and_shadows() -> None:
+    lens = "<distortion><k1>-0.15</k1><k2>0.03</k2></distortion>"
+    floor = box("floor", "0 0 -0.3 0 0 0", "40 40 0.001")
+    artefacts = holes("<incidence><start>1.2</start><end>1.2</end></incidence>")
+    (depths,), truth = seen(world(artefacts, WALL + floor, camera=lens))
+    is_floor, lost = truth < 1.99, np.isinf(depths)
+    assert not lost[~is_floor].any()
+    column = slice(WIDTH // 2 - 5, WIDTH // 2 + 5)
+    down = 0.3 / truth[:, column]  # slope of the ray to the floor
+    expected = is_floor[:, column] & (down / np.sqrt(1 + down**2) <= math.cos(1.2))
+    assert np.count_nonzero(lost[:, column] != expected) <= 20
+
+
 # ---------------------------------------------------------------------- messages and repetition
 
 ALL = (
@@ -296,6 +328,25 @@ ALL = (
     + "<simkit:occlusion_shadow><baseline>0.1</baseline></simkit:occlusion_shadow><simkit:flying_pixels/>"
     "<simkit:multipath/><simkit:phase_wrap><range>7</range></simkit:phase_wrap>"
 )  # fmt: skip
+
+
+@pytest.mark.parametrize("quality", ["", "<simkit:quality>high</simkit:quality>"])
+@pytest.mark.parametrize("kind", ["depth_camera", "rgbd_camera"])
+def test_surfaces_are_known_in_software_at_every_quality(kind: str, quality: str) -> None:
+    patch = box("patch", "1.9 0.5 0 0 0 0", "0.02 0.4 40")
+    reasons = "<surface><name>patch::l</name></surface><brightness><start>0.2</start><end>0.1</end></brightness>"
+    text = world(holes(reasons), WALL + patch, kind).replace("<background>", quality + "<background>")
+    (depths,), truth = seen(text, renderer="software")
+    np.testing.assert_array_equal(np.isinf(depths), truth < 1.95)
+
+
+def test_colours_and_depths_of_one_camera_have_their_own_artefacts() -> None:
+    with simkit.load(world(ALL + "<simkit:vignetting/>", kind="rgbd_camera")) as sim:
+        image, depths = sim.subscribe("c/image"), sim.subscribe("c/depth_image")
+        sim.run(0.05)
+        colours = msgs.image(image.latest)
+        assert colours[0, 0, 0] < colours[HEIGHT // 2, WIDTH // 2, 0] == 255
+        assert 0.2 < share_lost(msgs.image(depths.latest)) < 0.6
 
 
 @pytest.mark.parametrize(("name", "value"), [("nan", math.nan), ("zero", 0.0), ("inf", math.inf)])
@@ -337,6 +388,8 @@ def test_the_bits_repeat_after_a_reset_and_a_restored_snapshot_and_depend_on_the
         assert sensor.depth.tobytes() == first
         sim.run(0.3)
         assert sensor.depth.tobytes() == later
+        sim.restore(pickle.loads(pickle.dumps(held)))
+        assert sensor.depth.tobytes() == first
         sim.reset()
         sim.run(0.85)
         assert sensor.depth.tobytes() == later
@@ -396,6 +449,12 @@ def test_a_surface_that_does_not_exist_is_a_warning() -> None:
     with simkit.load(world(holes("<surface><name>flor</name></surface>"))) as sim:
         (found,) = (d for d in sim.diagnostics if d.severity == "warning")
         assert found.code == "SK-SENSOR-228"
+
+
+def test_a_law_beside_measured_points_is_a_warning() -> None:
+    text = "<simkit:depth_error><point>1 0.01</point><stddev>0.1</stddev></simkit:depth_error>"
+    with simkit.load(world(text)) as sim:
+        assert [d.code for d in sim.diagnostics if d.severity == "warning"] == ["SK-SENSOR-229"]
 
 
 def test_an_unknown_option_is_a_warning() -> None:

@@ -214,3 +214,26 @@ def test_sensors_that_gather_their_samples_lose_the_same_messages(kind: str) -> 
         stamps = [stamp_ns(message) for message in kept.messages]
     expected = [stamp for _, stamp, _ in received(world(BURSTS, rate=100), 1.0)]
     assert stamps == expected
+
+
+SWEPT = """<sdf version="1.9" xmlns:simkit="simkit"><world name="w">
+  <physics type="ode"><max_step_size>0.002</max_step_size></physics>
+  <model name="m"><static>true</static><link name="l">
+    <sensor name="scan" type="lidar"><update_rate>10</update_rate><topic>scan</topic><simkit:sweep>true</simkit:sweep>
+      <lidar><scan><horizontal><samples>36</samples><min_angle>-3.14</min_angle><max_angle>3.14</max_angle></horizontal>
+        </scan><range><min>0.1</min><max>10</max></range></lidar>{timing}
+    </sensor></link></model></world></sdf>"""
+
+
+def test_a_scan_that_sweeps_is_late_lost_and_stamped_as_any_other() -> None:
+    timing = """<simkit:latency_histogram><values>0.25</values></simkit:latency_histogram>
+      <simkit:gaps><probability>0.3</probability><values>2</values></simkit:gaps>
+      <simkit:clock><offset>1</offset></simkit:clock>"""
+    rows = []
+    with simkit.load(SWEPT.format(timing=timing)) as sim:
+        sim.subscribe("/scan", lambda m: rows.append((sim.time_ns, stamp_ns(m) - 1_000_000_000)))
+        sim.run(5.0)
+    # the stamp is the time of the first ray; the last ray is a turn of almost 0.1 s later
+    assert all(340_000_000 < arrival - stamp <= 352_000_000 for arrival, stamp in rows)
+    steps = np.diff([stamp for _, stamp in rows]) // 100_000_000
+    assert set(steps.tolist()) == {1, 3} and 10 < len(rows) < 45

@@ -14,11 +14,11 @@ from typing import Final
 
 from simkit.diagnostics import Diagnostics, closest
 from simkit.packs import left_out_names, missing_pack_text
-from simkit.plugins.base import ParentKind, Plugin
+from simkit.plugins.base import ParentKind, Plugin, SensorPlugin
 from simkit.plugins.discovery.user_plugins import find_user_plugin
 from simkit.plugins.plugin_names import ENTRY_POINT_GROUP, aliases, normalise
 from simkit.registry import Kinds
-from simkit.scene import ScenePlugin
+from simkit.scene import ScenePlugin, SceneSensor
 
 _TABLE: Final = tomllib.loads(Path(__file__).with_name("unsupported_plugins.toml").read_text(encoding="utf-8"))
 
@@ -108,6 +108,16 @@ def find_plugin(
     if cls is not None and not _fits(cls, plugin, parent, collector):
         return None
     return cls
+
+
+def complete_sensor(sensor: SceneSensor) -> SceneSensor:
+    """Return a sensor with the elements that its plugins have in place of it."""
+    kinds = plugin_kinds()
+    for plugin in sensor.plugins:
+        cls = next((kinds[alias] for alias in aliases(plugin) if alias in kinds), None)
+        if cls is not None and issubclass(cls, SensorPlugin):
+            sensor = cls.complete(sensor, plugin.params)
+    return sensor
 
 
 def _fits(cls: type[Plugin], plugin: ScenePlugin, parent: ParentKind, diagnostics: Diagnostics) -> bool:

@@ -17,7 +17,7 @@ from simkit.errors import LoadError, RenderError, SimkitError
 from simkit.packs import left_out_names, missing_pack_text
 from simkit.plugins.adapters import FileFinder, entity_plugins
 from simkit.plugins.classic.server_services import ClassicServices, has_classic_plugins
-from simkit.plugins.discovery.find_plugin_class import find_plugin
+from simkit.plugins.discovery.find_plugin_class import complete_sensor, find_plugin
 from simkit.plugins.discovery.left_out import LeftOutParts
 from simkit.plugins.discovery.python_plugins import Attachment, ParentGetter, SceneEntity, attach_plugins, handle_getter
 from simkit.plugins.discovery.user_plugins import find_user_plugin
@@ -125,7 +125,7 @@ class InstanceMaker:
                 continue
             faults = diagnostics.error_count
             with diagnostics.blame(named):
-                scene = add_preset_defaults(named, diagnostics)
+                scene = complete_sensor(add_preset_defaults(named, diagnostics))
                 sensor = self._make_sensor(scene)
                 if sensor is None:
                     continue

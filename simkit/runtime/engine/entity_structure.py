@@ -64,7 +64,7 @@ class AttachedSensor(Protocol):
     def truth(self) -> Message:
         """Newest message without noise; None before the first."""
 
-    def build(self, builder: SpecBuilder) -> None:
+    def build_with_artefacts(self, builder: SpecBuilder) -> None:
         """Add the elements that the sensor needs to the specification."""
 
     def attach(self, sim: Any) -> None:
@@ -75,6 +75,9 @@ class AttachedSensor(Protocol):
 
     def timetable(self) -> Timetable | None:
         """Return the ticks at which the sensor is sampled; None for every tick."""
+
+    def build_with_artefacts(self, builder: SpecBuilder) -> None:
+        """Add what the sensor and its artefacts need to the specification, before it is compiled."""
 
     def scene_timetable(self) -> Timetable | None:
         """Return the ticks at which the scenery must have its pose; None for every tick."""

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import copy
+import functools
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import ClassVar
 
+import mujoco
 import numpy as np
 import numpy.typing as npt
 
@@ -19,6 +23,7 @@ from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 from simkit.runtime import Simulation
+from simkit.runtime.engine.pose_history import PoseRows
 from simkit.scene import SceneSensor
 from simkit.sensors.base import Product
 from simkit.sensors.cameras import image_messages
@@ -31,9 +36,12 @@ from simkit.sensors.cameras.image_noise import CameraReading, ImageNoise, NoisyC
 from simkit.sensors.cameras.rendered_sampler import RenderedSampler
 from simkit.sensors.cameras.renderer_choice import reserve_image
 from simkit.sensors.cameras.rendering import render_thread
+from simkit.sensors.cameras.rendering.lights_and_shadows import read_lights, use_lights
 from simkit.sensors.cameras.rendering.view import DrawnView, Shot, View
 from simkit.sensors.cameras.saved_images import ImageSaver
-from simkit.sensors.sample import Memory, Reading
+from simkit.sensors.cameras.shutter import Exposure, PictureMixer, Shutter, moving_data, rate_problem, read_shutter
+from simkit.sensors.lasting_samples import LastingSample, LastingSamples
+from simkit.sensors.sample import Memory, Reading, Sample
 from simkit.sensors.topics_and_frames import OPTICAL_POSE, sibling_topic
 from simkit.sensors.visibility_mask import hidden_geoms
 
@@ -129,6 +137,11 @@ class RenderedCamera(RenderedSampler):
         self._baseline = 0.0
         self._zoom = 1.0
         self._unzoomed: CameraModel | None = None  # optics of the file, once they were changed
+        self.shutter: Shutter | None = None
+        if "colour" in self.artefact_families:
+            self.shutter = read_shutter(scene.params, self._height, scene.rate)
+        if self.shutter is not None:
+            self.lasting = LastingSamples()
 
     @staticmethod
     def read_model(params: Params, width: int, height: int) -> CameraModel:
@@ -267,6 +280,65 @@ class RenderedCamera(RenderedSampler):
         super().bind(compiled)
         self._hidden_geoms = hidden_geoms(self.options.visibility_mask, compiled.names)
         reserve_image(self.sim, self.options.model.width, self.options.model.height)
+        if self.shutter is not None:
+            self.sim.engine.physics.record_poses(self, self.measurement_ticks(1) + 1)
+
+    # ------------------------------------------------------------------ shutter
+
+    @property
+    def _height(self) -> int:
+        """Largest number of rows of the images of the sensor."""
+        return max(model.height for model in self.camera_models)
+
+    def rate_problem(self, rate: float) -> str:
+        return "" if self.shutter is None else rate_problem(self.shutter, self._height, rate)
+
+    def measurement_ticks(self, index: int) -> int:
+        if self.shutter is None:
+            return 0
+        return math.ceil(self.shutter.duration(self._height) / self.sim.timestep - 1e-6)
+
+    def continue_measurement(self, sample: LastingSample, tick: int) -> Memory:
+        return None  # the image shows the shapes and colours at the end of its exposure
+
+    def end_measurement(self, sample: LastingSample, tick: int) -> Exposure:
+        data, history = self.computed_data(), self.sim.engine.physics.poses
+        if history is None:
+            rows = PoseRows(tick, (data.xpos.tobytes(),), (data.xquat.tobytes(),))
+        else:
+            rows = history.rows(sample.start, tick, data)
+        return Exposure(self.capture_surroundings(), read_lights(self.sim.mj_model), rows, sample.start)
+
+    def leave(self) -> None:
+        super().leave()
+        if self.shutter is not None:
+            self.sim.engine.physics.end_record_of_poses(self)
+
+    def capture_held(self, model: mujoco.MjModel, data: mujoco.MjData, sample: Sample) -> render_thread.RenderJob:
+        exposure = sample.surroundings
+        if not isinstance(exposure, Exposure):
+            return super().capture_held(model, data, sample)
+        if exposure.is_still():
+            sample.surroundings = exposure.surroundings, exposure.lights
+            return super().capture_held(model, data, sample)
+        self.surroundings = exposure.surroundings
+        return render_thread.run_now(functools.partial(self._expose_moving, model, copy.copy(data), exposure))
+
+    def _expose_moving(self, model: mujoco.MjModel, data: mujoco.MjData, exposure: Exposure) -> Reading:
+        """Return the mean of the pictures of an exposure; `data` is changed."""
+        shutter = self.shutter
+        assert shutter is not None
+        duration, count = shutter.duration(self._height), shutter.sub_frames
+        times = (np.arange(float(count)) + 0.5) * (duration / count)
+        mixer = PictureMixer(tuple(shutter.weights(model.height, duration) for model in self.camera_models))
+        is_tuple = False
+        with use_lights(model, data, exposure.lights):
+            for moved in moving_data(model, data, exposure, times, self.sim.timestep):
+                reading = self._make_exposure(model, moved)()
+                is_tuple = isinstance(reading, tuple)
+                mixer.add(reading if is_tuple else (reading,))
+        images = mixer.result()
+        return images if is_tuple else images[0]
 
     def make_reading(self, drawn_views: Iterator[DrawnView], context: Memory) -> object:
         colours = next(drawn_views).colours

@@ -129,8 +129,10 @@ def _outline_items(settings: Settings) -> list[str]:
             children = _outline_items(value) or [""]
             text = f" ({', '.join(children)})" if len(children) > 1 else f" {children[0]}".rstrip()
             names.setdefault(text, []).append(name)
-        elif isinstance(value, list) and len(value) > _LONGEST_LIST:
-            names[f"{name} of {len(value)} values"] = []
+        elif isinstance(value, list) and value and isinstance(value[0], (Mapping, list)):
+            names[f"{len(value)} elements {name}"] = []
+        elif len(format_value(value).split()) > _LONGEST_LIST:
+            names[f"{name} of {len(format_value(value).split())} numbers"] = []
         else:
             names[f"{name} {format_value(value)}".removeprefix("@")] = []
     return ["/".join(merged_names) + text for text, merged_names in names.items()]

@@ -69,7 +69,10 @@ def _usable_elements(sensor: SceneSensor, preset: Preset) -> tuple[Settings, lis
     """
     elements: dict[str, object] = {}
     missing: list[str] = []
+    rate = sensor.rate if sensor.params.has("update_rate") else preset.rate
     for name, value in preset.elements.items():
+        if name == "sweep" and not rate > 0:
+            continue  # a scan at every step has no duration
         if name in preset.beside:
             own = next((child for child in sensor.params.children if child.name == name), None)
             if own is not None and not (own.where.file or "").startswith(SOURCE_PREFIX):
@@ -120,8 +123,8 @@ class _Merge:
                     attributes[name[1:]] = added[name] = str(value)
                 continue
             index = _find_child_index(children, name)
-            if isinstance(value, list) and value and isinstance(value[0], Mapping):
-                children += [self.merged(self._element(name), item, {}) for item in value]
+            if isinstance(value, list) and value and isinstance(value[0], (Mapping, list)):
+                children += [self._repeated(name, item) for item in value]
                 added[name] = value
             elif isinstance(value, Mapping):
                 added_below: dict[str, object] = {}
@@ -137,6 +140,12 @@ class _Merge:
                 children.append(self._element(name, format_value(value)))
                 added[name] = value
         return Params(owner.name, owner.value, attributes, children, owner.where, owner.diagnostics)
+
+    def _repeated(self, name: str, item: Settings | list[object]) -> Params:
+        """Return one of several elements with the same name."""
+        if isinstance(item, list):
+            return self._element(name, format_value(item))
+        return self.merged(self._element(name), item, {})
 
     def _element(self, name: str, text: str = "") -> Params:
         return Params(name, text, where=self._where, diagnostics=self._diagnostics)

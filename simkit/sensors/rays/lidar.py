@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
 import numpy as np
 import numpy.typing as npt
@@ -34,6 +35,7 @@ class Lidar(LidarMeasurement):
         keeps_order: True if a `velodyne` cloud has a point for every ray.
         radiation: radiation type of `Range` messages: 0 ultrasound, 1 infrared.
         field_of_view: field of view of `Range` messages [rad]; None uses the angle between the outer rays.
+        replaced_products: messages in other forms than those of the kind, such as the cloud of a driver.
     """
 
     kinds = ("lidar", "ray", "gpu_lidar", "gpu_ray")
@@ -44,6 +46,7 @@ class Lidar(LidarMeasurement):
     keeps_order = False
     radiation = 1
     field_of_view: float | None = None
+    replaced_products: Mapping[str, Product] = MappingProxyType({})
 
     @classmethod
     def make_batches(cls, sensors: Sequence[LidarMeasurement]) -> None:
@@ -64,6 +67,7 @@ class Lidar(LidarMeasurement):
             "velodyne": Product(CLOUD, self._velodyne_cloud),
             "second_points": Product(CLOUD, self._cloud_of_second_returns),
             "echoes": Product(ECHOES, self._echo_message),
+            **self.replaced_products,
         }
 
     def default_topics(self) -> dict[str, str]:
@@ -151,7 +155,7 @@ class Lidar(LidarMeasurement):
             ranges = np.where(reading.infinite[which] & np.isfinite(ranges), np.inf, ranges)
         points = np.zeros(len(ranges), dtype)
         with np.errstate(invalid="ignore"):
-            positions = self._directions_of(reading)[which] * ranges[:, None]
+            positions = self.directions_of(reading)[which] * ranges[:, None]
         for axis, name in enumerate("xyz"):
             points[name] = positions[:, axis]
         points["intensity"] = np.maximum(reading.intensities[which], self.min_intensity)
@@ -183,13 +187,13 @@ class Lidar(LidarMeasurement):
 
     def _old_cloud(self, reading: LidarReading, time_ns: int) -> msgs.PointCloud:
         hit = np.flatnonzero(np.isfinite(reading.ranges) & ~reading.infinite)
-        positions = self._directions_of(reading)[hit] * reading.ranges[hit, None]
+        positions = self.directions_of(reading)[hit] * reading.ranges[hit, None]
         intensities = np.maximum(reading.intensities[hit], self.min_intensity)
         return legacy_point_cloud(msgs.header(time_ns, self.frame_id), positions, intensities)
 
     def _block_cloud(self, reading: LidarReading, time_ns: int) -> msgs.PointCloud:
         """Make a cloud of all rays, layer by layer from the lowest; rays without a hit end at the range limit."""
-        positions = self._directions_of(reading) * np.clip(reading.ranges, *self._limits)[:, None]
+        positions = self.directions_of(reading) * np.clip(reading.ranges, *self._limits)[:, None]
         intensities = np.maximum(reading.intensities, self.min_intensity)
         if reading.scatter is not None:
             positions[~reading.infinite] += reading.scatter[~reading.infinite, :3]

@@ -149,21 +149,32 @@ class LidarMeasurement(Sensor):
         if not self.sees_visuals and options.visibility_mask != ALL_VISIBLE:
             message = "<visibility_mask> has no effect: the sensor detects collisions, which have no flags"
             diagnostics.warning("SK-SENSOR-004", message, scene.where, f"gpu_{scene.kind} detects visuals")
-        groups = (DRAWN_COLLISION, VISUAL) if self.sees_visuals else SEEN_AS_COLLISIONS
         grid = options.vertical.angles, options.horizontal.angles
-        self._directions = fan_directions(grid[1], grid[0])
-        self.fan = RayFan(self._directions, groups, options.range_max, grid=grid)
+        self.use_rays(fan_directions(grid[1], grid[0]), grid)
         self._start = 0.0 if self.sees_visuals else options.range_min
         self._retro: Vector | None = None
-        # shared by all readings and messages, and therefore read-only
-        self._dark, self._dark_layer = np.zeros(self.fan.count), np.zeros(options.horizontal.samples, np.float32)
-        self._dark.flags.writeable = self._dark_layer.flags.writeable = False
         if options.sweep is not None:
             self.lasting = LastingSamples()
         self._pattern: tuple[float, RayPattern] | None = None
         self._caster: SweptCaster | None = None
         # arrays, because NumPy needs as long to convert a number as to process a whole planar scan
         self._limits = np.array(options.range_min), np.array(options.range_max)
+
+    def use_rays(self, directions: Vector, grid: tuple[Vector, Vector] | None = None) -> None:
+        """Set the rays; called before the sensor is bound.
+
+        Args:
+            directions: unit vectors in the sensor's frame, shape (layers · samples, 3).
+            grid: elevations and azimuths [rad] if the directions are all their pairs, layer by layer; None for other
+                directions, which may be others in each scan.
+        """
+        groups = (DRAWN_COLLISION, VISUAL) if self.sees_visuals else SEEN_AS_COLLISIONS
+        self._directions = directions
+        self.fan = RayFan(directions, groups, self.options.range_max, grid=grid)
+        # shared by all readings and messages, and therefore read-only
+        self._dark = np.zeros(self.fan.count)
+        self._dark_layer = np.zeros(self.options.horizontal.samples, np.float32)
+        self._dark.flags.writeable = self._dark_layer.flags.writeable = False
 
     def read_options(self, params: Params) -> LidarOptions:
         block = params.child("lidar") or params.block("ray")
@@ -299,7 +310,7 @@ class LidarMeasurement(Sensor):
             return None
         reading: LidarReading = sample.noisy
         ranges = np.where(np.isfinite(reading.ranges), reading.ranges, np.nan)
-        ends: Vector = self._directions_of(reading) * ranges[:, None]
+        ends: Vector = self.directions_of(reading) * ranges[:, None]
         return ends
 
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> LidarReading:
@@ -339,7 +350,7 @@ class LidarMeasurement(Sensor):
             infinite = infinite | too_near
         return infinite
 
-    def _directions_of(self, reading: LidarReading) -> Vector:
+    def directions_of(self, reading: LidarReading) -> Vector:
         """Return the directions of the rays in the sensor's frame, shape (layers · samples, 3)."""
         return self._directions if reading.sweep is None else reading.sweep.directions
 
@@ -422,7 +433,7 @@ class LidarMeasurement(Sensor):
         poses = SweepPoses(self._poses_since(sample.start, tick, data), sample.start, self.sim.timestep)
         rays = self._caster.world_rays(progress.pattern, poses, columns)
         self._caster.cast(data, rays, self._start, hits)
-        numbers = rays.numbers
+        numbers = rays.numbers.ravel()
         part = ScanPart(numbers, hits.distances[numbers], hits.geoms[numbers], self._retro, self._names)
         return ScanProgress(progress.pattern, until, (*progress.parts, part))
 

@@ -54,13 +54,11 @@ class SweepPoses:
         positions, quaternions = self.positions[:, body], self.quaternions[:, body]
         return bool((positions != positions[0]).any() or (quaternions != quaternions[0]).any())
 
-    def positions_at(self, body: int, times: Vector) -> Vector:
-        """Return the positions [m] of a body at some times, shape (3, n) or, if it is the same at all ticks, (3, 1)."""
-        positions = self.positions[:, body].T
-        if not body or (positions == positions[:, :1]).all():
-            return np.array(positions[:, :1])
+    def positions_at(self, bodies: Ids, times: Vector) -> Vector:
+        """Return the positions [m] of m bodies at n times, shape (3, m, n)."""
+        positions = np.ascontiguousarray(self.positions[:, bodies].transpose(2, 1, 0))
         before, after, share = self._ticks(times)
-        first, moved = positions.take(before, 1), positions.take(after, 1)
+        first, moved = positions.take(before, 2), positions.take(after, 2)
         moved -= first
         moved *= share
         moved += first
@@ -138,6 +136,19 @@ def _sinc(square: Vector) -> Vector:
     """Return sin(a)/a for the square of a small angle a."""
     series: Vector = 1.0 - square * (1 / 6 - square * (1 / 120 - square * (1 / 5040 - square / 362880)))
     return series
+
+
+def matrices_of(quaternions: Vector) -> tuple[tuple[Vector, Vector, Vector], ...]:
+    """Return the rows of the rotation matrices of unit quaternions; columns, shape (4, ...)."""
+    w, x, y, z = quaternions
+    a, b, c = x + x, y + y, z + z
+    xx, yy, zz, xy, xz, yz = x * a, y * b, z * c, x * b, x * c, y * c
+    wx, wy, wz = w * a, w * b, w * c
+    return (
+        (1.0 - yy - zz, xy - wz, xz + wy),
+        (xy + wz, 1.0 - xx - zz, yz - wx),
+        (xz - wy, yz + wx, 1.0 - xx - yy),
+    )
 
 
 def rotate(quaternions: Vector, vectors: Vector) -> Vector:

@@ -23,21 +23,60 @@ from simkit.sensors.rays.numpy_rays import INTERVALS
 from simkit.sensors.rays.ray_culling import can_reach
 from simkit.sensors.rays.ray_fan import RayFan
 from simkit.sensors.rays.sweep import RayPattern
-from simkit.sensors.rays.sweep_poses import Poses, SweepPoses, rotate, rotate_back
+from simkit.sensors.rays.sweep_poses import Poses, SweepPoses, matrices_of, rotate, rotate_back
 
+_PAIRS = 1 << 16  # pairs of column and sphere that are tested together
+_MANY = 256  # rays towards one shape from which the shape is processed alone
 _GROUPS = np.array((1, 0, 0, 0, 0, 0), dtype=np.uint8)
 
 
 @dataclass(slots=True)
-class WorldRays:
-    """Rays in the world's frame, as columns.
+class _Columns:
+    """Columns of a pattern in the frame of the sensor's body.
 
     Attributes:
-        origins: origins [m], shape (3, n).
-        directions: unit vectors, shape (3, n).
-        times: time of each ray after the scan's stamp [s], shape (n,).
+        pattern: the pattern, with l layers and c columns.
+        directions: unit vectors, shape (3, l, c).
+        numbers: number of each ray in the fan, shape (l, c).
+        normals: unit vector of each column to which all its rays are almost perpendicular, shape (3, c).
+        axes: mean direction of each column, shape (3, c).
+        spread: largest product of a normal with a ray of its column.
+        is_ahead: True if no ray deviates from the axis of its column by more than 90°.
+    """
+
+    pattern: RayPattern
+    directions: Vector
+    numbers: Ids
+    normals: Vector
+    axes: Vector
+    spread: float
+    is_ahead: bool
+
+    @classmethod
+    def of(cls, pattern: RayPattern, turn: Vector) -> _Columns:
+        x, y, z = pattern.directions.T
+        turned = np.stack([turn[i, 0] * x + turn[i, 1] * y + turn[i, 2] * z for i in range(3)])
+        directions = np.ascontiguousarray(turned.reshape(3, -1, len(pattern.times)))
+        numbers = np.arange(len(pattern.directions)).reshape(directions.shape[1:])
+        first, last = directions[:, 0], directions[:, -1]
+        normals = _unit(np.cross(first, last, axis=0))
+        axes = _unit(first + last)
+        spread = np.abs(_dot(normals[:, None], directions)).max()
+        is_ahead = bool((_dot(axes[:, None], directions) >= 0.0).all())
+        return cls(pattern, directions, numbers, normals, axes, float(spread), is_ahead)
+
+
+@dataclass(slots=True)
+class WorldRays:
+    """Rays of c columns and l layers in the world's frame, as columns.
+
+    Attributes:
+        origins: origin of each column [m], shape (3, c).
+        directions: unit vectors, shape (3, l, c).
+        times: time of each column after the scan's stamp [s], shape (c,).
         poses: poses of all bodies during the scan.
-        numbers: number of each ray in the fan, shape (n,).
+        numbers: number of each ray in the fan, shape (l, c).
+        normals, axes, spread, is_ahead: bounds of the columns, as in `_Columns`, in the world's frame.
     """
 
     origins: Vector
@@ -45,6 +84,48 @@ class WorldRays:
     times: Vector
     poses: SweepPoses
     numbers: Ids
+    normals: Vector
+    axes: Vector
+    spread: float
+    is_ahead: bool
+
+    def all_origins(self) -> Vector:
+        """Return the origin of each ray [m], shape (l · c, 3)."""
+        origins = np.broadcast_to(self.origins.T, (*self.numbers.shape, 3))
+        return np.ascontiguousarray(origins).reshape(-1, 3)
+
+    def all_directions(self) -> Vector:
+        """Return the direction of each ray, shape (l · c, 3)."""
+        return np.ascontiguousarray(self.directions.reshape(3, -1).T)
+
+    def near(self, centres: Vector, radii: Vector, reach: float) -> tuple[Ids, Ids]:
+        """Return pairs of a sphere and a ray that may pass through it within the reach; no such pair is missing.
+
+        Args:
+            centres: centres in the world at the time of each column [m], shape (3, m, c) or (3, m, 1).
+            radii: radii [m], shape (m,).
+            reach: longest distance [m].
+
+        Returns:
+            Indices of spheres, ascending, and of rays, which count layer by layer as `numbers`.
+        """
+        layers, columns = self.numbers.shape
+        reaches, radius = centres - self.origins[:, None], radii[:, None]
+        square = _dot(reaches, reaches)
+        if layers == 1:
+            spheres, rays = np.nonzero(_passes(reaches, square, self.directions, radius, reach))
+            return spheres, rays
+        beside = np.abs(_dot(reaches, self.normals[:, None]))
+        far = radius + self.spread * (np.sqrt(square) + radius)
+        is_near = beside <= far * (1 + 1e-9) + 1e-9
+        if self.is_ahead:
+            is_near &= _dot(reaches, self.axes[:, None]) >= -radius * (1 + 1e-9) - 1e-9
+        spheres, chosen = np.nonzero(is_near)
+        towards, square = reaches[:, spheres, chosen], square[spheres, chosen]
+        directions = self.directions[:, :, chosen]
+        passes = _passes(towards[:, None], square, directions, radii.take(spheres), reach)
+        pairs, layer = np.nonzero(passes.T)
+        return spheres.take(pairs), layer * columns + chosen.take(pairs)
 
 
 @dataclass(slots=True)
@@ -88,7 +169,7 @@ class SweptCaster:
     def __init__(self, fan: RayFan, offset: tuple[Vector, Vector]) -> None:
         self._fan, self._targets, self._model = fan, fan.targets, fan.targets.model
         self._offset = offset
-        self._turned: tuple[RayPattern, Vector] | None = None
+        self._columns: _Columns | None = None
         self._batch: Any = None
         targets, carriers = fan.targets, fan.targets.carriers
         others = np.flatnonzero((carriers != 0) & (carriers != fan.carrier))
@@ -129,30 +210,28 @@ class SweptCaster:
 
     def world_rays(self, pattern: RayPattern, poses: SweepPoses, columns: Ids) -> WorldRays:
         """Return the rays of some columns of a pattern."""
-        if self._turned is None or self._turned[0] is not pattern:
-            x, y, z = pattern.directions.T
-            turn = self._offset[1]
-            turned = np.stack([turn[i, 0] * x + turn[i, 1] * y + turn[i, 2] * z for i in range(3)])
-            self._turned = pattern, turned.reshape(3, -1, len(pattern.times))
-        directions = self._turned[1]
-        layers, count = directions.shape[1:]
+        if self._columns is None or self._columns.pattern is not pattern:
+            self._columns = _Columns.of(pattern, self._offset[1])
+        whole = self._columns
+        layers, count = whole.directions.shape[1:]
         is_part = len(columns) != count
-        numbers = (np.arange(layers)[:, None] * count + columns).ravel() if is_part else np.arange(layers * count)
-        if is_part:
-            directions = directions[:, :, columns]
+        numbers = np.arange(layers)[:, None] * count + columns if is_part else whole.numbers
+        parts = whole.directions, whole.normals, whole.axes
+        directions, normals, axes = (part[..., columns] for part in parts) if is_part else parts
         times = pattern.times.take(columns) if is_part else pattern.times
-        position, size = self._offset[0][:, None], layers * len(columns)
+        position = self._offset[0][:, None]
         if self._fan.body > 0:
             frame = poses.at(self._fan.body, times)
+            turn = matrices_of(frame.quaternions)
             origins = frame.positions
             if position.any():
-                origins = origins + rotate(frame.quaternions, position)
-            world = rotate(frame.quaternions[:, None], directions)
+                origins = origins + _turn(turn, position)
+            directions = _turn(turn, directions)
+            if layers > 1:
+                normals, axes = _turn(turn, normals), _turn(turn, axes)
         else:
-            origins, world = np.broadcast_to(position, (3, len(times))), directions
-        origins = np.broadcast_to(origins[:, None], (3, layers, len(times))).reshape(3, size)
-        times = np.broadcast_to(times, (layers, len(times))).reshape(size)
-        return WorldRays(origins, np.ascontiguousarray(world.reshape(3, size)), times, poses, numbers)
+            origins = np.repeat(position, len(times), axis=1)
+        return WorldRays(origins, directions, times, poses, numbers, normals, axes, whole.spread, whole.is_ahead)
 
     def cast(self, data: mujoco.MjData, rays: WorldRays, start: float, hits: SweptHits) -> None:
         """Cast rays, and enter their first hits in `hits`.
@@ -170,18 +249,18 @@ class SweptCaster:
             self._cast_on_static_shapes(rays, start, hits)
         else:
             self._cast_on_static_geoms(data, rays, start, hits)
-        for body in self._static:
-            self._cast_on_triangles(body, rays.numbers, rays.origins, rays.directions, start, hits)
+        if self._static:
+            origins, directions, numbers = rays.all_origins(), rays.all_directions(), rays.numbers.ravel()
+            for body in self._static:
+                self._cast_on_triangles(body, numbers, origins, directions, start, hits)
         if len(self._mover_carriers):
-            self._cast_on_movers(data, rays, start, hits)
+            self._cast_on_movers(rays, start, hits)
 
     def _cast_on_triangles(
         self, body: TriangleBody, numbers: Ids, origins: Vector, directions: Vector, start: float, hits: SweptHits
     ) -> None:
         limit = np.minimum(hits.distances.take(numbers), self._fan.reach, dtype=np.float32)
-        which, distances, geoms = body.cast_local(
-            np.ascontiguousarray(origins.T), np.ascontiguousarray(directions.T), start, limit
-        )
+        which, distances, geoms = body.cast_local(origins, directions, start, limit)
         nearer = distances < hits.distances.take(numbers[which])
         chosen = numbers[which][nearer]
         hits.distances[chosen], hits.geoms[chosen] = distances[nearer], geoms[nearer]
@@ -195,7 +274,7 @@ class SweptCaster:
             from mujoco.batch import Batch
 
             self._batch = Batch(shapes.static_model, 1, 1)
-        origins, directions = np.ascontiguousarray(rays.origins.T), np.ascontiguousarray(rays.directions.T)
+        origins, directions = rays.all_origins(), rays.all_directions()
         groups = SOLIDS_AND_PLANES if shapes.has_planes else SOLIDS
         found, geoms = (part[0] for part in self._batch.ray(origins[None], directions[None], geomgroup=groups))
         missed = found < 0
@@ -211,25 +290,56 @@ class SweptCaster:
                 distances[near] = np.where(found < 0, np.inf, start + found)
                 geoms = np.array(geoms)
                 geoms[near] = beyond
-        geoms = shapes.ids.take(geoms)
-        nearer = distances < hits.distances.take(rays.numbers)
-        chosen = rays.numbers[nearer]
+        geoms, numbers = shapes.ids.take(geoms), rays.numbers.ravel()
+        nearer = distances < hits.distances.take(numbers)
+        chosen = numbers[nearer]
         hits.distances[chosen], hits.geoms[chosen] = distances[nearer], geoms[nearer]
 
     def _cast_on_static_geoms(self, data: mujoco.MjData, rays: WorldRays, start: float, hits: SweptHits) -> None:
         """Cast on static planes and shapes in NumPy."""
-        targets = self._targets
+        targets, model = self._targets, self._model
         for which in targets.planes[targets.carriers[targets.planes] == 0].tolist():
-            geom = int(targets.geoms[which])
-            self._cast_on_geoms(data, np.array([geom]), rays.origins, rays.directions, rays.numbers, start, hits)
+            self._cast_on_static_plane(data, int(targets.geoms[which]), rays, start, hits)
         shapes = targets.shapes[targets.carriers[targets.shapes] == 0]
-        geoms = targets.geoms[shapes]
-        for geom in geoms.tolist():
-            centre, radius = data.geom_xpos[geom], float(self._model.geom_rbound[geom])
-            near = _rays_near(rays.origins, rays.directions, centre[:, None], radius, self._fan.reach)
-            if len(near):
-                parts = rays.origins.take(near, 1), rays.directions.take(near, 1), rays.numbers.take(near)
-                self._cast_on_geoms(data, np.array([geom]), *parts, start, hits)
+        geoms, types = targets.geoms[shapes], targets.types[shapes]
+        columns = max(1, len(rays.times))
+        for first in range(0, len(geoms), max(1, _PAIRS // columns)):
+            some = geoms[first : first + max(1, _PAIRS // columns)]
+            centres = data.geom_xpos[some].T[:, :, None]
+            owners, which = rays.near(centres, model.geom_rbound[some], self._fan.reach)
+            counts = np.bincount(owners, minlength=len(some))
+            ends = np.cumsum(counts).tolist()
+            for index in np.flatnonzero(counts >= _MANY).tolist():  # one pose for all these rays saves time
+                own = which[ends[index] - counts[index] : ends[index]]
+                self._cast_on_geoms(data, some[index : index + 1], *_of_rays(rays, own), start, hits)
+            is_few = (counts < _MANY).take(owners)
+            kinds = np.where(is_few, types[first : first + len(some)].take(owners), -1)
+            for kind in np.flatnonzero(np.bincount(kinds + 1)).tolist():
+                if kind:
+                    pairs = np.flatnonzero(kinds == kind - 1)
+                    parts = _of_rays(rays, which.take(pairs))
+                    self._cast_on_geoms(data, some.take(owners.take(pairs)), *parts, start, hits)
+
+    def _cast_on_static_plane(
+        self, data: mujoco.MjData, geom: int, rays: WorldRays, start: float, hits: SweptHits
+    ) -> None:
+        """Cast all rays on a static plane or rectangle."""
+        turn, size = data.geom_xmat[geom].reshape(3, 3), self._model.geom_size[geom]
+        origins = rays.origins - data.geom_xpos[geom][:, None]
+        height = _dot(origins, turn[:, 2])
+        if not (height > 0).any():
+            return
+        descent = _dot(rays.directions, turn[:, 2])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            distances = -height / descent
+            hit = (height > 0) & (descent < -1e-15) & (distances >= start)
+            hit &= distances < hits.distances.take(rays.numbers)
+            for axis in (0, 1):
+                if size[axis] > 0:
+                    side = _dot(origins, turn[:, axis]) + distances * _dot(rays.directions, turn[:, axis])
+                    hit &= np.abs(side) <= size[axis]
+        numbers = rays.numbers[hit]
+        hits.distances[numbers], hits.geoms[numbers] = distances[hit], geom
 
     def _cast_on_geoms(
         self,
@@ -275,16 +385,16 @@ class SweptCaster:
         else:
             hits.shorten(numbers, distances, geoms.astype(np.int32))
 
-    def _cast_on_movers(self, data: mujoco.MjData, rays: WorldRays, start: float, hits: SweptHits) -> None:
+    def _cast_on_movers(self, rays: WorldRays, start: float, hits: SweptHits) -> None:
         """Cast on all other carriers, with the rays that may hit them, in the frames of their bodies."""
         carriers, which = self._pairs_of_movers(rays)
         if not len(which):
             return
-        bodies, numbers = self._bodies.take(carriers), rays.numbers.take(which)
-        poses = rays.poses.at(bodies, rays.times.take(which))
-        origins, directions = rays.origins.take(which, 1), rays.directions.take(which, 1)
-        origins = rotate_back(poses.quaternions, origins - poses.positions)
-        directions = rotate_back(poses.quaternions, directions)
+        columns = which % len(rays.times)
+        poses = rays.poses.at(self._bodies.take(carriers), rays.times.take(columns))
+        origins, directions, numbers = _of_rays(rays, which)
+        turn = matrices_of(poses.quaternions)
+        origins, directions = _turn_back(turn, origins - poses.positions), _turn_back(turn, directions)
         targets = self._targets
         types, owner = targets.types[self._movers], targets.carriers[self._movers]
         for kind in sorted(set(types.tolist()) - set(TRIANGLES)):
@@ -305,21 +415,24 @@ class SweptCaster:
             if body is not None:
                 own = np.flatnonzero(carriers == index)
                 if len(own):
-                    parts = numbers[own], origins[:, own], directions[:, own]
-                    self._cast_on_triangles(body, *parts, start, hits)
+                    local, turned = (np.ascontiguousarray(part[:, own].T) for part in (origins, directions))
+                    self._cast_on_triangles(body, numbers[own], local, turned, start, hits)
 
     def _pairs_of_movers(self, rays: WorldRays) -> tuple[Ids, Ids]:
         """Return pairs of a carrier's index and a ray that may hit its geoms; no such pair is missing."""
-        count = rays.times.size
-        near = []
-        for index, body in enumerate(self._bodies.tolist()):
-            if not np.isfinite(self._radii[index]):
-                near.append(np.arange(count))
-                continue
-            centres = rays.poses.positions_at(body, rays.times)
-            near.append(_rays_near(rays.origins, rays.directions, centres, self._radii[index], self._fan.reach))
-        carriers = np.repeat(np.arange(len(near)), [len(part) for part in near])
-        return carriers, np.concatenate(near)
+        carriers, which = [], []
+        endless = np.flatnonzero(~np.isfinite(self._radii))
+        carriers.append(np.repeat(endless, rays.numbers.size))
+        which.append(np.tile(np.arange(rays.numbers.size), len(endless)))
+        bounded = np.flatnonzero(np.isfinite(self._radii))
+        step = max(1, _PAIRS // max(1, len(rays.times)))
+        for first in range(0, len(bounded), step):
+            some = bounded[first : first + step]
+            centres = rays.poses.positions_at(self._bodies[some], rays.times)
+            owners, near = rays.near(centres, self._radii[some], self._fan.reach)
+            carriers.append(some.take(owners))
+            which.append(near)
+        return np.concatenate(carriers), np.concatenate(which)
 
     # ------------------------------------------------------------------ without Embree
 
@@ -331,17 +444,18 @@ class SweptCaster:
         mover = _BodyMover(model, moved, bodies) if len(bodies) else None
         geom, exclude = np.empty(1, np.int32), self._fan.body if self._fan.body > 0 else -1
         with whole.without(self._fan.own_geoms):
-            for i in np.argsort(rays.times, kind="stable").tolist():
+            for layer, i in ((k, i) for i in range(len(rays.times)) for k in range(len(rays.numbers))):
                 if mover is not None:
                     mover.move(rays.poses, float(rays.times[i]))
-                origin, direction = rays.origins[:, i].copy(), rays.directions[:, i].copy()
+                origin, direction = rays.origins[:, i].copy(), rays.directions[:, layer, i].copy()
                 distance = mujoco.mj_ray(model, moved, origin, direction, _GROUPS, 1, exclude, geom, None)
                 if 0 <= distance < start:
                     origin += start * direction
                     distance = mujoco.mj_ray(model, moved, origin, direction, _GROUPS, 1, exclude, geom, None)
                     distance = distance + start if distance >= 0 else distance
                 if distance >= 0:
-                    hits.distances[rays.numbers[i]], hits.geoms[rays.numbers[i]] = distance, geom[0]
+                    number = rays.numbers[layer, i]
+                    hits.distances[number], hits.geoms[number] = distance, geom[0]
 
 
 class _BodyMover:
@@ -377,22 +491,53 @@ class _BodyMover:
         matrices[which] = np.stack(turned, axis=1).transpose(2, 0, 1).reshape(len(which), 9)
 
 
-def _rays_near(origins: Vector, directions: Vector, centres: Vector, radius: float, reach: float) -> Ids:
-    """Return the rays that pass through spheres with their centres in the columns of `centres`, within the reach."""
-    x, y, z = centres - origins
-    a, b, c = directions
-    along = x * a
-    along += y * b
-    along += z * c
-    square = x * x
-    square += y * y
-    square += z * z
-    beside = square - along * along
+def _dot(first: Any, second: Any) -> Vector:
+    """Return the products of vectors, whose components are the first axis."""
+    product: Vector = first[0] * second[0]
+    product += first[1] * second[1]
+    product += first[2] * second[2]
+    return product
+
+
+def _unit(vectors: Vector) -> Vector:
+    """Return unit vectors; those without a length stay zero."""
+    unit: Vector = vectors / np.maximum(np.sqrt(_dot(vectors, vectors)), 1e-300)
+    return unit
+
+
+def _turn(matrix: Any, vectors: Vector) -> Vector:
+    """Return vectors turned by rotation matrices; components are the first axis."""
+    return np.stack([_dot(matrix[i], vectors) for i in range(3)])
+
+
+def _turn_back(matrix: Any, vectors: Vector) -> Vector:
+    """Return vectors turned by the inverses of rotation matrices; components are the first axis."""
+    return np.stack([_dot([row[i] for row in matrix], vectors) for i in range(3)])
+
+
+def _of_rays(rays: WorldRays, which: Ids) -> tuple[Vector, Vector, Ids]:
+    """Return origins, directions and numbers of some rays, which count layer by layer."""
+    origins = rays.origins.take(which % len(rays.times), 1)
+    return origins, rays.directions.reshape(3, -1).take(which, 1), rays.numbers.ravel().take(which)
+
+
+def _passes(reaches: Vector, square: Vector, directions: Vector, radius: Vector, reach: float) -> npt.NDArray[np.bool_]:
+    """Check which rays pass through spheres within the reach.
+
+    Args:
+        reaches: vectors from the origins of the rays to the centres [m].
+        square: their squares [m²].
+        directions: directions of the rays.
+        radius: radii of the spheres [m].
+        reach: longest distance [m].
+    """
+    along = _dot(reaches, directions)
     margin = radius * radius * (1 + 1e-9) + 1e-9 + 1e-12 * square
-    is_near = (beside <= margin) & ((along >= 0) | (square <= margin))
+    is_near: npt.NDArray[np.bool_] = square - along * along <= margin
+    is_near &= (along >= 0) | (square <= margin)
     if np.isfinite(reach):
         is_near &= along <= (reach + radius) * (1 + 1e-9) + 1e-9
-    return np.flatnonzero(is_near)
+    return is_near
 
 
 def _into(matrices: Vector, columns: Vector) -> Vector:

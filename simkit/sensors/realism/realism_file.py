@@ -199,19 +199,22 @@ class _FileReader:
         for key, node in self._items(root, "the file", _KEYS).items():
             if key in found:
                 entries = self._items(node, key)
-                found[key] = tuple(self._rule(key, pattern, entry) for pattern, entry in entries.items())
+                places = {str(name.value): self._where(name) for name, _ in node.value} if entries else {}
+                found[key] = tuple(
+                    self._rule(key, pattern, entry, places[pattern]) for pattern, entry in entries.items()
+                )
         if not any(found.values()) and not self._diagnostics.has_errors:
             self._error(root, "the file has neither sensors nor plugins", _form())
         return found["sensors"], found["plugins"]
 
-    def _rule(self, part: str, pattern: str, node: yaml.Node) -> Rule:
+    def _rule(self, part: str, pattern: str, node: yaml.Node, where: Where) -> Rule:
         entry = self._items(node, repr(pattern), _ENTRY_KEYS[part])
         preset = entry.get("preset")
         named = None
         if preset is not None:
             named = Params("preset", self._text(preset), where=self._where(preset), diagnostics=self._diagnostics)
         elements = tuple(self._elements(entry["elements"], "elements")) if "elements" in entry else ()
-        return Rule(pattern, self._where(node), named, elements)
+        return Rule(pattern, where, named, elements)
 
     def _elements(self, node: yaml.Node, name: str) -> Iterator[NewElements]:
         for key, value in self._items(node, name).items():
@@ -221,7 +224,7 @@ class _FileReader:
     def _params(self, name: str, node: yaml.Node) -> Iterator[Params]:
         """Yield the elements of a value: none for null, several for a list of mappings."""
         items = node.value if _kind(node) == "sequence" else []
-        if items and all(_kind(item) == "mapping" for item in items):
+        if items and all(_kind(item) in ("mapping", "sequence") for item in items):
             for item in items:
                 yield from self._params(name, item)
             return

@@ -16,6 +16,7 @@ from simkit.params import Params
 from simkit.pose import Pose
 from simkit.run_spec import JsonObject
 from simkit.scene import SceneSensor, SceneWorld
+from simkit.scene.model import NO_OPTICS, Optics
 from simkit.yaml_reader import yaml_loader
 
 if TYPE_CHECKING:
@@ -136,6 +137,8 @@ class _WorldWalk:
             self._put(path, file_content_text(value), place)
         elif isinstance(value, Params):
             self.element(value, path, place, _SENSOR_FIELDS if isinstance(owner, SceneSensor) else frozenset())
+        elif isinstance(value, Optics) and value == NO_OPTICS:
+            return  # references from before this property existed stay valid
         elif is_dataclass(value):
             if shape_class_name(value):
                 self._put(path, shape_class_name(value), place)

@@ -272,7 +272,8 @@ def test_a_preset_has_its_cameras_geometry_and_noise() -> None:
         assert k[0] == pytest.approx(53 / math.tan(math.radians(87 / 2)), rel=1e-4)
         found = sim.sensor("m::l::s").depth
         # 0.08 px of that many pixels, by 50 mm
-        assert found.std() == pytest.approx(9 / (k[0] * 0.05) * 0.08, rel=0.15)
+        seen = found[found > 0]  # the right camera does not see the left border, and the driver writes 0 there
+        assert seen.std() == pytest.approx(9 / (k[0] * 0.05) * 0.08, rel=0.15)
     with simkit.load(scene(f'<sensor name="s" type="depth_camera">{eye}</sensor>')) as sim:
         model = sim.sensor("m::l::s").options.model
         assert (model.width, model.height, model.near, model.far) == (848, 480, 0.195, 10)

@@ -33,7 +33,8 @@ def fit(
     report: Annotated[Path | None, option("Page to write: values and plots before and after.", "FIT.html")] = None,
     plot: Annotated[Path | None, option("Chart to write: .png or .svg.", "FIT.png")] = None,
     compare: Annotated[
-        list[str], option("Topic to compare, or a pattern; repeatable. Default: all of both.", "TOPIC")
+        list[str],
+        option("Topic to compare, or a field of it; repeatable. Default: all of both.", "TOPIC[.FIELD]"),
     ] = [],
     skip: Annotated[float, option("Seconds at the beginning that are not compared.", "S", min=0)] = 0.0,
     duration: Annotated[float | None, option("Seconds of each bag to use; default: all.", "S", min=0)] = None,

@@ -22,6 +22,7 @@ from simkit_identification.measures.signals import FIELD_OF_MEASURE, is_constant
 _MOST_SIGNALS: Final = 4  # signals of a topic that are drawn
 _MOST_CHARTS: Final = 60
 _MOST_POINTS: Final = 4000
+_SAME_INTERVAL: Final = 0.1  # relative differences of intervals up to which they are not drawn
 _ROLES: Final = ("a", "b")
 
 
@@ -60,16 +61,21 @@ def _topic_charts(sides: _Sides, wanted: Sequence[str]) -> Iterator[PageChart]:
     drawn = 0
     for field in fields:
         found = [(s.signals[field], side, role) for s, side, role in sides if field in s.signals]
-        if drawn == _MOST_SIGNALS or not found or all(is_constant(s) or s.is_setting for s, _, _ in found):
+        if drawn == _MOST_SIGNALS or not any(_is_drawn(signal) for signal, _, _ in found):
             continue
         drawn += 1
-        unit = f" [{found[0][0].unit}]" if found[0][0].unit else ""
         title = f"{topic} {field}"
         lines = [(_series(s), role) for s, _, role in found]
-        yield PageChart(lines, title, "time [s]", field + unit, caption=title)
+        yield PageChart(lines, title, "time [s]", found[0][0].unit or "value", caption=title)
         yield from _spectrum_chart(title, found)
     yield from _allan_charts(topic, sides)
     yield from _noise_charts(topic, sides)
+
+
+def _is_drawn(signal: Signal) -> bool:
+    """Check whether a signal changes by more than an error of rounding."""
+    finite = signal.values[np.isfinite(signal.values)]
+    return bool(len(finite) and np.ptp(finite) > 1e-12 and not signal.is_setting)
 
 
 def _series(signal: Signal) -> Series:
@@ -90,7 +96,7 @@ def _interval_charts(topic: str, sides: _Sides) -> Iterator[PageChart]:
                 step = max(1, len(values) // _MOST_POINTS)
                 lines.append((Series(name, times=values[::step], values=shares[::step]), role))
         every = np.concatenate([line.times for line, _ in lines]) if lines else np.empty(0)
-        if len(every) and np.ptp(every) > 1e-4:
+        if len(every) and np.ptp(every) > max(1e-3, _SAME_INTERVAL * abs(float(np.median(every)))):
             title = f"{topic} distribution of the {name}"
             yield PageChart(lines, title, f"{name} [s]", "share up to this", caption=title)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, Final
 
@@ -152,7 +153,8 @@ def _numbers_of(column: Column, texts: dict[str, Column], times: Floats) -> dict
         rows = [np.asarray(row, np.float64) for row in column.rows()]
         means = [float(row[np.isfinite(row)].mean()) if np.isfinite(row).any() else math.nan for row in rows]
         lengths = np.array([len(row) for row in rows], np.float64)
-        return {f"{column.path}.length": (times, lengths), f"{column.path}.mean": (times, np.array(means))}
+        listed = column.path.partition("[]")[0]  # one length for all fields of a list of messages
+        return {f"{listed} length": (times, lengths), f"{column.path} mean": (times, np.array(means))}
     table = column.numbers().astype(np.float64).reshape(-1, width) if width else np.empty((len(times), 0))
     return {f"{column.path}[{k}]": (times, table[:, k]) for k in range(width)}
 
@@ -173,7 +175,10 @@ def _named_items(column: Column, names: Column, times: Floats) -> dict[str, tupl
     head, bracket, tail = column.path.rpartition("[]")
     found: dict[str, tuple[list[float], list[float]]] = {}
     for time, keys, values in zip(times.tolist(), names.rows(), column.rows(), strict=True):
-        for key, value in zip(keys, values, strict=False):
+        seen: Counter[str] = Counter()
+        for name, value in zip(keys, values, strict=False):
+            seen[name] += 1
+            key = name if seen[name] == 1 else f"{name} #{seen[name]}"
             path = f"{head}[{key}]{tail}" if bracket else f"{column.path}[{key}]"
             at, kept = found.setdefault(path, ([], []))
             at.append(time)

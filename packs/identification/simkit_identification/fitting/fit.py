@@ -127,7 +127,8 @@ def fit(
         world: world, bare name, XML text, or run specification.
         recordings: bags, or `Motion` objects for the free motion of a model; one or several.
         vary: parameters: `PATH`, `PATH=START`, `PATH=LOW:HIGH` or `PATH=LOW:START:HIGH`, or values by path.
-        compare: patterns of the topics to compare; empty for all that both have.
+        compare: patterns of the topics to compare, each perhaps with a field: `/imu.angular_velocity`; empty for all
+            topics that both have.
         skip: seconds at the beginning of each recording that are not compared.
         duration: seconds of each recording that are used; None for all.
         motion: `MODEL=TOPIC`, if the bags have free motions of a model.
@@ -211,8 +212,8 @@ class _Fitter:
         self._all, self._recordings = list(parameters), list(recordings)
         self._searched = [p for p in parameters if not p.is_deviation]
         self._deviations = [p for p in parameters if p.is_deviation]
-        is_free = any(recording.motion is not None for recording in recordings)
-        robust = is_free if options.robust is None else options.robust
+        self._is_free = any(recording.motion is not None for recording in recordings)
+        robust = self._is_free if options.robust is None else options.robust
         self._loss: Loss = "soft_l1" if robust else "linear"
         self.diagnostics = Diagnostics()
 
@@ -230,7 +231,7 @@ class _Fitter:
             progress.task("fitting") as task,
             Evaluator(problem, self._searched, self._options.jobs, task) as evaluate,
         ):
-            residuals = Residuals(recordings, self._options.skip)
+            residuals = Residuals(recordings, self._options.skip, () if self._is_free else self._options.compare)
             start = np.zeros(len(self._searched))
             before = self._first_readings(evaluate, start)
             self._compare_only_known(residuals, before, notes)
@@ -344,6 +345,8 @@ class _Fitter:
         """Return the method: least squares, unless derivatives depend on the differences that they are made of."""
         if self._options.method != "auto":
             return self._options.method
+        if not self._is_free:  # scans make derivatives rough, yet least squares found TurtleBot3's wheels to 1e-6
+            return "least-squares"
         wider = Differences(differences.steps * 4.0, differences.has_effect)
         _, others = derivatives(evaluate, start, wider, is_central=False)
         fine, coarse = residuals.jacobian(slopes), residuals.jacobian(others)

@@ -27,10 +27,10 @@ _EITHER_SIGN: Final = re.compile(
 """Last names of values that may be negative, so that they have no logarithmic scale."""
 _TIMES: Final = ("latency", "delay", "phase")
 """Last names of times that act in whole steps."""
-_DEVIATIONS: Final = ("stddev", "bias_stddev", "dynamic_bias_stddev")
+_DEVIATIONS: Final = ("stddev", "bias_stddev", "dynamic_bias_stddev", "gaussian_noise")
 """Last names of standard deviations, which change no mean trajectory."""
 _RANDOM: Final = (*_DEVIATIONS, "latency_jitter", "jitter")
-_WIDE: Final = 1e3  # factor to the implicit bounds of a logarithmic scale
+_WIDE: Final = 1e3  # factor to the implicit bounds of a logarithmic scale, and bound of a linear coordinate
 _SPREAD: Final = 0.5  # first guess of the error of a first value, as a logarithm or in units of the value
 
 
@@ -87,7 +87,7 @@ class Parameter:
                 self.coordinate(self.low) if self.low > 0 else -wide,
                 self.coordinate(self.high) if math.isfinite(self.high) else wide,
             )
-        return self.coordinate(self.low), self.coordinate(self.high)
+        return max(self.coordinate(self.low), -_WIDE), min(self.coordinate(self.high), _WIDE)
 
     def box(self) -> tuple[float, float]:
         """Return the part of the scaled coordinate in which the first points of a search lie."""

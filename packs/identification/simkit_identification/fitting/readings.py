@@ -277,6 +277,30 @@ def aligned(recorded: Readings, simulated: Readings | None) -> Floats:
     return result
 
 
+def topic_pattern(text: str) -> str:
+    """Return the topic of a text `TOPIC` or `TOPIC.FIELD`."""
+    return text.partition(".")[0]
+
+
+def is_compared(topic: str, column: str, compare: Sequence[str]) -> bool:
+    """Check whether a column of a topic is compared.
+
+    Args:
+        topic: topic.
+        column: column, such as `angular_velocity.x`.
+        compare: texts `TOPIC` or `TOPIC.FIELD`; empty for all.
+    """
+    if not compare:
+        return True
+    for text in compare:
+        pattern, _, field = text.partition(".")
+        if matches_topic(topic, [pattern]) and (
+            not field or column == field or column.startswith((f"{field}.", f"{field}["))
+        ):
+            return True
+    return False
+
+
 def check_topics(chosen: Sequence[str], available: Sequence[str]) -> None:
     """Check that each pattern of `--compare` matches a topic.
 
@@ -284,6 +308,7 @@ def check_topics(chosen: Sequence[str], available: Sequence[str]) -> None:
         InputError: SK-CLI-030 a pattern matches no topic that both have.
     """
     for pattern in chosen:
-        if not any(matches_topic(topic, [pattern]) for topic in available):
-            hint = did_you_mean(pattern, available) or f"topics of both: {', '.join(available) or 'none'}"
+        topic = topic_pattern(pattern)
+        if not any(matches_topic(known, [topic]) for known in available):
+            hint = did_you_mean(topic, available) or f"topics of both: {', '.join(available) or 'none'}"
             raise InputError("SK-CLI-030", f"--compare {pattern}: the bag and the world have no such topic; {hint}")

@@ -27,6 +27,7 @@ from simkit_identification.fitting.readings import (
     common_topics,
     has_numbers,
     is_about_run,
+    topic_pattern,
 )
 
 Bag = str | os.PathLike[str] | Motion
@@ -116,7 +117,8 @@ def _bag_recording(
         available = {t: kind for t, kind in common_topics(sim, bag) if t not in commands and t not in commands.values()}
         numeric = [topic for topic, kind in available.items() if has_numbers(kind)]
         check_topics(options.compare, numeric)
-        chosen = [topic for topic in numeric if not options.compare or matches_topic(topic, options.compare)]
+        patterns = [topic_pattern(text) for text in options.compare]
+        chosen = [topic for topic in numeric if not patterns or matches_topic(topic, patterns)]
         ready = [topic for topic in chosen if is_available(sim, topic)]
         until = math.inf if options.duration is None else options.duration
         readings = bag_readings(bag, ready, until)

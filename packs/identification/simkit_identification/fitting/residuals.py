@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit_identification.fitting.problem import Recording
-from simkit_identification.fitting.readings import Channel
+from simkit_identification.fitting.readings import Channel, is_compared
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.intp]
@@ -34,6 +34,7 @@ class Residuals:
     Args:
         recordings: recordings.
         skip: seconds at the beginning of each recording that are not compared.
+        compare: patterns of topics, each perhaps with a field: `/imu.angular_velocity`; empty for all.
 
     Attributes:
         recorded: recorded readings, shape (size,).
@@ -46,7 +47,7 @@ class Residuals:
         deviations: standard deviation of each column.
     """
 
-    def __init__(self, recordings: Sequence[Recording], skip: float = 0.0) -> None:
+    def __init__(self, recordings: Sequence[Recording], skip: float = 0.0, compare: Sequence[str] = ()) -> None:
         names: dict[ColumnName, int] = {}
         recorded, column, times, recording_of = [], [], [], []
         for number, recording in enumerate(recordings):
@@ -71,7 +72,8 @@ class Residuals:
         _, sample = np.unique(keys, axis=0, return_inverse=True)
         self.sample: Integers = sample.ravel().astype(np.intp)
         self._skipped = self.times < skip - 1e-9
-        self._is_used = np.ones(len(self.columns), dtype=np.bool_)
+        self._is_used = np.array([is_compared(name.channel.topic, name.column, compare) for name in self.columns], bool)
+        self._means = np.array([self._mean(i) for i in range(len(self.columns))])
         self._ranges = np.array([self._variation(i) for i in range(len(self.columns))])
         self.deviations: Floats = np.array([self._first_deviation(i) for i in range(len(self.columns))])
         self.weights: Floats = np.empty(0)
@@ -131,23 +133,28 @@ class Residuals:
         return errors
 
     def relative_error(self, simulated: Floats, topic: str = "") -> float:
-        """Return the root mean square residual over the variation of each column, as a mean of the compared columns.
+        """Return the weighted residuals as a share of the weighted variation of the recorded readings.
 
         Args:
             simulated: simulated readings.
             topic: topic whose columns are meant; empty for all.
         """
-        errors = self.column_errors(simulated)
-        shares = [
-            errors[i] / self._ranges[i]
-            for i, name in enumerate(self.columns)
-            if self._is_used[i] and self._ranges[i] > 0 and np.isfinite(errors[i]) and topic in ("", name.channel.topic)
-        ]
-        return float(np.sqrt(np.mean(np.square(shares)))) if shares else float("nan")
+        residuals = self.vector(simulated) ** 2
+        variation = np.nan_to_num((self.recorded - self._means[self.column]) * self.weights) ** 2
+        if topic:
+            of_topic = np.array([name.channel.topic == topic for name in self.columns])[self.column]
+            residuals, variation = residuals[of_topic], variation[of_topic]
+        total = float(np.sum(variation))
+        return float(np.sqrt(np.sum(residuals) / total)) if total > 0 else float("nan")
 
     def _set_weights(self) -> None:
         weights = np.where(self._is_used, 1.0 / self.deviations, 0.0)
         self.weights = np.where(self._skipped, 0.0, weights[self.column]) if len(self.column) else np.empty(0)
+
+    def _mean(self, i: int) -> float:
+        values = self.recorded[self.column == i]
+        values = values[np.isfinite(values)]
+        return float(np.mean(values)) if len(values) else 0.0
 
     def _variation(self, i: int) -> float:
         values = self.recorded[self.column == i]

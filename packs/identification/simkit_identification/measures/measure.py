@@ -13,7 +13,9 @@ from simkit.elementary_functions import log
 from simkit.testing.run_record.noise_statistics import noise_statistics
 from simkit_identification.measures.recording import ArrayOverTime, Floats
 
-Kind = Literal["mean", "rate", "deviation", "paired", "arrays", "power", "largest", "distribution", "estimate", "value"]
+Kind = Literal[
+    "mean", "rate", "deviation", "paired", "spread", "arrays", "power", "largest", "distribution", "estimate", "value"
+]
 _TINY: Final = 1e-12  # relative differences of sums that are rounding errors
 _LEAST: Final = 3  # samples for a test
 _MOST_PAIRS: Final = 100_000
@@ -31,6 +33,7 @@ class Measure:
             rate: inverse of their mean;
             deviation: square root of their mean, for squares of a noise;
             paired: mean of the differences at equal times;
+            spread: standard deviation of the samples at equal times, as of a speed with a scale error;
             arrays: median of the differences of two arrays at equal times;
             power: square root of the geometric mean; the samples are the powers of segments that begin at equal times;
             largest: largest sample;
@@ -38,7 +41,7 @@ class Measure:
             estimate: the first sample is the value, the second its standard error, on a logarithmic scale;
             value: the first sample, without knowledge of its chance.
         values: samples, shape (n,).
-        times: times of the samples [s], shape (n,); needed by paired.
+        times: times of the samples [s], shape (n,); needed by paired and spread.
         is_angle: True for samples that wrap around after a full turn.
         array: samples of arrays.
         is_ratio: True for the ratio of two arrays minus 1 instead of their difference.
@@ -112,7 +115,7 @@ def estimate(measure: Measure, confidence: float) -> Estimate:
         value, error = float(measure.values[0]), float(measure.values[1])
         factor = math.exp(min(50.0, _quantile(confidence, 1e9) * error / value)) if value > 0.0 else 1.0
         return Estimate(value, value / factor, value * factor)
-    if measure.kind in ("largest", "value", "distribution", "arrays"):
+    if measure.kind in ("largest", "value", "distribution", "arrays", "spread"):
         return Estimate(_plain_value(measure))
     if measure.kind == "power":
         value, count = _geometric_mean(measure.values), len(measure.values)
@@ -145,6 +148,8 @@ def _plain_value(measure: Measure) -> float:
         return math.nan
     if measure.kind == "largest":
         return float(values.max())
+    if measure.kind == "spread":
+        return float((np.unwrap(values) if measure.is_angle else values).std())
     return float(np.median(values)) if measure.kind == "distribution" else float(values[0])
 
 
@@ -288,6 +293,21 @@ def _compare_pairs(a: Measure, b: Measure, confidence: float) -> Outcome:
     return _of_difference(float(first.mean()), float(second.mean()), _mean(differences), confidence)
 
 
+def _compare_spreads(a: Measure, b: Measure, confidence: float) -> Outcome:
+    """Compare standard deviations at equal times: the influence of each pair on the logarithm of their ratio."""
+    first, second = paired_values(a, b)
+    if len(first) < _LEAST:
+        return Outcome(_plain_value(a), _plain_value(b), math.nan)
+    step = max(1, len(first) // _MOST_PAIRS)
+    one, two = first[::step] - first[::step].mean(), second[::step] - second[::step].mean()
+    squares = float((one**2).mean()), float((two**2).mean())
+    values = math.sqrt(squares[0]), math.sqrt(squares[1])
+    if min(values) <= _TINY * max(values):
+        return _of_ratio(values[0], values[1], (math.nan, math.nan), 1.0, confidence)
+    influence = _mean(0.5 * (two**2 / squares[1] - one**2 / squares[0]))
+    return _of_ratio(values[0], values[1], (influence.error, 0.0), influence.freedom, confidence)
+
+
 def _plain_mean(measure: Measure) -> float:
     finite = measure.values[np.isfinite(measure.values)]
     return float(finite.mean()) if len(finite) else math.nan
@@ -384,6 +404,7 @@ _TESTS: Final[dict[Kind, Callable[[Measure, Measure, float], Outcome]]] = {
     "rate": _compare_rates,
     "deviation": _compare_deviations,
     "paired": _compare_pairs,
+    "spread": _compare_spreads,
     "arrays": _compare_arrays,
     "power": _compare_powers,
     "largest": _compare_largest,

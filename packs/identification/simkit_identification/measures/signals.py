@@ -44,6 +44,8 @@ def values(stream: Stream, context: Context) -> Iterator[Measure]:
         is_derived = " " in signal.name
         if signal.is_setting or is_derived or not stream.is_periodic or len(signal.values) < 20:
             continue
+        if not is_constant(signal):
+            yield Measure(f"spread of {signal.name}", signal.unit, "spread", relative, signal.times, signal.is_angle)
         noise = without_transients(second_differences(quiet_part(signal, context)) ** 2 / _SECOND_DIFFERENCE)
         yield Measure(f"noise of {signal.name}", signal.unit, "deviation", noise)
         if signal.unit not in _POSITIONS and not is_constant(signal):
@@ -146,5 +148,5 @@ def dominant_peak(frequencies: Floats, spectra: Floats) -> float | None:
     return float(frequencies[inside][at])
 
 
-FIELD_OF_MEASURE: Final = re.compile(r"^(noise of |peak of )?(?P<field>.*?)( from .* Hz)?$")
+FIELD_OF_MEASURE: Final = re.compile(r"^(noise of |peak of |spread of )?(?P<field>.*?)( from .* Hz)?$")
 """Quantity of a measure of this module, with the field that it is about."""

@@ -9,6 +9,7 @@ from simkit.elementary_functions import power
 from simkit.sensors.base import Sensor
 from simkit_realism.depth_images.depth_artefact import DepthArtefact, Depths, Exposure, PerModel
 from simkit_realism.depth_images.depth_laws import LawTable, law_of_points, power_law
+from simkit_realism.depth_images.image_buffers import new_image, strips
 from simkit_realism.depth_images.random_images import LARGEST_WINDOW, NormalImages
 from simkit_realism.depth_images.surface_angles import SurfaceAngles
 
@@ -46,17 +47,23 @@ class DepthError(DepthArtefact):
         self.sensor.needs_colours |= self._contrast > 0
 
     def change(self, depths: Depths, exposure: Exposure) -> Depths:
-        changed = depths * self._factor
-        changed += self._offset
-        if self._law is not None:
-            noise = self._law.of(changed)
+        changed = new_image(exposure.shape, np.float32)
+        normals = None if self._law is None else self._normals.image(exposure.index, exposure.shape)
+        factors = _contrast_factors(self._contrast)[exposure.contrast] if self._contrast > 0 else None
+        for rows in strips(exposure.shape):
+            part = changed[rows]
+            np.multiply(depths[rows], self._factor, out=part)
+            part += self._offset
+            if self._law is None or normals is None:
+                continue
+            noise = self._law.of(part)
             if self._angle_law is not None:
-                cosines = self._angles.of(exposure.model).cosines(exposure.depths)
-                noise *= self._angle_law.of(np.maximum(cosines, _STEEPEST))
-            if self._contrast > 0:
-                noise *= _contrast_factors(self._contrast)[exposure.contrast]
-            noise *= self._normals.image(exposure.index, exposure.shape)
-            changed += noise
+                cosines = self._angles.of(exposure.model).cosines(exposure.depths, rows)
+                noise *= self._angle_law.of(np.maximum(cosines, _STEEPEST, out=cosines))
+            if factors is not None:
+                noise *= factors[rows]
+            noise *= normals[rows]
+            part += noise
         return self.sensor.limit_depths(changed)
 
 
@@ -69,6 +76,9 @@ def _read_law(params: Params) -> LawTable | None:
     points = [block.vector("point", 2) for block in params.each("point")]
     if not points:
         return power_law(floor, coefficient, exponent, start) if floor > 0 or coefficient > 0 else None
+    if floor > 0 or coefficient > 0:
+        message = "<stddev> and <coefficient> have no effect beside <point>, which gives the standard deviation"
+        params.warning("SK-SENSOR-229", message, "remove the <point> elements, or the law")
     depths = [point[0] for point in points]
     if min(min(point) for point in points) <= 0 or depths != sorted(set(depths)):
         message = "the <point> elements need depths and standard deviations above 0 [m], in ascending order of depth"

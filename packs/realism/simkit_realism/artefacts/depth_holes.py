@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit import Params
 from simkit.compiler import Compiled
 from simkit.sensors.base import Sensor
 from simkit.sensors.surface_optics import surface_optics
 from simkit_realism.depth_images.depth_artefact import NO_RETURN, DepthArtefact, Depths, Exposure, PerModel
+from simkit_realism.depth_images.image_buffers import new_image, strips
 from simkit_realism.depth_images.loss_places import read_places, read_wedge
 from simkit_realism.depth_images.loss_ramps import LossRamp, read_ramp
 from simkit_realism.depth_images.random_images import LARGEST_WINDOW, NormalImages, threshold
@@ -108,26 +111,46 @@ class DepthHoles(DepthArtefact):
         self._kept_by_geom = kept
 
     def change(self, depths: Depths, exposure: Exposure) -> Depths:
-        kept = np.full(exposure.shape, self._kept, np.float32)
-        by_place = self._places.of(exposure.model)
-        if by_place is not None:
-            kept *= by_place
-        if self._incidence is not None:
-            kept *= 1.0 - self._incidence.of(self._angles.of(exposure.model).cosines(exposure.depths))
-        if self._depth is not None:
-            kept *= 1.0 - self._depth.of(exposure.depths)
-        if self._brightness is not None:
-            kept *= 1.0 - self._brightness.of(exposure.brightness)
-        if self._contrast is not None:
-            kept *= 1.0 - self._contrast.of(exposure.contrast)
-        if self._kept_by_geom is not None and exposure.truth.geoms is not None:
-            kept *= self._kept_by_geom.take(exposure.truth.geoms, mode="wrap")
-        lost = self._normals.image(exposure.index, exposure.shape) < threshold(1.0 - kept)
-        if self._wedge is not None and self._positions is not None:
-            lost |= self._wedge.hides(exposure.depths, self._positions.of(exposure.model))
-        changed = depths.copy()
-        np.copyto(changed, NO_RETURN, where=lost)
+        changed = new_image(exposure.shape, np.float32)
+        normals = self._normals.image(exposure.index, exposure.shape)
+        parts = self._kept_parts(exposure)
+        for rows in strips(exposure.shape):
+            kept = np.full((rows.stop - rows.start, exposure.shape[1]), self._kept, np.float32)
+            for part in parts:
+                kept *= part(rows)
+            np.subtract(np.float32(1.0), kept, out=kept)
+            lost = normals[rows] < threshold(kept)
+            if self._wedge is not None and self._positions is not None:
+                lost |= self._wedge.hides(exposure.depths[rows], self._positions.of(exposure.model)[rows])
+            np.copyto(changed[rows], depths[rows])
+            np.copyto(changed[rows], NO_RETURN, where=lost)
         return changed
+
+    def _kept_parts(self, exposure: Exposure) -> list[Callable[[slice], Depths]]:
+        """Return the functions from rows of the image to the probability that each reason leaves a return."""
+        parts: list[Callable[[slice], Depths]] = []
+        by_place, angles = self._places.of(exposure.model), self._angles.of
+        if by_place is not None:
+            parts.append(lambda rows: by_place[rows])
+        if self._incidence is not None:
+            incidence = self._incidence
+            parts.append(lambda rows: incidence.kept(angles(exposure.model).cosines(exposure.depths, rows)))
+        for ramp, image in (
+            (self._depth, lambda: exposure.depths),
+            (self._brightness, lambda: exposure.brightness),
+            (self._contrast, lambda: exposure.contrast),
+        ):
+            if ramp is not None:
+                parts.append(_kept_of(ramp, image()))
+        by_geom, geoms = self._kept_by_geom, exposure.truth.geoms
+        if by_geom is not None and geoms is not None:
+            parts.append(lambda rows: by_geom.take(geoms[rows], mode="wrap"))  # -1 is no geom, the last entry
+        return parts
+
+
+def _kept_of(ramp: LossRamp, image: npt.NDArray[np.generic]) -> Callable[[slice], Depths]:
+    """Return the function from rows to the probability that a ramp over an image leaves a return."""
+    return lambda rows: ramp.kept(image[rows])
 
 
 def _in_cosines(ramp: LossRamp | None) -> LossRamp | None:

@@ -71,10 +71,10 @@ class ExposureControl(Artefact):
         counts = np.zeros(256, np.int64)
         for colours in pictures:
             counts += np.bincount(colours.ravel(), minlength=256)
-        total = sum(counts.tolist())
+        total = int(counts.sum())
         if not total:
             return
-        light = sum(count * value for count, value in zip(counts.tolist(), light_table().tolist(), strict=True))
+        light = int((counts * light_table()).sum())
         goal = log2(self.target * WHITE * total / light) if light else self.highest
         value = self.state + (goal - self.state) * self._gain
         self.state = min(max(value, self.lowest), self.highest)

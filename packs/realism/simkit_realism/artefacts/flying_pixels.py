@@ -8,7 +8,7 @@ import numpy as np
 from simkit import Params
 from simkit.sensors.base import Sensor
 from simkit_realism.depth_images.depth_artefact import DepthArtefact, Depths, Exposure
-from simkit_realism.depth_images.random_images import random_key, random_words
+from simkit_realism.depth_images.random_images import random_words
 
 
 class FlyingPixels(DepthArtefact):
@@ -44,10 +44,10 @@ class FlyingPixels(DepthArtefact):
             is_edge = farthest - nearest >= self._jump
         rows, columns = np.nonzero(is_edge)
         if self._probability < 1:
-            words = random_words(random_key(self._chances, exposure.index), exposure.shape)
+            words = random_words(self._chances, exposure.index, exposure.shape)
             is_mixed = words[rows, columns] < self._probability * 65536.0
             rows, columns = rows[is_mixed], columns[is_mixed]
-        share = random_words(random_key(self._mixtures, exposure.index), exposure.shape)[rows, columns]
+        share = random_words(self._mixtures, exposure.index, exposure.shape)[rows, columns]
         weights = (share.astype(np.float32) + np.float32(0.5)) / np.float32(65536.0)
         near, far = nearest[rows, columns], farthest[rows, columns]
         changed = depths.copy()

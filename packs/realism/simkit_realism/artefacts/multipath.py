@@ -9,9 +9,10 @@ import numpy.typing as npt
 from simkit import Params
 from simkit.sensors.base import Sensor
 from simkit_realism.depth_images.depth_artefact import DepthArtefact, Depths, Exposure
-from simkit_realism.depth_images.random_images import window_sums
 
-_UNIT = 2.0**24  # integer that stands for a reciprocal depth of 1/m; sums of integers do not depend on their order
+# number that stands for a reciprocal depth of 1/m: 32-bit floats hold integers up to 2^24 without rounding, so the
+# sums do not depend on the order in which a processor adds
+_UNIT, _LARGEST = np.float32(2.0**20), np.float32(2.0**24)
 
 
 class Multipath(DepthArtefact):
@@ -40,11 +41,14 @@ class Multipath(DepthArtefact):
         inverse = np.zeros(true.shape, np.float32)
         np.divide(np.float32(1.0), true, out=inverse, where=seen)
         side = 2 * self._radius + 1
-        sums = window_sums(np.rint(inverse * _UNIT).astype(np.int64), self._radius)
-        surplus = (sums * (1.0 / (_UNIT * side * side))).astype(np.float32) - inverse
+        whole = np.minimum(np.rint(inverse * _UNIT), _LARGEST)
+        border = cv2.BORDER_REPLICATE
+        sums = np.asarray(cv2.boxFilter(whole, cv2.CV_64F, (side, side), normalize=False, borderType=border))
+        surplus = (sums * (1.0 / (float(_UNIT) * side * side))).astype(np.float32)
+        surplus -= inverse
         surplus[~self._is_smooth(true, seen)] = 0.0
         # a plane has no surplus except for rounding
-        surplus[surplus < np.float32(1e-6)] = 0.0
+        surplus[surplus < np.float32(2e-6)] = 0.0
         changed = depths.copy()
         np.add(changed, self._strength * surplus * np.square(np.where(seen, true, np.float32(0.0))), out=changed)
         return changed

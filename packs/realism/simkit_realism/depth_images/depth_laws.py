@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.elementary_functions import log, power
+from simkit.sensors.cameras.random_pixels import look_up
 
 Depths = npt.NDArray[np.float32]
 _SHIFT = 12  # a table has 2048 entries for each doubling: steps of 0.05 %
@@ -32,13 +33,18 @@ class LawTable:
     def __init__(self, function: Callable[[npt.NDArray[np.float64]], npt.NDArray[np.float64]]) -> None:
         self._first = _leading_bits(_NEAREST)
         bits = (np.arange(self._first, _leading_bits(_FARTHEST), dtype=np.uint32) << _SHIFT) + (1 << (_SHIFT - 1))
-        self._table = function(bits.view(np.float32).astype(np.float64)).astype(np.float32)
+        values = function(bits.view(np.float32).astype(np.float64)).astype(np.float32)
+        self._last = len(values) - 1
+        self._table = np.concatenate((values, np.zeros(65536 - len(values), np.float32)))
 
     def of(self, numbers: Depths) -> Depths:
         """Return the value for each number; those outside 0.001 to 16000 have the value of the nearest one."""
         bits = numbers.view(np.int32) >> _SHIFT  # signed, so that negative numbers are below the table
         bits -= self._first
-        return np.take(self._table, bits, mode="clip")
+        np.clip(bits, 0, self._last, out=bits)
+        values = np.empty(numbers.shape, np.float32)
+        look_up(self._table, bits.astype(np.uint16), values)
+        return values
 
 
 def power_law(floor: float, coefficient: float, exponent: float, start: float) -> LawTable:

@@ -37,6 +37,12 @@ class LossRamp:
         losses *= np.float32(self.probability)
         return losses
 
+    def kept(self, values: npt.NDArray[np.generic]) -> Numbers:
+        """Return the probability that there is no loss, for each value."""
+        losses = self.of(values)
+        kept: Numbers = np.subtract(np.float32(1.0), losses, out=losses)
+        return kept
+
 
 def read_ramp(params: Params, name: str, minimum: float, maximum: float) -> LossRamp | None:
     """Read a ramp from a child with `<start>`, `<end>` and `<probability>`; return None without the child."""

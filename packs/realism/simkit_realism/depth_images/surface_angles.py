@@ -31,26 +31,48 @@ class SurfaceAngles:
             self._across = np.float32(1.0) / np.diff(self._x, axis=1)
             self._down = np.float32(1.0) / np.diff(self._y, axis=0)
 
-    def cosines(self, depths: Depths) -> Depths:
-        """Return the cosine of each pixel's angle of incidence, shape (h, w); 0 where there is no surface."""
+    def cosines(self, depths: Depths, rows: slice) -> Depths:
+        """Return the cosine of the angle of incidence for some rows of an image; 0 where there is no surface.
+
+        Args:
+            depths: depths of the whole image [m], shape (h, w).
+            rows: first row, and the row after the last.
+        """
+        above, below = max(rows.start - 1, 0), min(rows.stop + 1, len(depths))
+        x, y = self._x[rows], self._y[rows]
         with np.errstate(divide="ignore", invalid="ignore"):
-            inverse = np.float32(1.0) / depths
-            a = _smaller_step(np.diff(inverse, axis=1) * self._across)
-            b = _smaller_step((np.diff(inverse, axis=0) * self._down).T).T
-            c = inverse - a * self._x - b * self._y
-            cosines = inverse / np.sqrt((a * a + b * b + c * c) * self._square_length)
+            inverse = np.float32(1.0) / depths[above:below]
+            down = np.diff(inverse, axis=0)
+            down *= self._down[above : below - 1]
+            # the slopes to the row above and to the row below; the first and the last row have only one of them
+            first, last = down[:1] if above == rows.start else down[:0], down[-1:] if below == rows.stop else down[:0]
+            b = _smaller(
+                np.concatenate((first, down[: rows.stop - rows.start - len(first)])),
+                np.concatenate((down[1 - len(first) :], last)),
+            )
+            inverse = inverse[rows.start - above : rows.stop - above]
+            across = np.diff(inverse, axis=1)
+            across *= self._across[rows]
+            a = _smaller(
+                np.concatenate((across[:, :1], across), axis=1), np.concatenate((across, across[:, -1:]), axis=1)
+            )
+            c = inverse - a * x
+            c -= b * y
+            a *= a
+            b *= b
+            c *= c
+            a += b
+            a += c
+            a *= self._square_length[rows]
+            np.sqrt(a, out=a)
+            inverse /= a
+        cosines = inverse
         cosines[~(cosines > 0)] = 0.0  # no surface, or one that is nearer than the range
-        limited: Depths = np.minimum(cosines, np.float32(1.0))
+        limited: Depths = np.minimum(cosines, np.float32(1.0), out=cosines)
         return limited
 
 
-def _smaller_step(steps: Depths) -> Depths:
-    """Return the slope of each pixel: that to the left or the right, whichever is smaller, so that edges do not count.
-
-    Args:
-        steps: slopes between neighbours, shape (rows, columns - 1).
-    """
-    first, last = steps[:, :1], steps[:, -1:]
-    before, after = np.concatenate((first, steps), axis=1), np.concatenate((steps, last), axis=1)
-    is_nearer = np.abs(before) < np.abs(after)
-    return np.where(is_nearer, before, after)
+def _smaller(before: Depths, after: Depths) -> Depths:
+    """Return the smaller of two slopes in size, so that an edge on one side of a pixel does not count."""
+    np.copyto(after, before, where=np.abs(before) < np.abs(after))
+    return after

@@ -881,6 +881,16 @@ def _diving(folder: Path) -> simkit.Simulation:
     )
 
 
+def _livox(folder: Path) -> simkit.Simulation:
+    rows = "".join(f"{i},{i * 37 % 360},{80 + i % 20}\n" for i in range(50))
+    (folder / "rows.csv").write_text("Time/s,Azimuth/deg,Zenith/deg\n" + rows, encoding="utf-8")
+    text = tags(samples=8, csv_file_name="rows.csv", ros_topic="cloud")
+    text += "<ray><range><min>0.1</min><max>20</max></range></ray>"
+    sensor = f'<sensor name="livox" type="ray"><update_rate>50</update_rate>{plugin("libros2_livox.so", text)}</sensor>'
+    (folder / "lab.sdf").write_text(lab(sensor=sensor), encoding="utf-8")
+    return simkit.load(folder / "lab.sdf", seed=3)
+
+
 OPENED: dict[str, Callable[[Path], simkit.Simulation]] = {
     "GazeboRos2Control": _control(control_robots.CLASSIC),
     "GzRos2Control": _control("libgz_ros2_control-system.so"),
@@ -895,6 +905,7 @@ OPENED: dict[str, Callable[[Path], simkit.Simulation]] = {
     "PythonSystemLoader": _python_system,
     "FreefloatingControl": _diving,
     "FreefloatingFluid": _diving,
+    "LivoxLaser": _livox,
     "LogRecord": _log("LogRecord"),
     "LogPlayback": _log("LogPlayback"),
 }

@@ -1,0 +1,1 @@
+"""Plugins of sensors with losses and patterns of real devices."""
