@@ -15,7 +15,7 @@ from simkit.sensors.rays.lidar_measurement import LidarMeasurement, LidarReading
 class LidarNoReturn(Artefact):
     """`<simkit:no_return>` of a lidar: what rays without a return read in scans; clouds leave such rays out.
 
-    Drivers differ: `rplidar_ros` writes +inf, the drivers of YDLIDAR and of TurtleBot3's LDS-01 write 0.
+    Drivers differ: `rplidar_ros` writes +inf, the driver of TurtleBot3's LDS-01 writes 0.
 
     Args:
         params: the element, with `value`: `inf`, `nan`, `zero` or `maximum` (the maximum range).
