@@ -64,9 +64,6 @@ class AttachedSensor(Protocol):
     def truth(self) -> Message:
         """Newest message without noise; None before the first."""
 
-    def build_with_artefacts(self, builder: SpecBuilder) -> None:
-        """Add the elements that the sensor needs to the specification."""
-
     def attach(self, sim: Any) -> None:
         """Open the sensor's topics and random streams."""
 
