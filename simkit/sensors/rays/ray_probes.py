@@ -16,7 +16,7 @@ from simkit.sensors.rays.hit_normals import BodyFrames, InstantFrames, dots, hit
 from simkit.sensors.rays.numpy_rays import rotate_vectors
 from simkit.sensors.rays.ray_fan import RayFan
 from simkit.sensors.rays.sweep import RayPattern
-from simkit.sensors.rays.sweep_poses import rotate
+from simkit.sensors.rays.sweep_poses import matrices_of, rotate
 from simkit.sensors.rays.swept_rays import SweptCaster, SweptHits
 from simkit.sensors.rays.swept_scan import SweptRays
 from simkit.sensors.surface_optics import SurfaceOptics, surface_optics
@@ -72,18 +72,8 @@ class SweptFrames:
 
     def frames(self, bodies: npt.NDArray[np.intp], rays: npt.NDArray[np.intp]) -> tuple[Vector, Vector]:
         poses = self._poses.at(bodies, self._times.take(rays % len(self._times)))
-        return np.ascontiguousarray(poses.positions.T), matrices_of(poses.quaternions)
-
-
-def matrices_of(quaternions: Vector) -> Vector:
-    """Return the rotation matrices, shape (n, 3, 3), of unit quaternions (w, x, y, z), shape (4, n)."""
-    w, x, y, z = quaternions
-    rows = (
-        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
-        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
-        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
-    )
-    return np.stack([np.stack(row, axis=1) for row in rows], axis=1)
+        rows = [np.stack(row, axis=1) for row in matrices_of(poses.quaternions)]
+        return np.ascontiguousarray(poses.positions.T), np.stack(rows, axis=1)
 
 
 @dataclass(slots=True)
@@ -209,7 +199,6 @@ class RayProbes:
             hits = SweptHits.of(fan.count)
             caster.cast(data, rays, self._start, hits)
             fan.use(hits.distances, hits.geoms)
-            origins, turned = (np.ascontiguousarray(columns.T) for columns in (rays.origins, rays.directions))
-            return RayCast(data, origins, turned, frames, cast)
+            return RayCast(data, rays.all_origins(), rays.all_directions(), frames, cast)
 
         return RayCast(data, np.ascontiguousarray(poses.positions.T), np.ascontiguousarray(directions), frames, cast)

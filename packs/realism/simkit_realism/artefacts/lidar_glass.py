@@ -23,8 +23,8 @@ class LidarGlass(Artefact):
     shows, at the length of the whole way, with S². A return of less than the least share is lost. Glass is passed any
     number of times, with the factor of the first pane; a mirror reflects once.
 
-    Zhao et al. 2020, "Mapping with Reflection" (arXiv:1909.12483), show panes, surfaces behind them and ghosts in scans.
-    The default values are estimates.
+    Zhao et al. 2020, "Mapping with Reflection" (arXiv:1909.12483), show panes, surfaces behind them and ghosts in real
+    scans. The default values are estimates.
 
     Args:
         params: the element, with `normal_angle` [rad] and `least_share` of the light.
