@@ -38,6 +38,7 @@ OWN_FILES = {
     "packs/ros/simkit_ros/type_support.py": "/proc/self/maps",
     "registry.py": "modules of the package",
     "sensors/presets/preset.py": "data of the package",
+    "sensors/realism/datasheet.py": "data of the package",
     "packs/verification/simkit_verification/testing/bundles/bundle_writer.py": "a temporary folder of simkit",
     "packs/verification/simkit_verification/testing/certify/certification.py": "a temporary file of simkit",
     "packs/verification/simkit_verification/testing/certify/outcome.py": "a temporary file of simkit",

@@ -45,7 +45,7 @@ PRIVATE_IMPORTS = {
     "navigation": 20,
     "nodes": 30,
     "open_rmf": 5,
-    "realism": 30,
+    "realism": 28,
     "robots": 21,
     "ros": 9,
     "special_cameras": 18,

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from sensor_worlds import sensor
-from sweep_worlds import ANGULAR, LINEAR, POSE, SWEEP, WALL, fan, flyer, launch, target, world
+from lidar_sweep_worlds import ANGULAR, LINEAR, POSE, SWEEP, WALL, fan, flyer, launch, target, world
 
 import simkit
 from simkit.pose import Pose, quat_from_rpy

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from sensor_worlds import box, sensor
-from sweep_worlds import ANGULAR, INERTIA, LINEAR, POSE, SWEEP, WALL, fan, flyer, launch, target, world
+from lidar_sweep_worlds import ANGULAR, INERTIA, LINEAR, POSE, SWEEP, WALL, fan, flyer, launch, target, world
 
 import simkit
 from simkit.runtime.array_rules import CannotBatchError
