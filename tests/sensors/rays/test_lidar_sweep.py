@@ -8,8 +8,8 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 import pytest
-from sensor_worlds import sensor
 from lidar_sweep_worlds import ANGULAR, LINEAR, POSE, SWEEP, WALL, fan, flyer, launch, target, world
+from sensor_worlds import sensor
 
 import simkit
 from simkit.pose import Pose, quat_from_rpy

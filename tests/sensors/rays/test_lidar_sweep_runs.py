@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from sensor_worlds import box, sensor
 from lidar_sweep_worlds import ANGULAR, INERTIA, LINEAR, POSE, SWEEP, WALL, fan, flyer, launch, target, world
+from sensor_worlds import box, sensor
 
 import simkit
 from simkit.runtime.array_rules import CannotBatchError
