@@ -33,6 +33,14 @@ def test_mass_and_damping_come_back_from_joint_states(pushed: Path) -> None:
     assert result.error_before > 0.1 and result.error_after < 1e-4
 
 
+@pytest.mark.slow
+def test_a_search_without_derivatives_finds_both(pushed: Path) -> None:
+    pytest.importorskip("cmaes", reason="the extra fit is not installed")
+    vary = [f"{MASS}=0.5:4", f"{DAMPING}=0.2:4"]
+    result = simkit.fit(slider(), pushed, vary, compare=["/joint_states"], method="cma", seed=1)
+    assert list(result.values.values()) == pytest.approx([2.0, 1.5], rel=1e-3)
+
+
 def test_noisy_readings_give_an_interval_that_holds_the_truth(pushed: Path) -> None:
     world = slider(1.0, 1.5, 0.2, 0.03)
     result = simkit.fit(world, pushed, MASS, compare="/imu")
