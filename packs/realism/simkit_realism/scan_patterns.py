@@ -59,7 +59,9 @@ class TablePattern(ScanPattern):
     stride: int = 1
 
     def angles(self, index: int, period: float) -> tuple[Vector, Vector]:
-        rows = ((index - 1) * self.samples + np.arange(self.samples)) * self.stride % len(self.azimuths)
+        count = len(self.azimuths)
+        first = (index - 1) * self.samples * self.stride % count  # Python's integers do not overflow
+        rows = (first + np.arange(self.samples) * (self.stride % count)) % count
         return self.azimuths[rows], self.elevations[rows]
 
 

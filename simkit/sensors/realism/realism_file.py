@@ -43,6 +43,8 @@ _KEYS: Final = ("sensors", "plugins", "source", "remark")
 _ENTRY_KEYS: Final = {"sensors": ("preset", "elements", "source"), "plugins": ("elements", "source")}
 _COMMON: Final = ("update_rate", "always_on")
 _AXES: Final = ("xyz", "xy")
+_MOST_VALUES: Final = 100_000
+_DEEPEST: Final = 50
 _INVALID: Final = "SK-SENSOR-270"
 _UNKNOWN_ELEMENT: Final = "SK-SENSOR-272"
 
@@ -166,6 +168,20 @@ def _with_child(params: Params, child: Params) -> Params:
     return Params(params.name, params.value, params.attributes, children, params.where, params.diagnostics)
 
 
+def _is_too_large(root: yaml.Node) -> bool:
+    """Check the number and depth of the values; an alias counts at each of its places, and may contain itself."""
+    stack, count = [(root, 0)], 0
+    while stack:
+        node, depth = stack.pop()
+        count += 1
+        if count > _MOST_VALUES or depth > _DEEPEST:
+            return True
+        if isinstance(node.value, list):
+            for item in node.value:
+                stack.extend((part, depth + 1) for part in (item if isinstance(item, tuple) else (item,)))
+    return False
+
+
 def read_realism_file(path: Path, diagnostics: Diagnostics, *, is_set: bool = False) -> RealismRules | None:
     """Read a file with all its problems; None if it cannot be read or has an error."""
     try:
@@ -179,6 +195,10 @@ def read_realism_file(path: Path, diagnostics: Diagnostics, *, is_set: bool = Fa
         return None
     except NotYaml as error:
         diagnostics.error(_INVALID, f"this is not YAML: {error}", Where(str(path), error.line))
+        return None
+    if root is not None and _is_too_large(root):
+        message = f"{path} has more than {_MOST_VALUES} values, or is deeper than {_DEEPEST} levels, with its aliases"
+        diagnostics.error(_INVALID, message)
         return None
     reader = _FileReader(str(path), diagnostics)
     errors = diagnostics.error_count
