@@ -98,7 +98,7 @@ class HistogramReader:
 
     def _rows(self, text: str) -> list[tuple[float, float]]:
         """Return the values and weights of a CSV file; empty lines and those that begin with `#` are left out."""
-        lines = [(number, line.strip()) for number, line in enumerate(text.splitlines(), 1)]
+        lines = [(number, line.strip()) for number, line in enumerate(text.removeprefix("\ufeff").splitlines(), 1)]
         lines = [(number, line) for number, line in lines if line and not line.startswith("#")]
         header = f"{self._column},weight"
         if not lines or lines[0][1].replace(" ", "") != header:

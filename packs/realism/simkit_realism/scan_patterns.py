@@ -143,6 +143,8 @@ def read_table(path: Path) -> tuple[Vector, Vector]:
     if missing:
         found = f"found the columns {head.strip()[:80]!r}; expected azimuth and zenith or elevation"
         raise InputError("SK-SENSOR-281", f"scan pattern {path.name}: {found}", help=_HELP)
+    if not body.strip():
+        raise InputError("SK-SENSOR-281", f"scan pattern {path.name}: found no row below the names of the columns")
     wanted = columns["azimuth"], columns[height]
     try:
         rows = np.loadtxt(io.StringIO(body), delimiter=",", usecols=[column for column, _ in wanted], ndmin=2)

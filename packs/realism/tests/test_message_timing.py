@@ -84,7 +84,7 @@ def test_a_bin_width_spreads_the_latencies_over_their_bin() -> None:
 
 
 def test_a_histogram_can_be_a_file_beside_the_world(tmp_path: Path) -> None:
-    (tmp_path / "late.csv").write_text("# recorded\nseconds,weight\n0.004,3\n\n0.02,1\n")
+    (tmp_path / "late.csv").write_text("\ufeff# recorded\nseconds,weight\n0.004,3\n\n0.02,1\n", encoding="utf-8")
     timing = "<simkit:latency_histogram><file>late.csv</file><keep_order>0</keep_order></simkit:latency_histogram>"
     (tmp_path / "w.sdf").write_text(world(timing))
     rows = received(str(tmp_path / "w.sdf"), 4.0)

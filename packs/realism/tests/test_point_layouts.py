@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import simkit
-from simkit import LoadError, msgs
+from simkit import InputError, LoadError, msgs
+from simkit_realism.scan_patterns import TablePattern, read_table
 
 WORLD = """<sdf version="1.9" xmlns:simkit="simkit"><world name="w">
   <model name="m"><static>true</static><link name="l">
@@ -166,3 +167,17 @@ def test_the_livox_plugin_of_gazebo_follows_its_table(tmp_path: Path, kind: int,
             points = msgs.points(cloud)
             assert points["x"] == pytest.approx([2, 2, 0], abs=1e-6)
             assert points["y"] == pytest.approx([0, 2 * np.tan(np.radians(10)), 0], abs=1e-6)
+
+
+def test_a_stride_of_any_length_goes_round_the_table(tmp_path: Path) -> None:
+    (tmp_path / "p.csv").write_text("azimuth/deg,elevation/deg\n0,0\n1,0\n2,0\n", encoding="utf-8")
+    azimuths, elevations = read_table(tmp_path / "p.csv")
+    pattern = TablePattern(azimuths, elevations, 2, 10**20 + 1)  # 10²⁰ + 1 is 2 more than a multiple of 3
+    assert np.degrees(pattern.angles(1, 0.1)[0]) == pytest.approx([0, 2])
+    assert np.degrees(pattern.angles(2, 0.1)[0]) == pytest.approx([1, 0])
+
+
+def test_a_table_without_rows_is_an_error(tmp_path: Path) -> None:
+    (tmp_path / "p.csv").write_text("azimuth/deg,elevation/deg\n", encoding="utf-8")
+    with pytest.raises(InputError, match="no row"):
+        read_table(tmp_path / "p.csv")

@@ -183,3 +183,17 @@ def test_a_scenario_file_names_a_realism_file_beside_it(saved: Any, tmp_path: Pa
     assert Path(str(spec.options["realism"])).name == "robot.yaml"
     with simkit.load(spec.source, **spec.load_arguments()) as sim:
         assert sim.sensor("robot::l::laser").timing.latency == 0.0
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "sensors: {laser: {elements: &e {dropout: *e}}}",
+        "sensors: {laser: {elements: {dropout: &d [*d]}}}",
+        "a: &a [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n"
+        + "".join(f"{n}: &{n} [{', '.join([f'*{m}'] * 10)}]\n" for m, n in zip("abcde", "bcdef", strict=True)),
+    ],
+)
+def test_aliases_without_end_are_an_error(saved: Any, text: str) -> None:
+    with pytest.raises(simkit.LoadError, match="SK-SENSOR-270.*values"):
+        load(saved(text))
