@@ -77,11 +77,11 @@ def environments() -> str:
     return f"one {one:.0f} MB, 4096 after reset {reset:.0f} MB, after 3 steps {many:.0f} MB: {each:.0f} kB each"
 
 
-def images(seconds: float = 60.0) -> str:
+def images(duration: str = "60") -> str:
     import simkit
     from simkit.recording.bags.recorder import Recorder
 
-    found = []
+    found, seconds = [], float(duration)
     with simkit.load("turtlebot3_world") as sim, tempfile.TemporaryDirectory() as folder:
         with Recorder(sim, Path(folder, "images.mcap"), topics=["/camera/*"]):
             for _ in range(6):

@@ -51,6 +51,11 @@ def merged(found: Sequence[list[list[list[float]]]]) -> list[list[list[float]]]:
     ]
 
 
+def has_grown(growths: Sequence[float]) -> bool:
+    """Check whether the least growth of all pairs, the best one, reaches the limit."""
+    return min(growths) >= LIMIT
+
+
 def measured(checkouts: Sequence[Checkout], name: str, rounds: int) -> list[tuple[float, float]]:
     """Return the costs of both sides for each checkout, whose processes take turns."""
     turns = min(TURNS, rounds) if len(checkouts) > 1 else 1
@@ -115,14 +120,14 @@ def check(before: str, after: str, names: Sequence[str]) -> int:
         for name in names:
             growths: list[float] = []
             try:
-                while len(growths) < PAIRS and (not growths or min(growths) >= LIMIT):
+                while len(growths) < PAIRS and (not growths or has_grown(growths)):
                     (ours, bare), (ours_now, bare_now) = measured(checkouts, name, CASES[name].rounds)
                     growths.append(ours_now / bare_now / (ours / bare) - 1)
                     last = ours / bare, ours_now / bare_now
             except Failed as problem:
                 print(f"{name:16s} not compared: {problem}", flush=True)
                 continue
-            fails = min(growths) >= LIMIT
+            fails = has_grown(growths)
             if fails:
                 grown.append(name)
             each = " ".join(f"{100 * growth:+.1f} %" for growth in growths)

@@ -479,7 +479,7 @@ CASES = {
     "compiled_model": Case(
         "steps of MuJoCo on the compiled TurtleBot3 world", "steps of four boxes", compiled_model, 40, 1, _SPAN
     ),
-    "step": Case("steps with nothing due", STEPS, stripped, 5, _PLACES, _STEPS),
+    "step": Case("steps of a robot that drives, nobody listens", STEPS, stripped, 5, _PLACES, _STEPS),
     "plugin": Case("steps with a Python plugin after each", STEPS, plugin, 5, _PLACES, _STEPS),
     "imu_later": Case("steps with an IMU at 200 Hz, newest message kept", STEPS, imu(None), 5, _PLACES, _STEPS),
     "imu_messages": Case(
