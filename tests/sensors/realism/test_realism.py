@@ -9,6 +9,9 @@ import numpy as np
 import pytest
 
 import simkit
+from simkit.params import Params
+from simkit.scene.simkit_elements import OWN_ELEMENTS
+from simkit.sensors.realism.element_changes import without_errors
 from simkit.testing.scenarios.scenario_file import read_scenario
 
 WORLD = """<sdf version="1.9" xmlns:simkit="simkit"><world name="w">
@@ -151,6 +154,27 @@ def test_a_wrong_value_in_a_file_is_reported_with_its_line(saved: Any) -> None:
 def test_an_unknown_choice_is_an_error_with_the_known_ones() -> None:
     assert problems("datashet") == [("SK-SENSOR-274", None, None)]
     assert problems("no_such_file.yaml") == [("SK-SENSOR-274", None, None)]
+
+
+def test_a_missing_file_is_reported_by_its_name_with_the_most_similar_one(saved: Any) -> None:
+    file = saved("sensors: {}")
+    wrong = file.replace("robot", "robto")
+    with pytest.raises(simkit.LoadError) as caught:
+        load(wrong)
+    text = str(caught.value)
+    assert text.startswith(f"error SK-SENSOR-274: cannot find the file of realism, {wrong!r}")
+    assert "did you mean 'robot.yaml'?" in text
+    with pytest.raises(simkit.LoadError, match=r"help: --realism takes FILE or one of datasheet, ideal"):
+        load("nothing_like_it.yaml")
+
+
+def test_ideal_removes_each_own_element_of_a_sensor_that_is_an_error() -> None:
+    kept = {"encoder", "phase", "point_layout", "preset", "scan_pattern", "set_rate_topic", "solar"}
+    names = sorted(OWN_ELEMENTS["sensor"])
+    params = Params("sensor", "", {}, [Params(name, "") for name in names])
+    removed: set[str] = set()
+    left = {child.name for child in without_errors(params, removed).children}
+    assert left == kept and removed == set(names) - kept
 
 
 def test_a_spawned_robot_has_the_realism_of_the_run() -> None:
