@@ -56,6 +56,7 @@ def saved(tmp_path: Path) -> Any:
     return save
 
 
+@pytest.mark.needs_packs
 def test_ideal_sensors_have_neither_noise_nor_losses_nor_latency() -> None:
     with load("ideal") as sim:
         sim.run(0.3)
@@ -69,6 +70,7 @@ def test_ideal_sensors_have_neither_noise_nor_losses_nor_latency() -> None:
         assert "<gaussian_noise> of robot::truth" in note.message
 
 
+@pytest.mark.needs_packs
 def test_a_value_of_set_has_priority_over_ideal() -> None:
     with load("ideal", overrides=["robot::l::laser.dropout.probability=1"]) as sim:
         sim.run(0.3)
@@ -95,6 +97,7 @@ def test_a_preset_of_set_is_the_one_that_the_datasheet_uses() -> None:
         assert any("LDS-02" in message for message in notes) and not any("LDS-01" in message for message in notes)
 
 
+@pytest.mark.needs_packs
 def test_a_file_gives_presets_and_elements_to_the_sensors_that_its_patterns_match(saved: Any) -> None:
     file = saved("""
 source: none
@@ -146,6 +149,7 @@ def test_all_mistakes_of_a_file_are_reported_with_their_lines(saved: Any) -> Non
     assert problems(saved("source: me\n")) == [("SK-SENSOR-270", "robot.yaml", 1)]
 
 
+@pytest.mark.needs_packs
 def test_a_wrong_value_in_a_file_is_reported_with_its_line(saved: Any) -> None:
     file = saved("sensors:\n  laser:\n    elements:\n      dropout:\n        probability: 2\n")
     assert [entry[1:] for entry in problems(file)] == [("robot.yaml", 5)]
