@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Final
 
-from simkit.diagnostics import Diagnostics, name_hint
+from simkit.diagnostics import Diagnostics, file_hint, name_hint
 from simkit.packs import pack_folders
 from simkit.scene import SceneModel, SceneWorld
 from simkit.sensors.realism.change import Change
@@ -81,9 +81,13 @@ def read_realism(choice: str, find: Callable[[str], Path | None], diagnostics: D
     path = sets.get(choice) or (_find_file(choice, find) if is_file_name(choice) else None)
     if path is None:
         known = (*IDEAL_OR_DATASHEET, *sets)
-        what = "cannot find the file" if is_file_name(choice) else "found"
-        expected = "" if is_file_name(choice) else f", expected {', '.join(known)} or a file that ends with .yaml"
-        diagnostics.error("SK-SENSOR-274", f"realism: {what} {choice!r}{expected}", hint=name_hint(choice, known))
+        if is_file_name(choice):
+            message = f"cannot find the file of realism, {choice!r}"
+            hint = file_hint(choice, _SUFFIXES) or f"--realism takes FILE or one of {', '.join(known)}"
+        else:
+            message = f"realism: found {choice!r}, expected {', '.join(known)} or a file that ends with .yaml"
+            hint = name_hint(choice, known)
+        diagnostics.error("SK-SENSOR-274", message, hint=hint)
         return None
     rules = read_realism_file(path, diagnostics, is_set=choice in sets)
     return None if rules is None else Realism(partial(FromFile, rules=rules))
