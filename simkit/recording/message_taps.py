@@ -18,7 +18,7 @@ Receiver = Callable[[Message | LazyMessage], None]
 """Callback for each message of a topic, which may be a `LazyMessage`."""
 _Source = TypeVar("_Source")
 Deliver = Callable[[list[_Source], list[int], list[Any]], None]
-_MOST_DEFERRED = 1 << 15  # queued messages at which those are delivered that are serialised together
+_MOST_DEFERRED = 1 << 13  # queued messages at which those are delivered that are serialised together
 
 
 def is_available(sim: Simulation, topic: str) -> bool:

@@ -38,12 +38,13 @@ class SampleGroup:
         product: product that is published.
 
     Attributes:
+        product: product that is published.
         ticks, captures: tick and captured values of each sample.
         packed: type and CDR of each message; None until one of them is serialised, empty if they are made one by one.
     """
 
     def __init__(self, sampler: GroupedSampler, product: str) -> None:
-        self._sampler, self._product = sampler, product
+        self._sampler, self.product = sampler, product
         self._first = 0  # number of the first sample
         self.ticks: list[int] = []
         self.captures: list[Reading] = []
@@ -73,7 +74,7 @@ class SampleGroup:
 
     def message(self, position: int) -> Message:
         """Return the message of a sample."""
-        return self._sampler._message(self.sample(position), self._product)
+        return self._sampler._message(self.sample(position), self.product)
 
     def serialised(self, position: int) -> tuple[str, bytes]:
         """Return the type and the CDR of the message of a sample; the first call serialises all samples."""

@@ -113,10 +113,14 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
     def check_available(self) -> None:
         """Raise a SimkitError if this machine cannot make the readings; called for every reader of a reading."""
 
+    def packs(self, product: str) -> bool:
+        """Check whether `pack_samples` can serialise a product, and whether captures are small enough to be stored."""
+        return False
+
     def pack_samples(self, first: int, times: Sequence[int], captures: Sequence[Reading]) -> Sequence[bytes]:
         """Return the serialised messages of samples; empty if only `finish` and the product can make them now.
 
-        Overridden by kinds with one product and many samples a second, whose noise does not drift.
+        Overridden by kinds with many samples a second, whose noise does not drift.
 
         Args:
             first: number of the first sample.
@@ -398,14 +402,11 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         self._is_unread = not (self._read_publishers or changes or self._delayed or self._needs_each_sample)
         self._patience = max(patience, default=0.0)
         self._is_direct = is_plain and self._is_read and not changes and self._overrides("make_directly")
-        is_packed = is_plain and self.is_deferred and not changes and self._overrides("pack_samples")
-        is_packed = (
-            is_packed
-            and self._is_read
-            and not self.artefacts
-            and not any(publisher.is_live for publisher in publishers)
-        )
-        self._group = SampleGroup(self, next(iter(self._products))) if is_packed else None
+        products = {product for product, _, _ in self._read_publishers}
+        is_packed = is_plain and self.is_deferred and self._is_read and not (changes or self.artefacts)
+        is_packed = is_packed and not any(publisher.is_live for publisher in publishers)
+        is_packed = is_packed and len(products) == 1 and self.packs(*products)
+        self._group = SampleGroup(self, *products) if is_packed else None
 
     def _process_pending(self) -> None:
         """Make samples of the gathered captures, and publish the newest ones, which a reader's queue can keep."""
@@ -433,7 +434,7 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
             count = len(group.ticks)
             self._index, self._time_ns = self._index + count, self.sim.engine.clock.time_ns(group.ticks[-1])
             self._newest = group.sample(count - 1)
-            self._group = SampleGroup(self, next(iter(self._products)))
+            self._group = SampleGroup(self, group.product)
 
     def _apply_rate(self, rate: float) -> None:
         self.update_rate = rate

@@ -160,6 +160,9 @@ class Imu(ImuMeasurement):
     def array_rule(self) -> ImuRule:
         return ImuRule(self)
 
+    def packs(self, product: str) -> bool:
+        return True
+
     def pack_samples(self, first: int, times: Sequence[int], captures: Sequence[bytes]) -> list[bytes]:
         if _batch_key(self) is None:
             return []
@@ -181,10 +184,9 @@ class Imu(ImuMeasurement):
         mount = None if self.is_mounted_straight else self._mount
         reference = None if self.is_against_world else self._from_reference
         attitude, motion = sensor_motion(unpack_numbers(raw), self._arm, mount, self._rotation, reference)
-        if not self.noise.is_silent:
-            motion = self.noise.apply_to_numbers(motion, index)
+        noisy = motion if self.noise.is_silent else self.noise.apply_to_numbers(motion, index)
         w, x, y, z = attitude if self.options.enable_orientation else NO_ROTATION
-        rx, ry, rz, fx, fy, fz = motion
+        rx, ry, rz, fx, fy, fz = noisy
         make, vector, quaternion, header, time = msgs.types_of(*_BATCH_TYPES)
         orientation_cov, rate_cov, force_cov = self.covariances()
         message: msgs.Imu = make(
