@@ -9,10 +9,9 @@ from typing import Any, Final
 
 from simkit import RunSpec
 from simkit.argument_checks import wrong_type
-from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
+from simkit.extend import did_you_mean
 from simkit.msgs.data_frames import DataFrame
-from simkit.run_spec import FilePath
 from simkit_identification.comparison.alignment import ALIGNMENTS, Align, alignment_offset
 from simkit_identification.comparison.charts import charts_of
 from simkit_identification.comparison.paired_runs import compare_sets, is_set
@@ -34,8 +33,8 @@ _NEAR: Final = 1.0  # [s] up to which two simulated clocks count as the same
 
 
 def compare(
-    a: FilePath | DataFrame,
-    b: FilePath | RunSpec | DataFrame | None = None,
+    a: str | os.PathLike[str] | DataFrame,
+    b: str | os.PathLike[str] | RunSpec | DataFrame | None = None,
     *,
     names: Mapping[str, str] | None = None,
     topics: str | Sequence[str] = (),
@@ -114,7 +113,7 @@ def _file(value: Any) -> str:
     return os.fspath(value)
 
 
-def _world(b: FilePath | RunSpec) -> str | RunSpec:
+def _world(b: str | os.PathLike[str] | RunSpec) -> str | RunSpec:
     return b if isinstance(b, RunSpec) else _file(b)
 
 

@@ -10,17 +10,16 @@ from typing import TYPE_CHECKING, Final
 
 from simkit import RunSpec, progress
 from simkit.errors import InputError
-from simkit.recording import Recorder
-from simkit.recording.bags.bag_contents import matches_topic
-from simkit.recording.bags.reader import LATEST_SIMULATED_TIME, open_bag_to_read
-from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
+from simkit.recording import Recorder, matches_topic, open_bag_to_read
+from simkit.recording.bags.reader import LATEST_SIMULATED_TIME
+from simkit.testing import open_scenario, run_scenario
 from simkit_identification.command_replay import command_topics, repeated_run
 from simkit_identification.comparison.stream_reader import StreamReader
 from simkit_identification.measures.recording import Recording
 
 if TYPE_CHECKING:
     from simkit import Simulation
-    from simkit.recording.bags.reader import BagReader
+    from simkit.recording import BagReader
 
 ASIDE: Final = ("/clock", "/rosout", "/parameter_events", "/stats", "/diagnostics*", "*/transition_event", "/events/*")
 """Topics that are only compared if an option names them."""

@@ -11,8 +11,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
+from simkit.extend import did_you_mean
 from simkit.install_command import install_command
 from simkit_identification.comparison.page import PageContents, write_page
 from simkit_identification.comparison.row import DIFFERING, Row, cells_of, headings, html_table

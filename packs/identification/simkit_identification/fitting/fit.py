@@ -14,8 +14,8 @@ import numpy.typing as npt
 
 from simkit import RunSpec, progress
 from simkit.argument_checks import shown
-from simkit.diagnostics import NOWHERE, Diagnostics
 from simkit.errors import InputError
+from simkit.extend import Diagnostics
 from simkit.testing import open_scenario
 from simkit_identification.fitting.codes import (
     AT_BOUND,
@@ -358,7 +358,7 @@ class _Fitter:
         if len(self._searched) > 1 and not has_cma():
             text = f"the readings do not depend smoothly on {', '.join(names)}"
             help_ = "install the extra fit, so that CMA-ES searches"
-            self.diagnostics.warning(NOT_SMOOTH, text, NOWHERE, help_)
+            self.diagnostics.warning(NOT_SMOOTH, text, hint=help_)
             return "least-squares"
         return "cma"
 
@@ -410,19 +410,19 @@ class _Fitter:
         warn = self.diagnostics.warning
         if not found.has_converged:
             text = f"the search ended before it converged: {found.message}"
-            warn(NOT_CONVERGED, text, NOWHERE, "give narrower bounds or other first values, or --method cma")
+            warn(NOT_CONVERGED, text, hint="give narrower bounds or other first values, or --method cma")
         for p, u in zip(self._searched, found.point, strict=True):
             low, high = p.limits()
             if (u - low) < 1e-3 * (high - low) or (high - u) < 1e-3 * (high - low):
                 text = f"{p.path} = {p.value(float(u)):.6g} is at a bound of its range"
-                warn(AT_BOUND, text, NOWHERE, "widen the bounds, or vary what the value stands in for")
+                warn(AT_BOUND, text, hint="widen the bounds, or vary what the value stands in for")
         if evaluate.failed:
             listed = "; ".join(evaluate.failures[:3])
             text = f"{evaluate.failed} of {evaluate.runs} runs failed and counted as a large cost: {listed}"
-            warn(RUNS_FAILED, text, NOWHERE, "bounds that exclude such values make the search faster")
+            warn(RUNS_FAILED, text, hint="bounds that exclude such values make the search faster")
         if uncertainty is not None:
             for sentence in describe_confusion(self._searched, uncertainty):
-                warn(NOT_TOLD_APART, sentence, NOWHERE, "fix one of them, or record a motion in which they act apart")
+                warn(NOT_TOLD_APART, sentence, hint="fix one of them, or record a motion in which they act apart")
 
 
 def _rounded(value: float) -> float:

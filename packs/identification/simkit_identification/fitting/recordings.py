@@ -12,8 +12,7 @@ import numpy as np
 
 from simkit import RunSpec, Simulation
 from simkit.errors import InputError
-from simkit.recording.bags.bag_contents import matches_topic
-from simkit.recording.bags.reader import open_bag_to_read
+from simkit.recording import matches_topic, open_bag_to_read
 from simkit.recording.message_taps import is_available
 from simkit_identification.command_replay import command_topics, repeated_run
 from simkit_identification.fitting.codes import INVALID_MOTION, INVALID_OPTION, NO_COMMANDS, NOTHING_COMMON

@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from simkit import RunSpec
-from simkit.diagnostics import Diagnostic
+from simkit import Diagnostic, RunSpec
 from simkit.scene.overrides import override_texts
 from simkit.writers.atomic_output import write_atomically
 from simkit_identification.fitting.fitted_values import ComparedTopic, FitCurve, FittedParameter, interval_text

@@ -11,13 +11,12 @@ import numpy as np
 
 from simkit import Params
 from simkit.elementary_functions import exp
-from simkit.sensors.artefacts import Artefact
-from simkit.sensors.base import Sensor
-from simkit.sensors.environment.navsat import NO_FIX, NavSat, NavSatReading
+from simkit.extend import Artefact, NavSat, NavSatReading, Sensor
 from simkit_realism.areas import Area, Place, read_areas
 
 _LONGEST = 1e9  # [s] or [m]
 _MOST = 1e6  # [m] largest standard deviation
+NO_FIX: Final = -1  # as `STATUS_NO_FIX` of `NavSatStatus`
 STATUSES: Final = {"no_fix": NO_FIX, "fix": 0, "sbas": 1, "gbas": 2}
 """Names of the values of `NavSatStatus`."""
 

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit import Params
-from simkit.sensors.base import Sensor
+from simkit.extend import Sensor
 from simkit_realism.depth_images.depth_artefact import DepthArtefact, Depths, Exposure
 
 # number that stands for a reciprocal depth of 1/m: 32-bit floats hold integers up to 2^24 without rounding, so the

@@ -9,11 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from simkit import InputError, Params
-from simkit.compiler import SpecBuilder
-from simkit.pose import Vector
-from simkit.sensors.artefacts import Artefact
+from simkit.extend import Artefact, LidarReading, SpecBuilder, Vector
 from simkit.sensors.rays.lidar import Lidar
-from simkit.sensors.rays.lidar_measurement import LidarReading, Sweep
+from simkit.sensors.rays.lidar_measurement import Sweep
 from simkit.sensors.rays.sweep import RayPattern, SweepOptions
 from simkit_realism.scan_patterns import RosettePattern, ScanPattern, SpiralPattern, TablePattern, read_table
 
