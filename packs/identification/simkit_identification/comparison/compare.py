@@ -26,7 +26,7 @@ from simkit_identification.comparison.sources import (
 )
 from simkit_identification.comparison.table import Comparison
 from simkit_identification.comparison.tolerances import INVALID, Tolerance, parse_tolerances
-from simkit_identification.measures.recording import Recording
+from simkit_identification.measures.recording import SignalRecording
 
 _NOTHING_IN_COMMON: Final = "SK-COMPARE-002"
 _NEAR: Final = 1.0  # [s] up to which two simulated clocks count as the same
@@ -127,16 +127,16 @@ def _bag_path(a: Any) -> Path:
     return path
 
 
-def _begin_together(a: Recording, b: Recording) -> bool:
+def _begin_together(a: SignalRecording, b: SignalRecording) -> bool:
     starts = [min((float(s.received[0]) for s in side.streams.values() if s.count), default=0.0) for side in (a, b)]
     return abs(starts[0] - starts[1]) < _NEAR
 
 
-def _chosen(recording: Recording, choice: TopicChoice) -> list[str]:
+def _chosen(recording: SignalRecording, choice: TopicChoice) -> list[str]:
     return [topic for topic in recording.streams if choice.takes(topic)]
 
 
-def _notes(*sides: Recording) -> list[str]:
+def _notes(*sides: SignalRecording) -> list[str]:
     notes: dict[str, None] = {}
     for side in sides:
         notes.update(dict.fromkeys(side.notes))
@@ -145,7 +145,7 @@ def _notes(*sides: Recording) -> list[str]:
     return list(notes)
 
 
-def _report(a: Recording, choice: TopicChoice, confidence: float) -> Comparison:
+def _report(a: SignalRecording, choice: TopicChoice, confidence: float) -> Comparison:
     rows = rows_of_one(a, _chosen(a, choice), confidence)
     table = Comparison(a.name, "", rows, confidence, _notes(a))
     table.charts = charts_of(a, None, rows)
@@ -153,8 +153,8 @@ def _report(a: Recording, choice: TopicChoice, confidence: float) -> Comparison:
 
 
 def _compare(
-    a: Recording,
-    b: Recording,
+    a: SignalRecording,
+    b: SignalRecording,
     align: Align,
     choice: TopicChoice,
     confidence: float,
@@ -183,6 +183,6 @@ def _compare(
     return table
 
 
-def _start(recording: Recording) -> float:
+def _start(recording: SignalRecording) -> float:
     """Return the time of the first message on any topic that is not latched [s]."""
     return min((float(s.received[0]) for s in recording.streams.values() if s.count > 1), default=0.0)

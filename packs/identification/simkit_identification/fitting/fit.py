@@ -34,7 +34,7 @@ from simkit_identification.fitting.fitted_values import ComparedTopic, FitCurve,
 from simkit_identification.fitting.motion import Motion
 from simkit_identification.fitting.noise_level import NoiseLevel, estimate_noise
 from simkit_identification.fitting.parameters import Parameter, Vary, read_parameters_to_vary, without_noise
-from simkit_identification.fitting.problem import Recording, fit_problem
+from simkit_identification.fitting.problem import RepeatedRecording, fit_problem
 from simkit_identification.fitting.recordings import Bag, read_recordings
 from simkit_identification.fitting.residuals import Residuals
 from simkit_identification.fitting.result import FitResult
@@ -185,7 +185,7 @@ def _check_deviations(parameters: Sequence[Parameter]) -> None:
             raise InputError(INVALID_PARAMETER, text, help="write a first value above 0: --vary PATH=START")
 
 
-def _describe_task(parameters: Sequence[Parameter], recordings: Sequence[Recording]) -> str:
+def _describe_task(parameters: Sequence[Parameter], recordings: Sequence[RepeatedRecording]) -> str:
     topics = list(dict.fromkeys(readings.channel.topic for r in recordings for readings in r.readings))
     size = sum(recording.size for recording in recordings)
     names = ", ".join(topics[:6]) + (f" and {len(topics) - 6} more" if len(topics) > 6 else "")
@@ -204,7 +204,7 @@ class _Fitter:
         run: RunSpec,
         quiet: RunSpec,
         parameters: Sequence[Parameter],
-        recordings: Sequence[Recording],
+        recordings: Sequence[RepeatedRecording],
         options: FitOptions,
         on_stage: Callable[[str], None],
     ) -> None:
@@ -446,7 +446,9 @@ def _compared_topics(
     return (*topics, *(ComparedTopic(topic, note=note) for topic, note in notes.items()))
 
 
-def _curves(recordings: Sequence[Recording], residuals: Residuals, before: Floats, after: Floats) -> list[FitCurve]:
+def _curves(
+    recordings: Sequence[RepeatedRecording], residuals: Residuals, before: Floats, after: Floats
+) -> list[FitCurve]:
     """Return the compared columns, those that improve most first."""
     curves: list[tuple[float, FitCurve]] = []
     at = 0

@@ -187,14 +187,14 @@ def without_fix(reading: NavSatReading) -> NavSatReading:
 
 
 class MultipathState(NamedTuple):
-    """State of `Multipath`: error in standard deviations, place, and the standard deviations at this place [m]."""
+    """State of `GnssMultipath`: error in standard deviations, place, and the standard deviations at this place [m]."""
 
     errors: Numbers
     place: Place
     stddevs: tuple[float, float]
 
 
-class Multipath(ReceiverArtefact):
+class GnssMultipath(ReceiverArtefact):
     """`<simkit:multipath>` of a satellite receiver: reflections shift the position in some areas.
 
     The shift is a Gauss-Markov process in time and place: after the time t and the distance d its correlation is

@@ -15,7 +15,7 @@ from simkit_realism.depth_images.depth_artefact import DepthArtefact, Depths, Ex
 _UNIT, _LARGEST = np.float32(2.0**20), np.float32(2.0**24)
 
 
-class Multipath(DepthArtefact):
+class DepthMultipath(DepthArtefact):
     """`<simkit:multipath>` of a time-of-flight camera: z' = z + strength·z²·max(0, m - 1/z).
 
     m is the mean of the reciprocal depths in a square of 2·radius + 1 pixels. On a plane, m is 1/z, so planes and
