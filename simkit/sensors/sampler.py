@@ -15,6 +15,7 @@ from simkit.runtime import Publisher, Simulation
 from simkit.runtime.communication.subscription import LazyMessage, PendingWork
 from simkit.runtime.engine.physics_state import HeldState
 from simkit.runtime.engine.scheduler import Timetable
+from simkit.runtime.engine.simulated_time import TickGrid
 from simkit.sensors.artefacts import Artefact, MessageArtefact
 from simkit.sensors.lasting_samples import LastingSample, LastingSamples, LastingTimetable
 from simkit.sensors.noise import NoiseKeeper
@@ -205,6 +206,23 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
     def scene_timetable(self) -> Timetable | None:
         """Return the ticks at which the scenery must have its pose; None is every step."""
         return None if self.lasting is not None else self.timetable()
+
+    @property
+    def is_silent(self) -> bool:
+        """True if a sample calls no code that may read another sensor."""
+        if self._revision != self.sim.communication.bus.revision:
+            self._update_readers()
+        return not self._read_publishers
+
+    @property
+    def keeps_last(self) -> bool:
+        """True if only the last of several samples at due ticks can be read; `skip` counts the others."""
+        is_usual = self.lasting is None and not (self._selects_ticks or self._overrides("sample"))
+        return is_usual and self.is_silent and self._is_unread and isinstance(self.timetable(), TickGrid)
+
+    def skip(self, count: int) -> None:
+        """Count samples that are not taken, because only a later one can be read."""
+        self._skipped += count
 
     def sample(self, tick: int) -> None:
         """Sample at a due tick: measure and publish if the sensor has a reader, else keep the physics state."""
