@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
+import mujoco
 import numpy as np
 import numpy.typing as npt
 
@@ -13,6 +14,8 @@ from simkit.runtime.engine.velocity_servos import VelocityServoRows
 from simkit.runtime.simulation import Simulation
 
 Floats = npt.NDArray[np.float64]
+
+_VELOCITIES: Final = int(mujoco.mjtStage.mjSTAGE_VEL)
 
 
 class StateArrays:
@@ -28,6 +31,7 @@ class StateArrays:
         threads: number of threads.
         qpos, qvel, ctrl: positions, velocities and controls of MuJoCo's data.
         servos: velocity servos.
+        has_moved: True after the first step.
     """
 
     def __init__(self, sim: Simulation, batch: Any) -> None:
@@ -35,6 +39,7 @@ class StateArrays:
         self.count: int = batch.nsim
         self.threads: int = batch.nthread
         self._fields: dict[str, Floats] = {}
+        self.has_moved = False
         self.qpos, self.qvel, self.ctrl = self.field("qpos"), self.field("qvel"), self.field("ctrl")
         self.servos = VelocityServoRows(sim.engine.velocity_servos, self.count, self.qpos, self.qvel, self.ctrl)
         self._frames: dict[str, tuple[int, Pose | None]] = {}
@@ -43,6 +48,8 @@ class StateArrays:
         """Return an array of MuJoCo's data, such as `xpos` with the shape (count, bodies, 3)."""
         if name not in self._fields:
             self._fields[name] = self._batch.bind(name)
+            if self.has_moved:  # the array of a new field is zero until the next call of the engine
+                self._batch.forward(None, _VELOCITIES)
         return self._fields[name]
 
     # ------------------------------------------------------------------ poses and velocities
