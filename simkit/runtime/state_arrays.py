@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, Final
 
 import mujoco
@@ -15,6 +16,9 @@ from simkit.runtime.simulation import Simulation
 
 Floats = npt.NDArray[np.float64]
 
+ReadState = Callable[[int], tuple[mujoco.MjModel, mujoco.MjData]]
+"""Function that returns model and data of one simulation; the data have its state, but no forward pass."""
+
 _VELOCITIES: Final = int(mujoco.mjtStage.mjSTAGE_VEL)
 
 
@@ -24,6 +28,8 @@ class StateArrays:
     Args:
         sim: ordinary simulation that resets all others.
         batch: MuJoCo's batch of the simulations.
+        read_state: function that returns model and data of one simulation; the data have its state, but no forward
+            pass, and are valid until the next call.
 
     Attributes:
         sim: the same simulation.
@@ -34,8 +40,8 @@ class StateArrays:
         has_moved: True after the first step.
     """
 
-    def __init__(self, sim: Simulation, batch: Any) -> None:
-        self.sim, self._batch = sim, batch
+    def __init__(self, sim: Simulation, batch: Any, read_state: ReadState) -> None:
+        self.sim, self._batch, self.state_of = sim, batch, read_state
         self.count: int = batch.nsim
         self.threads: int = batch.nthread
         self._fields: dict[str, Floats] = {}
@@ -51,6 +57,10 @@ class StateArrays:
             if self.has_moved:  # the array of a new field is zero until the next call of the engine
                 self._batch.forward(None, _VELOCITIES)
         return self._fields[name]
+
+    def time_ns_of(self, row: int) -> int:
+        """Return the time of one simulation [ns]."""
+        return self.sim.engine.clock.time_ns(round(float(self.field("time")[row]) / self.sim.timestep))
 
     # ------------------------------------------------------------------ poses and velocities
 

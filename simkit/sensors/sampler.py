@@ -40,6 +40,7 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
     lasting: LastingSamples | None = None  # samples that are being measured, of a kind whose measurement lasts
     is_manual = False  # True if only calls of `sample` take samples, and none are taken at the rate
     _times: SampleTimes
+    _is_switched = False  # True if the sensor can be without power
 
     def __init__(self) -> None:
         super().__init__()
@@ -75,7 +76,7 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
 
     def sample_only_while(self, is_on: Callable[[], bool]) -> None:
         """Sample at due times only while `is_on()` returns true; a sensor without power has no samples."""
-        self._is_on, self._selects_ticks = is_on, True
+        self._is_on, self._selects_ticks, self._is_switched = is_on, True, True
 
     def _overrides(self, method: str) -> bool:
         return getattr(type(self), method) is not getattr(Sampler, method)
@@ -89,6 +90,10 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
     def capture(self, model: mujoco.MjModel, data: mujoco.MjData) -> object:
         """Copy from the data the values that `finish` needs; by default, the reading itself."""
         return self.measure(model, data)
+
+    def capture_other(self, model: mujoco.MjModel, data: mujoco.MjData) -> object:
+        """Capture a state of another simulation of the same world, whose forward pass is up to date."""
+        return self.capture(model, data)
 
     def capture_held(self, model: mujoco.MjModel, data: mujoco.MjData, sample: Sample) -> object:
         """Capture the physics state held for a sample; overridden by kinds that measure more than the physics."""
@@ -151,7 +156,12 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
     def keeps_to_grid(self) -> bool:
         """True if a message is published at every tick of the rate and phase, with noise that does not drift."""
         is_plain = self._delayed is None and self.timing.jitter == 0 and not self._evolves
-        return is_plain and not (self._selects_ticks or self._selects_products_of_sample)
+        return is_plain and not (self.selects_ticks or self._selects_products_of_sample)
+
+    @property
+    def selects_ticks(self) -> bool:
+        """True if the sensor may take no sample at a due tick."""
+        return self._selects_ticks
 
     @property
     def is_read_now(self) -> bool:

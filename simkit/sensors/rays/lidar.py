@@ -10,11 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit import msgs
+from simkit.runtime.array_rules import SensorRule
 from simkit.sensors.base import Product
 from simkit.sensors.point_cloud_messages import LEGACY_CLOUD_TYPE, legacy_point_cloud, point_cloud
 from simkit.sensors.rays.geom_types import Ids
 from simkit.sensors.rays.lidar_batch import LidarBatch, lidar_batch_key
-from simkit.sensors.rays.lidar_measurement import MAX_RANGE, LidarMeasurement, LidarReading, LidarRule
+from simkit.sensors.rays.lidar_measurement import MAX_RANGE, LidarMeasurement, LidarReading, lidar_rule
 from simkit.sensors.sensor_batch import form_batches
 
 ECHOES = "sensor_msgs/msg/MultiEchoLaserScan"
@@ -53,8 +54,8 @@ class Lidar(LidarMeasurement):
         if cls is Lidar:
             form_batches(sensors, LidarBatch, lidar_batch_key)
 
-    def array_rule(self) -> LidarRule:
-        return LidarRule(self)
+    def array_rule(self) -> SensorRule:
+        return lidar_rule(self)
 
     def products(self) -> dict[str, Product]:
         return {

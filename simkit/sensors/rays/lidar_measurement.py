@@ -23,6 +23,7 @@ from simkit.runtime.particle_clouds import has_sources
 from simkit.scene import SceneSensor
 from simkit.sensors.base import Sensor
 from simkit.sensors.lasting_samples import LastingSample, LastingSamples
+from simkit.sensors.measured_rows import MeasuredRows
 from simkit.sensors.noise import Noise, NoiseModel, UniformNoise, read_noise
 from simkit.sensors.particle_echoes import find_echoes
 from simkit.sensors.rays.ray_fan import RayFan, RayFanRows, fan_directions
@@ -525,27 +526,33 @@ class LidarMeasurement(Sensor):
         self.point_noise = self._make_uniform_noise(NoiseModel(stddev=stddev), 4 * self.fan.count, "points")
 
 
+def lidar_rule(lidar: LidarMeasurement) -> SensorRule:
+    """Return the array rule of a lidar.
+
+    Rays that may hit moving meshes, more than 2047 rays, clouds and ranges are measured one simulation after another.
+
+    Raises:
+        CannotBatchError: plugins add noise to the lidar, or particles are in front of it.
+    """
+    if lidar.ray_noise is not None or lidar.range_noise is not None:
+        raise CannotBatchError(f"noise that a plugin adds to sensor {lidar.scoped!r}")
+    if lidar.sees_visuals and has_sources(lidar.sim):
+        raise CannotBatchError(f"particles in front of sensor {lidar.scoped!r}")
+    is_scan = next(iter(lidar.topics)) == "scan"
+    return LidarRule(lidar) if is_scan and lidar.fan.casts_in_rows else MeasuredRows(lidar, casts=True)
+
+
 class LidarRule(SensorRule):
     """Ranges of a lidar's scan in n simulations, within the range limits.
 
-    Raises:
-        CannotBatchError: plugins add noise to the lidar, its first message is no scan, or its rays are cast in a way
-            that depends on single simulations.
+    Args:
+        lidar: lidar of the simulation that resets all others; its first message is a scan, and `casts_in_rows` is true
+            for its fan.
     """
 
     inputs = ("xpos", "xmat", "xquat")
 
     def __init__(self, lidar: LidarMeasurement) -> None:
-        name = lidar.scoped
-        if lidar.ray_noise is not None or lidar.range_noise is not None:
-            raise CannotBatchError(f"noise that a plugin adds to sensor {name!r}")
-        if lidar.sees_visuals and has_sources(lidar.sim):
-            raise CannotBatchError(f"particles in front of sensor {name!r}")
-        if not lidar.fan.casts_in_rows:
-            raise CannotBatchError(f"more than 2047 rays, or rays that may hit moving meshes, of sensor {name!r}")
-        product = next(iter(lidar.topics))
-        if product != "scan":
-            raise CannotBatchError(f"message {product!r} of sensor {name!r}")
         self._lidar = lidar
 
     def bind(self, states: StateArrays, *, is_truth: bool) -> None:

@@ -99,7 +99,8 @@ class BatchPhysics:
 
     def state_of(self, row: int) -> tuple[mujoco.MjModel, mujoco.MjData]:
         """Return model and data of one environment; the data have its state, but no forward pass."""
-        model = self._models[row]
+        # the images of a model that does not vary are drawn with the meshes of the simulation
+        model = self._models[row] if self.view.varies_model else self._sim.mj_model
         if self._scratch is None:
             self._scratch = mujoco.MjData(model)
         mujoco.mj_setState(model, self._scratch, np.ascontiguousarray(self.batch.state[row]), _STATE)
