@@ -21,7 +21,8 @@ PLACE = """<spherical_coordinates><surface_model>EARTH_WGS84</surface_model><lat
 SENSORS = f"""<sensor name="altimeter" type="altimeter"><topic>height</topic><update_rate>10</update_rate>
 <altimeter><vertical_position>{NOISE}</vertical_position></altimeter></sensor>
 <sensor name="field" type="magnetometer"><topic>field</topic><magnetometer><x>{NOISE}</x></magnetometer></sensor>
-<sensor name="air" type="air_pressure"><topic>air</topic><air_pressure><pressure>{NOISE}</pressure></air_pressure></sensor>
+<sensor name="air" type="air_pressure"><topic>air</topic><air_pressure><pressure>{NOISE}</pressure></air_pressure>
+</sensor>
 <sensor name="gps" type="navsat"><topic>gps</topic><update_rate>4</update_rate></sensor>
 <sensor name="sonar" type="sonar"><pose>0.25 0 0.1 0 -1.57 0</pose><topic>sonar</topic><update_rate>20</update_rate>
 <sonar><min>0.02</min><max>4</max><radius>0.7</radius>{NOISE}</sonar></sensor>
