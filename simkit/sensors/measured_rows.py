@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import mujoco
@@ -28,12 +27,7 @@ class MeasuredRows(SensorRule):
             data, and on what `memory` returns.
         casts: True if the sensor casts rays on shapes that it keeps beside the model; all simulations then have the
             same shapes.
-
-    Attributes:
-        convert: function from the sensor's first message to its numbers; set before the first reading.
     """
-
-    convert: Callable[[Message], npt.NDArray[Any]]
 
     def __init__(self, sensor: Sensor, *, casts: bool = False) -> None:
         self._sensor, self._casts = sensor, casts

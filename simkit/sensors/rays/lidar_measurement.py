@@ -17,13 +17,12 @@ from simkit.diagnostics import Diagnostics
 from simkit.linear_algebra import matmul
 from simkit.params import Params
 from simkit.pose import Vector
-from simkit.runtime.array_rules import CannotBatchError, Ids, SensorRule, Ticks
+from simkit.runtime.array_rules import Ids, SensorRule, Ticks
 from simkit.runtime.engine.pose_history import PoseRows
 from simkit.runtime.particle_clouds import has_sources
 from simkit.scene import SceneSensor
 from simkit.sensors.base import Sensor
 from simkit.sensors.lasting_samples import LastingSample, LastingSamples
-from simkit.sensors.measured_rows import MeasuredRows
 from simkit.sensors.noise import Noise, NoiseModel, UniformNoise, read_noise
 from simkit.sensors.particle_echoes import find_echoes
 from simkit.sensors.rays.ray_fan import RayFan, RayFanRows, fan_directions
@@ -524,22 +523,6 @@ class LidarMeasurement(Sensor):
     def add_point_noise(self, stddev: float) -> None:
         """Set `point_noise` with a standard deviation, in m for positions and in the unit of intensity."""
         self.point_noise = self._make_uniform_noise(NoiseModel(stddev=stddev), 4 * self.fan.count, "points")
-
-
-def lidar_rule(lidar: LidarMeasurement) -> SensorRule:
-    """Return the array rule of a lidar.
-
-    Rays that may hit moving meshes, more than 2047 rays, clouds and ranges are measured one simulation after another.
-
-    Raises:
-        CannotBatchError: plugins add noise to the lidar, or particles are in front of it.
-    """
-    if lidar.ray_noise is not None or lidar.range_noise is not None:
-        raise CannotBatchError(f"noise that a plugin adds to sensor {lidar.scoped!r}")
-    if lidar.sees_visuals and has_sources(lidar.sim):
-        raise CannotBatchError(f"particles in front of sensor {lidar.scoped!r}")
-    is_scan = next(iter(lidar.topics)) == "scan"
-    return LidarRule(lidar) if is_scan and lidar.fan.casts_in_rows else MeasuredRows(lidar, casts=True)
 
 
 class LidarRule(SensorRule):

@@ -11,7 +11,6 @@ from simkit.extend import Sensor
 from simkit.msgs import Message
 from simkit.runtime.array_rules import Grid, Ids, SensorRule, Ticks, TopicRule
 from simkit.runtime.engine.scheduler import Timetable
-from simkit.sensors.measured_rows import MeasuredRows
 from simkit_learning.environments.array_view import ArrayView
 from simkit_learning.environments.message_arrays import Array, conversion_of
 
@@ -74,8 +73,7 @@ class SampledSensor:
 
     def __init__(self, sensor: Sensor, rule: SensorRule, view: ArrayView, is_truth: bool) -> None:
         rule.bind(view, is_truth=is_truth)
-        if isinstance(rule, MeasuredRows):
-            rule.convert = _convert
+        rule.convert = _convert
         self._sensor, self._rule = sensor, rule
         self._index: Ticks = np.zeros(view.count, np.int64)  # number of the newest sample
         self._grid: Timetable | None = None if sensor.is_manual else sensor.timetable()

@@ -70,8 +70,8 @@ TWIST = {"/cmd_vel": {"linear.x": (-0.5, 1.0), "angular.z": (-2.0, 2.0)}}
 def assert_same_bits(source: str | RunSpec, steps: int, count: int = 3, **options: Any) -> int:
     """Compare all bits of a batch with single environments, and return the number of episodes that ended."""
     options = {"action": TWIST, "overrides": MUJOCO, "control_period": 0.1, **options}
-    batch = simkit.gym.make_vec(source, num_envs=count, batch=True, **options)
-    single = simkit.gym.make_vec(source, num_envs=count, processes=False, **options)
+    batch: Any = simkit.gym.make_vec(source, num_envs=count, batch=True, **options)
+    single: Any = simkit.gym.make_vec(source, num_envs=count, processes=False, **options)
     random, ends = np.random.default_rng(3), 0
     low, high = batch.single_action_space.low, batch.single_action_space.high
     found, expected = batch.reset(seed=7), single.reset(seed=7)
