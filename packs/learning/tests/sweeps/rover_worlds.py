@@ -67,10 +67,12 @@ RATE = "<odom_publish_frequency>{}</odom_publish_frequency>"
 TWIST = {"/cmd_vel": {"linear.x": (-0.5, 1.0), "angular.z": (-2.0, 2.0)}}
 
 
-def assert_same_bits(source: str | RunSpec, steps: int, count: int = 3, **options: Any) -> int:
+def assert_same_bits(
+    source: str | RunSpec, steps: int, count: int = 3, *, vector: Any = (("batch", True),), **options: Any
+) -> int:
     """Compare all bits of a batch with single environments, and return the number of episodes that ended."""
     options = {"action": TWIST, "overrides": MUJOCO, "control_period": 0.1, **options}
-    batch: Any = simkit.gym.make_vec(source, num_envs=count, batch=True, **options)
+    batch: Any = simkit.gym.make_vec(source, num_envs=count, **dict(vector), **options)
     single: Any = simkit.gym.make_vec(source, num_envs=count, processes=False, **options)
     random, ends = np.random.default_rng(3), 0
     low, high = batch.single_action_space.low, batch.single_action_space.high
