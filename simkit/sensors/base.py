@@ -308,9 +308,6 @@ class Sensor(Sampler):
     def bind(self, compiled: Compiled) -> None:
         """Find the sensor in a compiled model; called again after every change of structure."""
         self._finish_kept_samples()  # the physics states of the samples belong to the previous model
-        for _, publisher, _ in self._publishers:
-            # messages that wait for a reader belong to the previous model too
-            self.sim.communication.bus.settle_topic(publisher.topic)
         self._link_name = self._find_link(compiled.names)
         link = compiled.names.link(self._link_name)
         self._body = int(link.body)
@@ -374,6 +371,8 @@ class Sensor(Sampler):
         self._process_pending()
         for sample in self._kept_samples():
             self._finish_sample(sample)
+        for _, publisher, _ in self._publishers:  # messages that wait for a reader
+            self.sim.communication.bus.settle_topic(publisher.topic)
 
     def _noise_changed(self) -> None:
         super()._noise_changed()

@@ -309,6 +309,11 @@ class ServerLink:
         """True if the connection has ended."""
         return self._closed is not None
 
+    @property
+    def closed(self) -> LiveClosed | None:
+        """Reason for the end of the connection; None before the end."""
+        return self._closed
+
     def close(self) -> None:
         """Close the connection. A second call does nothing."""
         self._closed = self._closed or LiveClosed("the client is closed")

@@ -51,7 +51,7 @@ _BRIGHTEST = 2000.0  # upper limit of intensities of Gazebo's rendered lidars
 
 
 @dataclass(frozen=True, slots=True)
-class Sweep:
+class AngleRange:
     """Range of `samples` angles from `low` to `high` [rad], both included."""
 
     samples: int
@@ -78,8 +78,8 @@ class LidarOptions:
         sweep: times of the rays; None for a scan at one instant.
     """
 
-    horizontal: Sweep
-    vertical: Sweep
+    horizontal: AngleRange
+    vertical: AngleRange
     range_min: float
     range_max: float
     noise: NoiseModel
@@ -188,12 +188,12 @@ class LidarMeasurement(Sensor):
             low, high = 0.0, 1.0
         if not high > low:
             limits.error("SK-PARAM-002", f"found a range from {low:g} to {high:g} m; expected a <max> above <min>")
-        horizontal = _read_sweep(scan.block("horizontal"), 640)
-        vertical = _read_sweep(scan.block("vertical"), 1)
+        horizontal = _read_angle_range(scan.block("horizontal"), 640)
+        vertical = _read_angle_range(scan.block("vertical"), 1)
         if horizontal.samples * vertical.samples > _MAX_RAYS:
             rays = horizontal.samples * vertical.samples
             scan.error("SK-PARAM-002", f"found {rays} rays; expected at most {_MAX_RAYS}")
-            horizontal = vertical = Sweep(1, 0.0, 0.0)
+            horizontal = vertical = AngleRange(1, 0.0, 0.0)
         noise, mask = read_noise(block, "gaussian"), read_visibility_mask(block)
         fan = horizontal.samples, vertical.samples, horizontal.high - horizontal.low
         sweep = read_sweep(params, block, *fan, self.update_rate)
@@ -563,7 +563,7 @@ class LidarRule(SensorRule):
         return np.clip(layer, float(options.range_min), float(options.range_max))
 
 
-def _read_sweep(params: Params, samples: int) -> Sweep:
+def _read_angle_range(params: Params, samples: int) -> AngleRange:
     resolution = params.number("resolution", 1.0, minimum=0)
     count = params.integer("samples", samples, minimum=1)
     if count > 1 and resolution not in (0.0, 1.0):
@@ -575,7 +575,7 @@ def _read_sweep(params: Params, samples: int) -> Sweep:
         text = f"found angles from {low:g} to {high:g}; expected a <max_angle> of at least <min_angle>"
         params.warning("SK-PARAM-008", f"{text}; the two are exchanged")
         low, high = high, low
-    return Sweep(count, low, high)
+    return AngleRange(count, low, high)
 
 
 def _scoped_names(compiled: Compiled) -> npt.NDArray[np.object_]:
