@@ -9,10 +9,9 @@ from typing import Any, Final
 
 from simkit import RunSpec
 from simkit.argument_checks import wrong_type
-from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
+from simkit.extend import did_you_mean
 from simkit.msgs.data_frames import DataFrame
-from simkit.run_spec import FilePath
 from simkit_identification.comparison.alignment import ALIGNMENTS, Align, alignment_offset
 from simkit_identification.comparison.charts import charts_of
 from simkit_identification.comparison.paired_runs import compare_sets, is_set
@@ -27,15 +26,15 @@ from simkit_identification.comparison.sources import (
 )
 from simkit_identification.comparison.table import Comparison
 from simkit_identification.comparison.tolerances import INVALID, Tolerance, parse_tolerances
-from simkit_identification.measures.recording import Recording
+from simkit_identification.measures.recording import SignalRecording
 
 _NOTHING_IN_COMMON: Final = "SK-COMPARE-002"
 _NEAR: Final = 1.0  # [s] up to which two simulated clocks count as the same
 
 
 def compare(
-    a: FilePath | DataFrame,
-    b: FilePath | RunSpec | DataFrame | None = None,
+    a: str | os.PathLike[str] | DataFrame,
+    b: str | os.PathLike[str] | RunSpec | DataFrame | None = None,
     *,
     names: Mapping[str, str] | None = None,
     topics: str | Sequence[str] = (),
@@ -114,7 +113,7 @@ def _file(value: Any) -> str:
     return os.fspath(value)
 
 
-def _world(b: FilePath | RunSpec) -> str | RunSpec:
+def _world(b: str | os.PathLike[str] | RunSpec) -> str | RunSpec:
     return b if isinstance(b, RunSpec) else _file(b)
 
 
@@ -128,16 +127,16 @@ def _bag_path(a: Any) -> Path:
     return path
 
 
-def _begin_together(a: Recording, b: Recording) -> bool:
+def _begin_together(a: SignalRecording, b: SignalRecording) -> bool:
     starts = [min((float(s.received[0]) for s in side.streams.values() if s.count), default=0.0) for side in (a, b)]
     return abs(starts[0] - starts[1]) < _NEAR
 
 
-def _chosen(recording: Recording, choice: TopicChoice) -> list[str]:
+def _chosen(recording: SignalRecording, choice: TopicChoice) -> list[str]:
     return [topic for topic in recording.streams if choice.takes(topic)]
 
 
-def _notes(*sides: Recording) -> list[str]:
+def _notes(*sides: SignalRecording) -> list[str]:
     notes: dict[str, None] = {}
     for side in sides:
         notes.update(dict.fromkeys(side.notes))
@@ -146,7 +145,7 @@ def _notes(*sides: Recording) -> list[str]:
     return list(notes)
 
 
-def _report(a: Recording, choice: TopicChoice, confidence: float) -> Comparison:
+def _report(a: SignalRecording, choice: TopicChoice, confidence: float) -> Comparison:
     rows = rows_of_one(a, _chosen(a, choice), confidence)
     table = Comparison(a.name, "", rows, confidence, _notes(a))
     table.charts = charts_of(a, None, rows)
@@ -154,8 +153,8 @@ def _report(a: Recording, choice: TopicChoice, confidence: float) -> Comparison:
 
 
 def _compare(
-    a: Recording,
-    b: Recording,
+    a: SignalRecording,
+    b: SignalRecording,
     align: Align,
     choice: TopicChoice,
     confidence: float,
@@ -184,6 +183,6 @@ def _compare(
     return table
 
 
-def _start(recording: Recording) -> float:
+def _start(recording: SignalRecording) -> float:
     """Return the time of the first message on any topic that is not latched [s]."""
     return min((float(s.received[0]) for s in recording.streams.values() if s.count > 1), default=0.0)

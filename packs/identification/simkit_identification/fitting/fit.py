@@ -14,8 +14,8 @@ import numpy.typing as npt
 
 from simkit import RunSpec, progress
 from simkit.argument_checks import shown
-from simkit.diagnostics import NOWHERE, Diagnostics
 from simkit.errors import InputError
+from simkit.extend import Diagnostics
 from simkit.testing import open_scenario
 from simkit_identification.fitting.codes import (
     AT_BOUND,
@@ -34,7 +34,7 @@ from simkit_identification.fitting.fitted_values import ComparedTopic, FitCurve,
 from simkit_identification.fitting.motion import Motion
 from simkit_identification.fitting.noise_level import NoiseLevel, estimate_noise
 from simkit_identification.fitting.parameters import Parameter, Vary, read_parameters_to_vary, without_noise
-from simkit_identification.fitting.problem import Recording, fit_problem
+from simkit_identification.fitting.problem import RepeatedRecording, fit_problem
 from simkit_identification.fitting.recordings import Bag, read_recordings
 from simkit_identification.fitting.residuals import Residuals
 from simkit_identification.fitting.result import FitResult
@@ -185,7 +185,7 @@ def _check_deviations(parameters: Sequence[Parameter]) -> None:
             raise InputError(INVALID_PARAMETER, text, help="write a first value above 0: --vary PATH=START")
 
 
-def _describe_task(parameters: Sequence[Parameter], recordings: Sequence[Recording]) -> str:
+def _describe_task(parameters: Sequence[Parameter], recordings: Sequence[RepeatedRecording]) -> str:
     topics = list(dict.fromkeys(readings.channel.topic for r in recordings for readings in r.readings))
     size = sum(recording.size for recording in recordings)
     names = ", ".join(topics[:6]) + (f" and {len(topics) - 6} more" if len(topics) > 6 else "")
@@ -204,7 +204,7 @@ class _Fitter:
         run: RunSpec,
         quiet: RunSpec,
         parameters: Sequence[Parameter],
-        recordings: Sequence[Recording],
+        recordings: Sequence[RepeatedRecording],
         options: FitOptions,
         on_stage: Callable[[str], None],
     ) -> None:
@@ -358,7 +358,7 @@ class _Fitter:
         if len(self._searched) > 1 and not has_cma():
             text = f"the readings do not depend smoothly on {', '.join(names)}"
             help_ = "install the extra fit, so that CMA-ES searches"
-            self.diagnostics.warning(NOT_SMOOTH, text, NOWHERE, help_)
+            self.diagnostics.warning(NOT_SMOOTH, text, hint=help_)
             return "least-squares"
         return "cma"
 
@@ -410,19 +410,19 @@ class _Fitter:
         warn = self.diagnostics.warning
         if not found.has_converged:
             text = f"the search ended before it converged: {found.message}"
-            warn(NOT_CONVERGED, text, NOWHERE, "give narrower bounds or other first values, or --method cma")
+            warn(NOT_CONVERGED, text, hint="give narrower bounds or other first values, or --method cma")
         for p, u in zip(self._searched, found.point, strict=True):
             low, high = p.limits()
             if (u - low) < 1e-3 * (high - low) or (high - u) < 1e-3 * (high - low):
                 text = f"{p.path} = {p.value(float(u)):.6g} is at a bound of its range"
-                warn(AT_BOUND, text, NOWHERE, "widen the bounds, or vary what the value stands in for")
+                warn(AT_BOUND, text, hint="widen the bounds, or vary what the value stands in for")
         if evaluate.failed:
             listed = "; ".join(evaluate.failures[:3])
             text = f"{evaluate.failed} of {evaluate.runs} runs failed and counted as a large cost: {listed}"
-            warn(RUNS_FAILED, text, NOWHERE, "bounds that exclude such values make the search faster")
+            warn(RUNS_FAILED, text, hint="bounds that exclude such values make the search faster")
         if uncertainty is not None:
             for sentence in describe_confusion(self._searched, uncertainty):
-                warn(NOT_TOLD_APART, sentence, NOWHERE, "fix one of them, or record a motion in which they act apart")
+                warn(NOT_TOLD_APART, sentence, hint="fix one of them, or record a motion in which they act apart")
 
 
 def _rounded(value: float) -> float:
@@ -446,7 +446,9 @@ def _compared_topics(
     return (*topics, *(ComparedTopic(topic, note=note) for topic, note in notes.items()))
 
 
-def _curves(recordings: Sequence[Recording], residuals: Residuals, before: Floats, after: Floats) -> list[FitCurve]:
+def _curves(
+    recordings: Sequence[RepeatedRecording], residuals: Residuals, before: Floats, after: Floats
+) -> list[FitCurve]:
     """Return the compared columns, those that improve most first."""
     curves: list[tuple[float, FitCurve]] = []
     at = 0

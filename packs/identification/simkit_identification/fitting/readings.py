@@ -14,13 +14,13 @@ from simkit import msgs
 from simkit.errors import InputError
 from simkit.extend import did_you_mean
 from simkit.msgs.message_columns import TEXT, Column, columns_of
-from simkit.recording.bags.bag_contents import matches_topic
+from simkit.recording import matches_topic
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
     from simkit import Simulation
-    from simkit.recording.bags.reader import BagReader
+    from simkit.recording import BagReader
 
 Floats = npt.NDArray[np.float64]
 

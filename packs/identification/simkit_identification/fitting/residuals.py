@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from simkit_identification.fitting.problem import Recording
+from simkit_identification.fitting.problem import RepeatedRecording
 from simkit_identification.fitting.readings import Channel, is_compared
 
 Floats = npt.NDArray[np.float64]
@@ -47,7 +47,7 @@ class Residuals:
         deviations: standard deviation of each column.
     """
 
-    def __init__(self, recordings: Sequence[Recording], skip: float = 0.0, compare: Sequence[str] = ()) -> None:
+    def __init__(self, recordings: Sequence[RepeatedRecording], skip: float = 0.0, compare: Sequence[str] = ()) -> None:
         names: dict[ColumnName, int] = {}
         recorded, column, times, recording_of = [], [], [], []
         for number, recording in enumerate(recordings):
