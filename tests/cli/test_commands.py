@@ -270,6 +270,18 @@ def test_doctor_names_versions_and_the_renderer_with_its_speed() -> None:
 
 
 @pytest.mark.slow
+def test_doctor_lists_extras_and_the_packages_that_they_miss(monkeypatch: pytest.MonkeyPatch) -> None:
+    needed = [
+        "numpy>=2.0",
+        "pytest; extra == 'tests-of-mine'",
+        "no-such-package>=1; (os_name == 'nt') and extra == 'odd'",
+    ]
+    monkeypatch.setattr("simkit.cli.doctor.requires", lambda _: needed)
+    assert json.loads(simkit("doctor", "--json").stdout)["extras"] == {"odd": ["no-such-package"], "tests-of-mine": []}
+    assert "odd (no-such-package)" in simkit("doctor").stdout
+
+
+@pytest.mark.slow
 def test_a_missing_opengl_is_a_note_of_doctor_and_a_problem_only_if_it_is_requested(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
