@@ -135,12 +135,13 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         """
         return ()
 
-    def make_directly(self, raw: Reading, index: int, time_ns: int) -> Message | None:
-        """Return the message of a sample from its captured values; None if only `finish` and the product can make it.
+    @property
+    def makes_directly(self) -> bool:
+        """True if `make_directly` makes the message of the only product with the present noise."""
+        return False
 
-        Overridden by kinds with one product and many samples a second, because a reading takes as long as a message.
-        """
-        return None
+    def make_directly(self, raw: Reading, index: int, time_ns: int) -> Message:
+        """Return the message of a sample from its captured values, because a reading takes as long as a message."""
 
     # a kind whose measurement lasts sets `lasting` before it is attached, and overrides the next four methods and
     # `capture_held`, which makes the reading from the surroundings that `end_measurement` returns
@@ -199,18 +200,14 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
             # measured in the present data, whose forward pass the next step needs anyway
             sample.raw, sample.held = self._capture_now(tick), None
 
-    def _publish_directly(self, tick: int) -> bool:
-        """Publish the message that `make_directly` returns for a new sample; return False if there is none."""
+    def _publish_directly(self, tick: int) -> None:
+        """Publish the message that `make_directly` returns for a new sample."""
         index, time_ns = self._index + 1, self.sim.engine.clock.time_ns(tick)
         raw = self._capture_now(tick)
-        message = self.make_directly(raw, index, time_ns)
-        if message is None:
-            return False
         sample = Sample(index, time_ns)
         sample.raw = raw  # read by `latest` and `truth`
-        sample.messages[next(iter(self._products))] = message
+        message = sample.messages[next(iter(self._products))] = self.make_directly(raw, index, time_ns)
         self.publish_made(sample, message)
-        return True
 
     def publish_made(self, sample: Sample, message: Message) -> None:
         """Take over a sample whose only message a batch has made, and publish it."""
@@ -280,7 +277,8 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         if self._is_served and not self.artefacts:
             if self.batch is not None and self.batch.publish_sample(self, tick):
                 return
-            if self._is_direct and self._publish_directly(tick):
+            if self._is_direct:
+                self._publish_directly(tick)
                 return
         if self._group is not None:  # no reader needs its message at once: many samples become messages together
             packed = self._group.add(tick, self._capture_now(tick))
@@ -429,7 +427,7 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         # a drifting noise advances at every sample, and a delayed sample is delivered later, so neither is skipped
         self._is_unread = not (self._read_publishers or changes or self._delayed or self._needs_each_sample)
         self._patience = max(patience, default=0.0)
-        self._is_direct = is_plain and self._is_read and not changes and self._overrides("make_directly")
+        self._is_direct = is_plain and self._is_read and not changes and self.makes_directly
         products = {product for product, _, _ in self._read_publishers}
         is_packed = is_plain and self.is_deferred and self._is_read and not (changes or self.artefacts)
         is_packed = is_packed and not any(publisher.is_live for publisher in publishers)
