@@ -60,7 +60,8 @@ class Diagnostic:
                 object.__setattr__(self, name, value)
 
     def __str__(self) -> str:
-        text = f"{Where(self.file, self.line)}: {self.severity} {self.code}: {self.message}"
+        place = f"{Where(self.file, self.line)}: " if self.file or self.line else ""
+        text = f"{place}{self.severity} {self.code}: {self.message}"
         return f"{text}\n    help: {self.hint}" if self.hint else text
 
     def as_dict(self) -> dict[str, object]:

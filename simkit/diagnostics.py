@@ -8,6 +8,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, nullcontext
 from dataclasses import replace
+from pathlib import Path
 
 from simkit.diagnostic_record import NOWHERE, TEXT_SOURCE, Diagnostic, Severity, Where
 from simkit.errors import LoadError
@@ -20,6 +21,7 @@ __all__ = [
     "Where",
     "closest",
     "did_you_mean",
+    "file_hint",
     "follows_from",
     "name_hint",
     "shorten",
@@ -210,6 +212,19 @@ def name_hint(name: str, known: Iterable[str]) -> str:
     names = list(known)
     more = f" and {len(names) - _MOST_LISTED} more" if len(names) > _MOST_LISTED else ""
     return did_you_mean(name, names) or "there is " + (", ".join(names[:_MOST_LISTED]) or "none") + more
+
+
+def file_hint(name: str, suffixes: tuple[str, ...]) -> str:
+    """Return `did you mean 'x'?` with the most similar file name of the same folder, or an empty text.
+
+    Args:
+        name: path of a missing file.
+        suffixes: suffixes of the files that are suggested.
+    """
+    try:
+        return did_you_mean(Path(name).name, [f.name for f in Path(name).parent.iterdir() if f.suffix in suffixes])
+    except (OSError, ValueError):
+        return ""
 
 
 def shorten(text: str, most: int) -> str:

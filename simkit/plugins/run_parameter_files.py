@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from simkit.diagnostics import Diagnostics, Where, did_you_mean
+from simkit.diagnostics import Diagnostics, Where, did_you_mean, file_hint
 from simkit.plugins.ros_parameter_files import ParameterFile, node_matches, read_parameter_file
 from simkit.run_files import is_there, model_and_file
 from simkit.run_nodes import NODES_READ_FILES
@@ -76,7 +76,9 @@ def read_run_parameter_files(
         if path is None:
             message = f"cannot find the parameter file {text[:200]}"
             diagnostics.error(
-                "SK-CONTROL-015", message, hint=_closest_file_name(text) or "--params-file takes FILE or MODEL=FILE"
+                "SK-CONTROL-015",
+                message,
+                hint=file_hint(text, (".yaml", ".yml")) or "--params-file takes FILE or MODEL=FILE",
             )
             continue
         if path not in read:
@@ -95,15 +97,6 @@ def _find_file(text: str, find: Callable[[str], Path | None]) -> Path | None:
         return file if file is not None and file.is_file() else None
     except (OSError, ValueError):  # the text is not a valid file name
         return None
-
-
-def _closest_file_name(text: str) -> str:
-    """Return a suggestion: the YAML file with the most similar name in the same folder, or an empty text."""
-    try:
-        folder = Path(text).parent
-        return did_you_mean(Path(text).name, [p.name for p in folder.iterdir() if p.suffix in (".yaml", ".yml")])
-    except (OSError, ValueError):
-        return ""
 
 
 def report_unused_control(

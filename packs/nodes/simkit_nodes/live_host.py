@@ -237,9 +237,10 @@ class LiveHost:
         except LiveClosed as error:
             closed = error
         except (OSError, ValueError):
-            if not self._is_closing:  # else `close` has closed the socket
+            reason = self._link.closed
+            if reason is None:
                 raise
-            return
+            closed = reason  # another thread found out while it sent
         if not self._is_closing:
             self._end(closed)
 

@@ -39,6 +39,7 @@ class LivePublisher:
         self.topic = topic
         self.last_data = b""
         self._is_open: bool | None = None  # None until the simulation has answered
+        self._is_closed = False
         self._waiting: list[bytes] = []
 
     @property
@@ -48,6 +49,8 @@ class LivePublisher:
 
     def publish(self, message: Message) -> None:
         """Publish a message of simkit."""
+        if self._is_closed:
+            return
         data = msgs.serialize(message)
         if self._is_latched:
             self.last_data = bytes(data)
@@ -62,6 +65,8 @@ class LivePublisher:
         for data in self._waiting:
             self._topics.link.publish(self._number, data)
         self._waiting.clear()
+        if self._is_closed:
+            self._topics.link.unadvertise(self._number)
 
     def refuse(self, error: LiveError) -> None:
         """Report that the topic has another type; its messages are dropped."""
@@ -70,11 +75,11 @@ class LivePublisher:
         self._topics.report(f"a program publishes on {self.topic!r}, but {error}")
 
     def close(self) -> None:
-        """Close the publisher."""
+        """Close the publisher; before the simulation has answered, it is closed after the waiting messages."""
         self._topics.remove(self)
-        if self._is_open is not False:
-            self._is_open = False
+        if self._is_open and not self._is_closed:
             self._topics.link.unadvertise(self._number)
+        self._is_closed = True
 
 
 class LiveTopics:

@@ -25,8 +25,8 @@ SENSOR_KINDS: Mapping[str, tuple[str, ...]] = {
 }
 """Sensor types that share a block, by kind; a kind that is not listed has one type of the same name."""
 
-TIMING_ELEMENTS: Final = ("jitter", "latency", "latency_jitter", "phase", "sweep")
-"""Elements of the core that a `<sensor>` of any kind may have beside its block, except its rate."""
+TIMING_ELEMENTS: Final = ("jitter", "latency", "latency_jitter", "phase", "shutter", "sweep")
+"""Elements of the core that a `<sensor>` may have beside its block, except its rate."""
 
 _FOLDER: Final = Path(__file__).parent / "data"
 _AXES: Final = ("xyz", "xy")

@@ -8,13 +8,13 @@ from functools import partial
 from pathlib import Path
 from typing import Final
 
-from simkit.diagnostics import Diagnostics, name_hint
+from simkit.diagnostics import Diagnostics, file_hint, name_hint
 from simkit.packs import pack_folders
 from simkit.scene import SceneModel, SceneWorld
 from simkit.sensors.realism.change import Change
 from simkit.sensors.realism.datasheet import Datasheet
 from simkit.sensors.realism.ideal import Ideal
-from simkit.sensors.realism.model_parts import with_parts
+from simkit.sensors.realism.model_change import change_model
 from simkit.sensors.realism.realism_file import FromFile, read_realism_file
 
 IDEAL_OR_DATASHEET: Final = ("datasheet", "ideal")
@@ -34,14 +34,14 @@ class Realism:
     def world(self, world: SceneWorld, diagnostics: Diagnostics) -> SceneWorld:
         """Return a world with changed sensors; notes and errors go to `diagnostics`."""
         change = self._make_change(diagnostics)
-        models = tuple(with_parts(model, change.sensor, change.plugin) for model in world.models)
+        models = tuple(change_model(model, change.sensor, change.plugin) for model in world.models)
         change.report(is_world=True)
         return replace(world, models=models)
 
     def model(self, model: SceneModel, diagnostics: Diagnostics) -> SceneModel:
         """Return a spawned model with changed sensors."""
         change = self._make_change(diagnostics)
-        changed = with_parts(model, change.sensor, change.plugin)
+        changed = change_model(model, change.sensor, change.plugin)
         change.report(is_world=False)
         return changed
 
@@ -81,9 +81,13 @@ def read_realism(choice: str, find: Callable[[str], Path | None], diagnostics: D
     path = sets.get(choice) or (_find_file(choice, find) if is_file_name(choice) else None)
     if path is None:
         known = (*IDEAL_OR_DATASHEET, *sets)
-        what = "cannot find the file" if is_file_name(choice) else "found"
-        expected = "" if is_file_name(choice) else f", expected {', '.join(known)} or a file that ends with .yaml"
-        diagnostics.error("SK-SENSOR-274", f"realism: {what} {choice!r}{expected}", hint=name_hint(choice, known))
+        if is_file_name(choice):
+            message = f"cannot find the file of realism, {choice!r}"
+            hint = file_hint(choice, _SUFFIXES) or f"--realism takes FILE or one of {', '.join(known)}"
+        else:
+            message = f"realism: found {choice!r}, expected {', '.join(known)} or a file that ends with .yaml"
+            hint = name_hint(choice, known)
+        diagnostics.error("SK-SENSOR-274", message, hint=hint)
         return None
     rules = read_realism_file(path, diagnostics, is_set=choice in sets)
     return None if rules is None else Realism(partial(FromFile, rules=rules))

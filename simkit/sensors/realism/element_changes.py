@@ -15,7 +15,7 @@ from simkit.sensors.presets.preset import TIMING_ELEMENTS
 NOISE_ELEMENTS: Final = frozenset({"noise", "disparity_noise"})
 """Elements at any depth of a `<sensor>` that describe noise; one of them replaces the other as a whole."""
 
-_KEPT_TIMING: Final = frozenset({"phase"})  # the phase is a choice of the user, not an error
+_NO_ERRORS: Final = frozenset({"phase", "point_layout", "scan_pattern"})  # choices of the user: time, form, directions
 _PLUGIN_NOISE: Final = re.compile(r"gaussian_?noise|odometry_noise|drift$", re.IGNORECASE)
 _SPELLINGS: Final = (frozenset({"lidar", "ray"}), frozenset({"navsat", "gps"}))
 
@@ -39,10 +39,10 @@ def is_error_element(name: str) -> bool:
 
 
 def without_errors(params: Params, removed: set[str]) -> Params:
-    """Return a `<sensor>` without noise, artefacts, sweep and latency; add the names of the removed ones to a set."""
+    """Return a `<sensor>` without noise, artefacts and times of its rays and rows; add the removed names to a set."""
 
     def is_error(child: Params) -> bool:
-        return child.name not in _KEPT_TIMING and is_error_element(child.name)
+        return child.name not in _NO_ERRORS and is_error_element(child.name)
 
     return _without(_without(params, is_error, removed, 1), _is_noise, removed)
 

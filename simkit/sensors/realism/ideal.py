@@ -1,4 +1,4 @@
-"""Realism `ideal`: sensors without noise, artefacts, sweep and latency, whatever the files ask for."""
+"""Realism `ideal`: sensors without noise, artefacts, sweep, shutter and latency, whatever the files ask for."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from simkit.sensors.realism.element_changes import without_children, without_err
 
 
 class Ideal(Change):
-    """Removal of all errors of sensors. Ranges, sizes, rates and lenses stay, also those of a preset."""
+    """Removal of all errors of sensors. Ranges, rates, lenses and layouts of points stay, also those of a preset."""
 
     def __init__(self, diagnostics: Diagnostics) -> None:
         super().__init__(diagnostics)

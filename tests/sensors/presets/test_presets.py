@@ -262,6 +262,7 @@ def preset_with(monkeypatch: pytest.MonkeyPatch, **beside: Any) -> None:
     monkeypatch.setattr(preset_defaults, "find", lambda name: {"lidar": changed})
 
 
+@pytest.mark.needs_packs
 def test_a_preset_sets_elements_beside_the_block(monkeypatch: pytest.MonkeyPatch) -> None:
     preset_with(monkeypatch, latency=0.05, dropout={"probability": 1.0})
     with load(world(named("LDS-01", "lidar"), others=box("b", "2 0 0 0 0 0", "1 40 4"))) as sim:

@@ -9,6 +9,9 @@ import numpy as np
 import pytest
 
 import simkit
+from simkit.params import Params
+from simkit.scene.simkit_elements import OWN_ELEMENTS
+from simkit.sensors.realism.element_changes import without_errors
 from simkit.testing.scenarios.scenario_file import read_scenario
 
 WORLD = """<sdf version="1.9" xmlns:simkit="simkit"><world name="w">
@@ -53,6 +56,7 @@ def saved(tmp_path: Path) -> Any:
     return save
 
 
+@pytest.mark.needs_packs
 def test_ideal_sensors_have_neither_noise_nor_losses_nor_latency() -> None:
     with load("ideal") as sim:
         sim.run(0.3)
@@ -66,6 +70,7 @@ def test_ideal_sensors_have_neither_noise_nor_losses_nor_latency() -> None:
         assert "<gaussian_noise> of robot::truth" in note.message
 
 
+@pytest.mark.needs_packs
 def test_a_value_of_set_has_priority_over_ideal() -> None:
     with load("ideal", overrides=["robot::l::laser.dropout.probability=1"]) as sim:
         sim.run(0.3)
@@ -92,6 +97,7 @@ def test_a_preset_of_set_is_the_one_that_the_datasheet_uses() -> None:
         assert any("LDS-02" in message for message in notes) and not any("LDS-01" in message for message in notes)
 
 
+@pytest.mark.needs_packs
 def test_a_file_gives_presets_and_elements_to_the_sensors_that_its_patterns_match(saved: Any) -> None:
     file = saved("""
 source: none
@@ -143,6 +149,7 @@ def test_all_mistakes_of_a_file_are_reported_with_their_lines(saved: Any) -> Non
     assert problems(saved("source: me\n")) == [("SK-SENSOR-270", "robot.yaml", 1)]
 
 
+@pytest.mark.needs_packs
 def test_a_wrong_value_in_a_file_is_reported_with_its_line(saved: Any) -> None:
     file = saved("sensors:\n  laser:\n    elements:\n      dropout:\n        probability: 2\n")
     assert [entry[1:] for entry in problems(file)] == [("robot.yaml", 5)]
@@ -151,6 +158,27 @@ def test_a_wrong_value_in_a_file_is_reported_with_its_line(saved: Any) -> None:
 def test_an_unknown_choice_is_an_error_with_the_known_ones() -> None:
     assert problems("datashet") == [("SK-SENSOR-274", None, None)]
     assert problems("no_such_file.yaml") == [("SK-SENSOR-274", None, None)]
+
+
+def test_a_missing_file_is_reported_by_its_name_with_the_most_similar_one(saved: Any) -> None:
+    file = saved("sensors: {}")
+    wrong = file.replace("robot", "robto")
+    with pytest.raises(simkit.LoadError) as caught:
+        load(wrong)
+    text = str(caught.value)
+    assert text.startswith(f"error SK-SENSOR-274: cannot find the file of realism, {wrong!r}")
+    assert "did you mean 'robot.yaml'?" in text
+    with pytest.raises(simkit.LoadError, match=r"help: --realism takes FILE or one of datasheet, ideal"):
+        load("nothing_like_it.yaml")
+
+
+def test_ideal_removes_each_own_element_of_a_sensor_that_is_an_error() -> None:
+    kept = {"encoder", "phase", "point_layout", "preset", "scan_pattern", "set_rate_topic", "solar"}
+    names = sorted(OWN_ELEMENTS["sensor"])
+    params = Params("sensor", "", {}, [Params(name, "") for name in names])
+    removed: set[str] = set()
+    left = {child.name for child in without_errors(params, removed).children}
+    assert left == kept and removed == set(names) - kept
 
 
 def test_a_spawned_robot_has_the_realism_of_the_run() -> None:
