@@ -7,9 +7,7 @@ measure old commits. The worlds are those of the checkout of this file.
 from __future__ import annotations
 
 import copy
-import os
 import re
-import resource
 import subprocess
 import sys
 import time
@@ -415,6 +413,8 @@ def loading(folder: Path) -> Sides:
 
 def children_clock() -> float:
     """Return the CPU time of finished child processes [s]."""
+    import resource  # Windows has none
+
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
@@ -511,4 +511,3 @@ CASES = {
     "command": Case("`simkit run empty --duration 0`", "`import mujoco`", command, 4, clock=children_clock),
     "memory": Case("memory of 100 robots", "MuJoCo with the compiled model", memory, 1, clock=None),
 }
-os.environ.setdefault("MUJOCO_GL", "egl")
