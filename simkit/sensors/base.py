@@ -146,6 +146,10 @@ class Sensor(Sampler):
 
     # ------------------------------------------------------------------ readings
 
+    def make_first_message(self, reading: Reading, time_ns: int) -> Message:
+        """Return the message of a reading that `latest` would show."""
+        return self._products[next(iter(self._topics))].make(reading, time_ns)
+
     @property
     def topics(self) -> Mapping[str, str]:
         """Topic of each product that is published."""

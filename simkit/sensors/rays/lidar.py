@@ -11,7 +11,10 @@ import numpy.typing as npt
 
 from simkit import msgs
 from simkit.msgs.cdr_template import CdrTemplate
+from simkit.runtime.array_rules import CannotBatchError, SensorRule
+from simkit.runtime.particle_clouds import has_sources
 from simkit.sensors.base import Product
+from simkit.sensors.measured_rows import MeasuredRows
 from simkit.sensors.point_cloud_messages import LEGACY_CLOUD_TYPE, legacy_point_cloud, point_cloud
 from simkit.sensors.rays.geom_types import Ids
 from simkit.sensors.rays.lidar_batch import LidarBatch, lidar_batch_key
@@ -58,8 +61,20 @@ class Lidar(LidarMeasurement):
         if cls is Lidar:
             form_batches(sensors, LidarBatch, lidar_batch_key)
 
-    def array_rule(self) -> LidarRule:
-        return LidarRule(self)
+    def array_rule(self) -> SensorRule:
+        """Return the array rule.
+
+        More than 2047 rays, rays that may hit moving meshes, clouds and ranges are measured one after another.
+
+        Raises:
+            CannotBatchError: plugins add noise to the lidar, or particles are in front of it.
+        """
+        if self.ray_noise is not None or self.range_noise is not None:
+            raise CannotBatchError(f"noise that a plugin adds to sensor {self.scoped!r}")
+        if self.sees_visuals and has_sources(self.sim):
+            raise CannotBatchError(f"particles in front of sensor {self.scoped!r}")
+        is_scan = next(iter(self.topics)) == "scan"
+        return LidarRule(self) if is_scan and self.fan.casts_in_rows else MeasuredRows(self, casts=True)
 
     def products(self) -> dict[str, Product]:
         return {

@@ -17,7 +17,7 @@ from simkit.diagnostics import Diagnostics
 from simkit.linear_algebra import matmul
 from simkit.params import Params
 from simkit.pose import Vector
-from simkit.runtime.array_rules import CannotBatchError, Ids, SensorRule, Ticks
+from simkit.runtime.array_rules import Ids, SensorRule, Ticks
 from simkit.runtime.engine.pose_history import PoseRows
 from simkit.runtime.particle_clouds import has_sources
 from simkit.scene import SceneSensor
@@ -528,24 +528,14 @@ class LidarMeasurement(Sensor):
 class LidarRule(SensorRule):
     """Ranges of a lidar's scan in n simulations, within the range limits.
 
-    Raises:
-        CannotBatchError: plugins add noise to the lidar, its first message is no scan, or its rays are cast in a way
-            that depends on single simulations.
+    Args:
+        lidar: lidar of the simulation that resets all others; its first message is a scan, and `casts_in_rows` is true
+            for its fan.
     """
 
     inputs = ("xpos", "xmat", "xquat")
 
     def __init__(self, lidar: LidarMeasurement) -> None:
-        name = lidar.scoped
-        if lidar.ray_noise is not None or lidar.range_noise is not None:
-            raise CannotBatchError(f"noise that a plugin adds to sensor {name!r}")
-        if lidar.sees_visuals and has_sources(lidar.sim):
-            raise CannotBatchError(f"particles in front of sensor {name!r}")
-        if not lidar.fan.casts_in_rows:
-            raise CannotBatchError(f"more than 2047 rays, or rays that may hit moving meshes, of sensor {name!r}")
-        product = next(iter(lidar.topics))
-        if product != "scan":
-            raise CannotBatchError(f"message {product!r} of sensor {name!r}")
         self._lidar = lidar
 
     def bind(self, states: StateArrays, *, is_truth: bool) -> None:
