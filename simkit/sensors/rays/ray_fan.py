@@ -112,6 +112,7 @@ class RayFan:
         self._static: list[TriangleBody] | None = None
         self.movers = MovingBodies([])
         self._parts: list[FanPart] = []
+        self._pieces = 0
         self.groups = np.zeros(6, dtype=np.uint8)
         self.groups[list(groups)] = 1
         self.grid, self.numpy_directions = (
@@ -244,9 +245,11 @@ class RayFan:
         self.find_triangles()
         self._find_shapes()
         count = min(ray_threads.count, max(1, self.count // RAYS_PER_THREAD))
-        if len(self._parts) != count:
+        # a low and a high part for each thread, because rays to the sky take less time than rays to the ground
+        pieces = 1 if count == 1 else 2 * count
+        if self._pieces != pieces:
             assert self.numpy_directions is not None
-            self._parts = _parts_of(self.numpy_directions, self.grid, count)
+            self._parts, self._pieces = _parts_of(self.numpy_directions, self.grid, pieces), pieces
 
         def cast_part(part: FanPart) -> None:
             rays, best, hits = (
@@ -259,7 +262,12 @@ class RayFan:
             self.cast_on_planes(data, rays, best, hits)
             self._cast_on_shapes(data, rays, best, hits)
 
-        ray_threads.run([partial(cast_part, part) for part in self._parts])
+        def cast_parts(number: int) -> None:
+            for i in sorted({number, pieces - 1 - number}):
+                if i < len(self._parts):
+                    cast_part(self._parts[i])
+
+        ray_threads.run([partial(cast_parts, number) for number in range(count)])
 
     def finish(self) -> None:
         self.infinite = self.distances > min(self.reach, _LARGEST)
