@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -99,6 +100,7 @@ class Simulation(ScriptGraph, InProcess):
         self._bus = bus = TopicBus(diagnostics, lambda: self.time, remapping)
         callbacks = EngineCallbacks(
             fill=self._fill,
+            basis=self._basis,
             velocity_limit=lambda name, axis: self.contents.handles.velocity_limit(name, axis),
             set_active=lambda owners: self.communication.set_active(owners),
             abandon=lambda owner, reason: self.communication.abandon(owner, reason),
@@ -227,13 +229,14 @@ class Simulation(ScriptGraph, InProcess):
             keep_changes: True to keep masses, friction, joint dynamics, gains, noise, lights and gravity that were set.
         """
         check_kind(keep_changes, bool, "keep_changes", "True or False")
-        changes, gravity = self.engine.numbers.values, self.gravity
+        self.engine.check_open()
+        kept = (self.gravity, self.engine.numbers.values) if keep_changes else None
         if self._programs is not None:
             self._programs.end()
         self._reset(seed)
-        if keep_changes:
-            self.gravity = gravity
-            self.contents.handles.set_values(changes)
+        if kept is not None:
+            self.gravity = kept[0]
+            self.contents.handles.set_values(kept[1])
         if self._programs is not None:
             self._programs.restart()
 
@@ -411,6 +414,14 @@ class Simulation(ScriptGraph, InProcess):
     def _fill(self, scheduler: Scheduler) -> None:
         self._tasks.fill(scheduler, *self.contents.handles.limited_dofs())
         self.communication.on_demand.fill(scheduler)
+        self._limits = self.contents.handles.velocity_limits()
+
+    def _basis(self) -> object:
+        """Return what `_fill` reads and a restored state may change; None if each state needs new tasks."""
+        basis, limits = self._tasks.basis(), self.contents.handles.velocity_limits()
+        if basis is None or not all(map(operator.is_, limits, self._limits)):  # arrays that are replaced by a change
+            return None
+        return basis, self.communication.on_demand.wanted()
 
     def view(self, port: int = 0) -> str:
         """Show the simulation in a browser; `step` and `run` then update the page.
