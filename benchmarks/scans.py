@@ -1,17 +1,23 @@
 """Lidar scans: beside `mj_multiRay` on the same rays, near meshes, among moving bodies, and beside PyBullet.
 
+Rays beside Embree: the ranges of a lidar (distances in float64, geoms), and `run` of the binding embreex alone with the
+same rays on the same triangles, which lie in one scene at their present poses. Both in millions of rays per second.
+
 python benchmarks/scans.py [--rounds N]
 """
 
 from __future__ import annotations
 
+import itertools
 import tempfile
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import mujoco
 import numpy as np
+import trimesh
 from measure import arguments, report
 
 import simkit
@@ -30,8 +36,6 @@ _LIDAR = f"""<model name="m"><static>true</static><pose>0.1 0.2 2 0 0 0</pose><l
 
 def terrain(cells: int, bumps: float, folder: Path) -> Path:
     """A surface of 2·cells² triangles, 40 m wide, smooth or with `bumps` [m] at every corner."""
-    import trimesh
-
     along = np.linspace(-20, 20, cells + 1)
     x, y = np.meshgrid(along, along)
     z = 0.5 + 0.3 * np.sin(x) * np.cos(y) + np.random.default_rng(0).uniform(0, bumps, x.shape)
@@ -77,6 +81,65 @@ def timed(text: str, folder: Path, rounds: int) -> list[float]:
         sim.communication.bus.tap(sensor.topic + "/points", lambda _: None)
         sides = [lambda: sensor.measure(sim.mj_model, data), lambda: sensor.sample(sim.tick), bare]
         return time_interleaved(sides, rounds)
+
+
+def beside_embree(folder: Path, rounds: int) -> None:
+    """Ranges of many rays near a large mesh and among moving bodies, beside the bare ray tracer on its triangles."""
+    from simkit.sensors.rays.ray_threads import ray_threads
+
+    trimesh.creation.icosphere(3, 0.3).export(folder / "ball.stl")
+    box, ball = "<box><size>0.5 0.5 0.5</size></box>", f"<mesh><uri>{folder / 'ball.stl'}</uri></mesh>"
+    print(
+        "triangles       rays moving |  million rays/s a core: embreex, simkit, ratio |  two threads: by the clock, CPU"
+    )
+    for (cells, bumps), (layers, columns), moving in itertools.product(
+        ((224, 0.0), (316, 0.3)), ((16, 1024), (64, 1024), (64, 1800)), ("none", "boxes", "meshes")
+    ):
+        text = world(terrain(cells, bumps, folder), "lidar", 0 if moving == "none" else 20)
+        text = text.replace(box, ball) if moving == "meshes" else text
+        text = text.replace(f"<samples>{LAYERS}<", f"<samples>{layers}<").replace(
+            f"<samples>{COLUMNS}<", f"<samples>{columns}<"
+        )
+        with simkit.load(text, resource_paths=[str(folder)]) as sim:
+            sim.run(0.05)
+            sensor, data = sim.sensor("m::l::s"), sim.engine.physics.fresh()
+            frame = sensor.ray_frame(data)
+
+            def cast(threads: int) -> None:
+                with ray_threads.use(threads):
+                    sensor.fan.cast(sim.mj_model, data, *frame, sensor._start)  # noqa: B023
+
+            sides = [bare_embree(sensor, data), lambda: cast(1), lambda: cast(2)]
+            bare, ours, both = time_interleaved(sides, 3 * rounds)
+            (wall,) = time_interleaved(sides[2:], rounds, time.perf_counter)
+            millions = layers * columns / 1e6
+            print(
+                f"{2 * cells**2 // 1000:>7}k {millions * 1e6:>10.0f} {moving:>6} | {millions / bare:>25.2f} "
+                f"{millions / ours:>7.2f} {bare / ours:>6.2f} | {millions / wall:>10.2f} {both / ours:>6.2f}",
+                flush=True,
+            )
+
+
+def bare_embree(sensor: Any, data: Any) -> Callable[[], object]:
+    """Return a function that casts the rays of a lidar with embreex alone, in one scene of all that they can hit."""
+    from embreex.mesh_construction import TriangleMesh
+    from embreex.rtcore_scene import EmbreeScene
+
+    from simkit.sensors.rays.embree_rays import triangles_of
+
+    model, vertices, faces, count = sensor.fan.targets.model, [], [], 0
+    for geom in sensor.fan.targets.geoms.tolist():
+        corners, triangles = triangles_of(model, geom)
+        body = model.geom_bodyid[geom]
+        vertices.append(corners @ data.xmat[body].reshape(3, 3).T + data.xpos[body])
+        faces.append(triangles + count)
+        count += len(corners)
+    scene = EmbreeScene(robust=True)
+    TriangleMesh(scene, np.concatenate(vertices).astype(np.float32), np.concatenate(faces).astype(np.int32))
+    origin, rotation = sensor.ray_frame(data)
+    directions = np.ascontiguousarray((sensor.fan.directions @ rotation.T).astype(np.float32))
+    origins = np.ascontiguousarray(np.broadcast_to(origin.astype(np.float32), directions.shape))
+    return lambda: scene.run(origins, directions)
 
 
 def accuracy() -> float:
@@ -165,6 +228,7 @@ def main() -> None:
         report([figure])
     with tempfile.TemporaryDirectory() as folder:
         report(dense(Path(folder), rounds))
+        beside_embree(Path(folder), rounds)
     error = accuracy()
     print(f"greatest error on a ball 100 m away: {error:.1e} m   aim <= 1e-3")
 

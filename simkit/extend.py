@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from simkit.cli.run_part import OpenRun, RunPart
     from simkit.cli.terminal.options import argument, option
     from simkit.cli.terminal.output import report_errors
-    from simkit.compiler import SpecBuilder
+    from simkit.compiler import Compiled, SpecBuilder
     from simkit.diagnostics import Diagnostics, Where, did_you_mean
     from simkit.loaders.resources.loader import Loader, LoadRequest
     from simkit.loaders.resources.xml_reader import Document
@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from simkit.plugins.publish_on_demand import publish_while_subscribed
     from simkit.pose import Vector
     from simkit.runtime.communication.action_server import GoalHandle
+    from simkit.runtime.engine.random_streams import RandomStream
     from simkit.scene import (
         Box,
         Cylinder,
@@ -62,29 +63,46 @@ if TYPE_CHECKING:
         SceneWorld,
         Sphere,
     )
+    from simkit.sensors.artefacts import Artefact, MessageArtefact
     from simkit.sensors.base import Product, Sensor
-    from simkit.sensors.noise import Noise, NoiseModel, read_noise
+    from simkit.sensors.cameras.image_noise import CameraReading, ChangedReading
+    from simkit.sensors.environment.navsat import NavSat, NavSatReading
+    from simkit.sensors.inertial.imu_measurement import ImuMeasurement, ImuReading
+    from simkit.sensors.noise import Noise, NoiseModel, quantise, read_noise
+    from simkit.sensors.rays.lidar_measurement import LidarMeasurement, LidarReading
     from simkit.sensors.vector_sensor import VectorRule, VectorSensor
 
 __all__ = [
     "LARGEST",
     "NEVER",
+    "Artefact",
     "Box",
+    "CameraReading",
+    "ChangedReading",
+    "Compiled",
     "Cylinder",
     "Diagnostics",
     "Document",
     "GivenOptions",
     "GoalHandle",
+    "ImuMeasurement",
+    "ImuReading",
     "Inertial",
     "JointAxis",
+    "LidarMeasurement",
+    "LidarReading",
     "LoadRequest",
     "Loader",
+    "MessageArtefact",
+    "NavSat",
+    "NavSatReading",
     "Noise",
     "NoiseModel",
     "OpenRun",
     "Options",
     "OptionsOf",
     "Product",
+    "RandomStream",
     "RunPart",
     "Scene",
     "SceneCollision",
@@ -120,6 +138,7 @@ __all__ = [
     "pose",
     "publish_while_subscribed",
     "publishes",
+    "quantise",
     "read_noise",
     "report_errors",
     "text",
@@ -134,7 +153,7 @@ _MODULES = {
     "simkit.cli.run_part": ("OpenRun", "RunPart"),
     "simkit.cli.terminal.options": ("argument", "option"),
     "simkit.cli.terminal.output": ("report_errors",),
-    "simkit.compiler": ("SpecBuilder",),
+    "simkit.compiler": ("Compiled", "SpecBuilder"),
     "simkit.diagnostics": ("Diagnostics", "Where", "did_you_mean"),
     "simkit.loaders.resources.loader": ("LoadRequest", "Loader"),
     "simkit.loaders.resources.xml_reader": ("Document",),
@@ -155,8 +174,14 @@ _MODULES = {
         "Box", "Cylinder", "Inertial", "Scene", "SceneCollision", "SceneJoint", "SceneLink", "SceneModel",
         "SceneSensor", "SceneVisual", "SceneWorld", "Sphere",
     ),
+    "simkit.runtime.engine.random_streams": ("RandomStream",),
+    "simkit.sensors.artefacts": ("Artefact", "MessageArtefact"),
+    "simkit.sensors.cameras.image_noise": ("CameraReading", "ChangedReading"),
+    "simkit.sensors.environment.navsat": ("NavSat", "NavSatReading"),
+    "simkit.sensors.inertial.imu_measurement": ("ImuMeasurement", "ImuReading"),
+    "simkit.sensors.rays.lidar_measurement": ("LidarMeasurement", "LidarReading"),
     "simkit.sensors.base": ("Product", "Sensor"),
-    "simkit.sensors.noise": ("Noise", "NoiseModel", "read_noise"),
+    "simkit.sensors.noise": ("Noise", "NoiseModel", "quantise", "read_noise"),
     "simkit.sensors.vector_sensor": ("VectorRule", "VectorSensor"),
 }  # fmt: skip
 

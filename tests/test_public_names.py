@@ -38,14 +38,14 @@ PRIVATE_IMPORTS = {
     "control": 24,
     "fuel": 18,
     "gz_python": 14,
-    "identification": 24,
+    "identification": 20,
     "launch": 29,
     "learning": 45,
     "motion": 15,
     "navigation": 20,
     "nodes": 30,
     "open_rmf": 5,
-    "realism": 28,
+    "realism": 18,
     "robots": 21,
     "ros": 9,
     "special_cameras": 18,
@@ -114,10 +114,10 @@ def test_modules_for_users_are_attributes_of_simkit() -> None:
         assert getattr(simkit, name) is importlib.import_module(f"simkit.{name}")
 
 
-def test_at_most_60_names_are_for_extensions_and_a_page_explains_them() -> None:
+def test_at_most_75_names_are_for_extensions_and_a_page_explains_them() -> None:
     page = (ROOT / "docs" / "extend.md").read_text(encoding="utf-8")
     explained = {name for row in re.findall(r"^\| (`.*?) \|", page, re.M) for name in re.findall(r"`(\w+)`", row)}
-    assert len(simkit.extend.__all__) <= 60
+    assert len(simkit.extend.__all__) <= 75
     assert set(simkit.extend.__all__) <= explained
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import json
 import os
 import platform
+import re
 import subprocess
 import sys
-from importlib.metadata import PackageNotFoundError, distribution, version
+from importlib.metadata import PackageNotFoundError, distribution, requires, version
 from pathlib import Path
 
 from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
@@ -41,6 +42,8 @@ _FOLDERS = (
     "AMENT_PREFIX_PATH",
     "SIMKIT_SAVE_PATH",
 )
+_DISTRIBUTION = "simkit-robotics"
+_DEVELOPMENT = ("dev", "test", "compare")  # extras that no use of simkit needs
 _RENDERER_TIMEOUT = 60.0  # [s]
 
 _IMPORT_ENGINE = """
@@ -102,13 +105,37 @@ def doctor(
     for folder in folders:
         _line(folder["variable"], folder["folder"] + ("" if folder["exists"] else " (missing)"))
     _line("installed in", _location())
-    add_to_report(found=facts, folders=folders, installed_in=_location(), problems=problems, notes=notes)
+    extras = _extras()
+    _line("extras", ", ".join(name for name, missing in extras.items() if not missing) or "none")
+    absent = [f"{name} ({', '.join(missing)})" for name, missing in extras.items() if missing]
+    _line("extras without packages", ", ".join(absent) or "none")
+    add_to_report(found=facts, folders=folders, installed_in=_location(), extras=extras, problems=problems, notes=notes)
     for note in notes:
         stdout_console().print(f"note: {note}")
     for problem in problems:
         stdout_console().print(problem, style="yellow")
     stdout_console().print("problems found; see the lines above" if problems else "no problems found")
     return 1 if problems else 0
+
+
+def _extras() -> dict[str, list[str]]:
+    """Return the packages that are missing for each extra; empty if the distribution is not installed."""
+    try:
+        needed = requires(_DISTRIBUTION) or []
+    except PackageNotFoundError:
+        return {}
+    missing: dict[str, list[str]] = {}
+    for requirement in needed:
+        extra = re.search(r"extra == ['\"]([\w-]+)", requirement)
+        name = re.match(r"[\w.-]+", requirement)
+        if extra is None or name is None or extra[1] in _DEVELOPMENT:
+            continue
+        packages = missing.setdefault(extra[1], [])
+        try:
+            version(name[0])
+        except PackageNotFoundError:
+            packages.append(name[0])
+    return dict(sorted(missing.items()))
 
 
 def _line(name: str, value: str) -> None:
@@ -191,7 +218,7 @@ def _folders() -> list[JsonObject]:
 
 def _location() -> str:
     try:
-        return str(distribution("simkit-robotics").locate_file(""))
+        return str(distribution(_DISTRIBUTION).locate_file(""))
     except PackageNotFoundError:
         return "run from a checkout"
 

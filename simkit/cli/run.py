@@ -17,7 +17,7 @@ from simkit.cli.run_options import NONE_GIVEN, PARTS, GivenOptions, with_run_opt
 from simkit.cli.run_part import RunPart, complete_words, with_run_parts
 from simkit.cli.terminal import options
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins
-from simkit.cli.terminal.json_report import add_diagnostics, end_with_error, report_errors_and_json
+from simkit.cli.terminal.json_report import UsageError, add_diagnostics, end_with_error, report_errors_and_json
 from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import print_diagnostics, print_status
 from simkit.diagnostics import Diagnostic
@@ -34,7 +34,16 @@ class RunCommand(TyperCommand):
         args = complete_words(args)
         if not ctx.resilient_parsing:
             args = self._without_gazebo_options(args)
-        return super().parse_args(ctx, args)
+        try:
+            return super().parse_args(ctx, args)
+        except UsageError as error:
+            if getattr(getattr(error, "param", None), "name", None) != "world":
+                raise
+            from simkit.loaders.resources.bundled_models import bundled_worlds
+
+            raise UsageError(
+                f"no world is given; give a file or a world of simkit: {', '.join(bundled_worlds())}", ctx
+            ) from None
 
     def _without_gazebo_options(self, args: list[str]) -> list[str]:
         """Remove options of Gazebo that need no action, with a note; for other options of Gazebo, end the command."""

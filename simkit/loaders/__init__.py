@@ -19,6 +19,7 @@ from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.loaders.resources.bundled_models import (
     builtin_model,
     bundled_names,
+    bundled_worlds,
     find_bundled_model,
     find_bundled_world,
     turtlebot3_name,
@@ -171,7 +172,10 @@ def _document(source: str | os.PathLike[str], resolver: Resolver, diagnostics: D
         if bundled is None:
             near = sibling_names(path)
             near += bundled_names()
-            diagnostics.error("SK-LOAD-002", "no such file", Where(str(path)), did_you_mean(path.name, near))
+            hint = did_you_mean(path.name, near)
+            if not hint and len(path.parts) == 1:
+                hint = f"give a file, or a world of simkit: {', '.join(bundled_worlds())}"
+            diagnostics.error("SK-LOAD-002", "no such file", Where(str(path)), hint)
             return None
         path = bundled
     return parse_file(path, diagnostics)

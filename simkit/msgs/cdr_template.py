@@ -43,19 +43,20 @@ class CdrTemplate:
     Args:
         message: message with the constant fields; its type and its texts and arrays decide the places of all fields.
         fields: paths of the variable fields in the order of the definition: numbers such as `header.stamp.sec` or
-            `position[0]`, and for a packer also arrays of fixed length.
+            `position[0]`, and whole arrays such as `ranges`, which keep their length.
     """
 
     def __init__(self, message: Message, fields: tuple[str, ...]) -> None:
         self._data = msgs.serialize(message)
-        self._places: dict[str, tuple[int, str]] = {}
+        self._places: dict[str, tuple[int, str, int]] = {}  # place, code of a number, and number of them; 0 for one
         self._at = 0
         self._walk(msgs.type_name(message), message, "")
         self._fields = {field: self._places[field] for field in fields}
 
     @cached_property
     def _dtype(self) -> np.dtype[np.void]:
-        offsets, formats = zip(*self._fields.values(), strict=True)
+        formats = [f"({count},){code}" if count else code for _, code, count in self._fields.values()]
+        offsets = [offset for offset, _, _ in self._fields.values()]
         layout = {"names": list(self._fields), "formats": formats, "offsets": offsets, "itemsize": len(self._data)}
         return np.dtype(layout)  # type: ignore[call-overload,no-any-return]
 
@@ -64,22 +65,28 @@ class CdrTemplate:
         layout, at = "<", 0
         arguments: list[str] = []
         constants: list[bytes] = []
-        for number, (offset, code) in enumerate((*self._fields.values(), (len(self._data), ""))):
+        for number, (offset, code, count) in enumerate((*self._fields.values(), (len(self._data), "", 0))):
             if offset > at:
                 layout += f"{offset - at}s"
                 arguments.append(f"c{len(constants)}")
                 constants.append(self._data[at:offset])
             if code:
-                layout += code[1:]
+                size = max(1, count) * struct.calcsize(code)
+                layout += f"{size}s" if count else code[1:]
                 arguments.append(f"v{number}")
-                at = offset + struct.calcsize(code)
+                at = offset + size
         names = ", ".join(f"v{number}" for number in range(len(self._fields)))
         known = {"pack": struct.Struct(layout).pack, **{f"c{number}": part for number, part in enumerate(constants)}}
         packer: Callable[..., bytes] = eval(f"lambda {names}: pack({', '.join(arguments)})", known)
         return packer
 
     def fill(self, count: int, values: Mapping[str, npt.NDArray[np.generic]]) -> list[bytes]:
-        """Return `count` serialised messages with these values of the variable fields, each an array (count,)."""
+        """Return `count` serialised messages.
+
+        Args:
+            count: number of messages.
+            values: values of the variable fields, each an array (count,), or (count, length) for an array.
+        """
         rows = np.frombuffer(bytearray(self._data * count), self._dtype)
         for field, column in values.items():
             rows[field] = column
@@ -102,13 +109,13 @@ class CdrTemplate:
         elif kind == BASE:
             size = struct.calcsize(CODES[content[0]])
             self._at += -self._at % size
-            self._places[path] = self._at + _HEAD, f"<{CODES[content[0]]}"
+            self._places[path] = self._at + _HEAD, f"<{CODES[content[0]]}", 0
             self._at += size
         else:
             if kind != ARRAY:
                 self._at += -self._at % 4 + 4
-            elif isinstance(value, np.ndarray):
+            if isinstance(value, np.ndarray) and len(value):
                 self._at += -self._at % value.itemsize
-                self._places[path] = self._at + _HEAD, f"<{value.nbytes}s"
+                self._places[path] = self._at + _HEAD, f"<{CODES[content[0][1][0]]}", len(value)
             for index, item in enumerate(value):
                 self._step(content[0], item, f"{path}[{index}]")

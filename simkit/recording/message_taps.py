@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable
+from itertools import compress
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from simkit import msgs
-from simkit.errors import SimkitError
+from simkit.errors import MessageError, SimkitError
 from simkit.msgs.message_types import Message
 from simkit.runtime.communication.subscription import NO_MESSAGE, LazyMessage, Settle
 
@@ -18,7 +18,7 @@ Receiver = Callable[[Message | LazyMessage], None]
 """Callback for each message of a topic, which may be a `LazyMessage`."""
 _Source = TypeVar("_Source")
 Deliver = Callable[[list[_Source], list[int], list[Any]], None]
-_MOST_DEFERRED = 1 << 15  # queued messages at which those are delivered that are serialised together
+_MOST_DEFERRED = 1 << 13  # queued messages at which those are delivered that are serialised together
 
 
 def is_available(sim: Simulation, topic: str) -> bool:
@@ -73,13 +73,6 @@ class TopicTaps:
             self._taps[topic] = bus.tap(topic, receiver, takes_later=True, settle=self._settle)
 
 
-def serialised(message: Message | LazyMessage) -> object:
-    """Return the type and CDR of a message; NO_MESSAGE if the message cannot be made."""
-    if isinstance(message, LazyMessage):
-        return message.serialised()
-    return msgs.type_name(message), msgs.serialize(message)
-
-
 class MessageQueue(Generic[_Source]):
     """Queue that delivers messages in the order of their publication while some images are still being rendered.
 
@@ -87,44 +80,42 @@ class MessageQueue(Generic[_Source]):
     robots, a third of the time of a recording.
 
     Args:
-        deliver: callback with the sources of messages, their ticks or times, and the messages; a frozen message is two
-            items, type and CDR.
-        freeze: `serialised`, or a function like it. The publisher may change a message while it is queued, so every
-            message is delivered in this form. A message with `can_wait` is queued until `deliver_ready`, because many
-            at a time are serialised faster. Without `freeze` only images are queued: a message after an image
+        deliver: callback with the sources of messages, their ticks or times, and the messages; a serialised message is
+            a tuple of its type and CDR.
+        serialises: True to deliver every message as type and CDR. The publisher may change a message while it is
+            queued, so it is serialised at once. A message with `can_wait` is queued until `deliver_ready`, because
+            many at a time are serialised faster. Without `serialises` only images are queued: a message after an image
             then waits until the image is rendered.
+        drops_invalid: True to drop a message that cannot be serialised, instead of raising the MessageError.
     """
 
-    def __init__(
-        self, deliver: Deliver[_Source], freeze: Callable[[Message | LazyMessage], object] | None = None
-    ) -> None:
-        self._deliver, self._freeze, self._resolve = deliver, freeze, freeze or _made
-        self._waiting: deque[Any] = deque()  # source, tick and message in turn
+    def __init__(self, deliver: Deliver[_Source], *, serialises: bool = False, drops_invalid: bool = False) -> None:
+        self._deliver, self._serialises, self._drops_invalid = deliver, serialises, drops_invalid
+        self._waiting: list[Any] = []  # source, tick and message in turn
+        self._has_pending = False  # True if a queued message may wait for another thread
 
     def add(self, source: _Source, tick: int, message: Message | LazyMessage) -> None:
         """Deliver a message that was just published, or queue the message if an image before it is not rendered yet."""
-        freeze, waiting = self._freeze, self._waiting
+        waiting = self._waiting
         is_lazy = isinstance(message, LazyMessage)
-        if is_lazy and freeze is not None and message.can_wait:
+        if is_lazy and self._serialises and message.can_wait:
             waiting += source, tick, message
             if len(waiting) > 3 * _MOST_DEFERRED:
                 self.deliver_ready()
             return
         is_pending = is_lazy and not message.is_ready
-        if not (waiting or is_pending):
-            self._deliver_one(source, tick, self._resolve(message))
-            return
-        if freeze is not None and not is_pending:
-            message = freeze(message)
+        if not (is_pending or self._serialises or is_lazy) and waiting:
+            self.deliver_all()
+        if not is_pending:
+            message = self._content(message)
             if message is NO_MESSAGE:
                 return
-        elif not is_lazy:
-            self.deliver_all()
-            self._deliver_one(source, tick, message)
-            return
+            if not waiting:
+                self._deliver([source], [tick], [message])
+                return
+        self._has_pending |= is_pending
         waiting += source, tick, message
-        first = waiting[2]
-        if is_pending or not (isinstance(first, LazyMessage) and first.can_wait):
+        if self._has_pending:
             self.deliver_ready()
 
     def deliver_ready(self) -> None:
@@ -135,46 +126,58 @@ class MessageQueue(Generic[_Source]):
         """Deliver all messages; wait for the rendering of images."""
         self._deliver_queued(waits=True)
 
-    def _deliver_one(self, source: _Source, tick: int, message: Message) -> None:
-        if message is not NO_MESSAGE:
-            self._deliver([source], [tick], [message] if self._freeze is None else [*message])
+    def _content(self, message: Message | LazyMessage) -> object:
+        """Return what is delivered of a message; NO_MESSAGE if it cannot be made."""
+        is_lazy = isinstance(message, LazyMessage)
+        if not self._serialises:
+            return message.get() if is_lazy else message
+        try:
+            return message.serialised() if is_lazy else (msgs.type_name(message), msgs.serialize(message))
+        except MessageError:
+            if not self._drops_invalid:
+                raise
+            return NO_MESSAGE
 
     def _deliver_queued(self, waits: bool) -> None:
-        waiting, resolve, take = self._waiting, self._resolve, self._waiting.popleft
-        sources: list[_Source] = []
-        ticks: list[int] = []
-        delivered: list[Any] = []
-        keep = delivered.append if self._freeze is None else delivered.extend
+        waiting = self._waiting
+        if not waiting:
+            return
+        queued, self._has_pending = waiting[:], self._has_pending and not waits
+        if self._has_pending:
+            end = next((i - 2 for i in range(2, len(queued), 3) if _is_pending(queued[i])), len(queued))
+            self._has_pending, queued = end < len(queued), queued[:end]
+        del waiting[: len(queued)]
+        contents: list[Any] = []
+        has_gaps, count = False, 0
         try:
-            while waiting:
-                message = waiting[2]
-                is_lazy = isinstance(message, LazyMessage)
-                if is_lazy and not (waits or message.can_wait or message.is_ready):
-                    break
-                source, tick, _ = take(), take(), take()
-                if is_lazy:  # else it is already frozen
-                    message = resolve(message)
-                    if message is NO_MESSAGE:
-                        continue
-                keep(message)
-                sources.append(source)
-                ticks.append(tick)
+            for message in queued[2::3]:
+                count += 1
+                content = self._content(message) if isinstance(message, LazyMessage) else message
+                has_gaps |= content is NO_MESSAGE
+                contents.append(content)
         finally:
-            if sources:
-                self._deliver(sources, ticks, delivered)
+            if queued[3 * count :]:  # after an error
+                waiting[:0], self._has_pending = queued[3 * count :], True
+            sources, ticks = queued[: 3 * len(contents) : 3], queued[1 : 3 * len(contents) : 3]
+            if has_gaps:
+                kept = [content is not NO_MESSAGE for content in contents]
+                sources, ticks, contents = (list(compress(column, kept)) for column in (sources, ticks, contents))
+            if contents:
+                self._deliver(sources, ticks, contents)
 
     def __len__(self) -> int:
         return len(self._waiting) // 3
 
     def drop_oldest(self) -> None:
         """Drop the oldest message."""
-        for _ in range(3):
-            self._waiting.popleft()
+        del self._waiting[:3]
 
     def clear(self) -> None:
         """Drop all queued messages."""
         self._waiting.clear()
+        self._has_pending = False
 
 
-def _made(message: Message | LazyMessage) -> Message:
-    return message.get() if isinstance(message, LazyMessage) else message
+def _is_pending(message: object) -> bool:
+    """Check for a message that waits for another thread."""
+    return isinstance(message, LazyMessage) and not (message.can_wait or message.is_ready)

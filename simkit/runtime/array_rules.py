@@ -49,9 +49,12 @@ class SensorRule(abc.ABC):
 
     Attributes:
         inputs: names of the arrays of MuJoCo's data that the rule reads, such as `xpos`.
+        convert: function from the sensor's first message to its numbers, for rules that make messages; the batch sets
+            it before the first reading.
     """
 
     inputs: tuple[str, ...] = ()
+    convert: Callable[[Any], npt.NDArray[Any]]
 
     @abc.abstractmethod
     def bind(self, states: StateArrays, *, is_truth: bool) -> None:

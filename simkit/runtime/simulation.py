@@ -258,17 +258,21 @@ class Simulation(ScriptGraph, InProcess):
                 engine.faults.task(plugin, "reset")(0)
 
     @journaled
-    def snapshot(self) -> Snapshot:
+    def snapshot(self, *, compact: bool = False) -> Snapshot:
         """Return the whole state; a run that is restored to it repeats bit for bit.
 
         If a hook or a callback requests a snapshot, the state is stored in the snapshot at the end of the present step.
         Use this snapshot only after the step.
+
+        Args:
+            compact: leave out what follows from the state. Such a snapshot takes a fifth of the memory, is faster, and
+                cannot be pickled. It has no effect during a step, and where bodies may sleep.
         """
         self.engine.check_open()
         if self._programs is not None:
             self._programs.note_snapshot()
         if not self.engine.is_stepping:
-            return self._snapshots.take()
+            return self._snapshots.take(compact=compact)
         snapshot, keep = self._snapshots.defer()
         self.engine.loop.defer(keep)
         return snapshot

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, Final
 
+import mujoco
 import numpy as np
 import numpy.typing as npt
 
@@ -14,6 +16,11 @@ from simkit.runtime.simulation import Simulation
 
 Floats = npt.NDArray[np.float64]
 
+ReadState = Callable[[int], tuple[mujoco.MjModel, mujoco.MjData]]
+"""Function that returns model and data of one simulation; the data have its state, but no forward pass."""
+
+_VELOCITIES: Final = int(mujoco.mjtStage.mjSTAGE_VEL)
+
 
 class StateArrays:
     """States of n simulations of one world; the first axis of every array is the simulation.
@@ -21,6 +28,8 @@ class StateArrays:
     Args:
         sim: ordinary simulation that resets all others.
         batch: MuJoCo's batch of the simulations.
+        read_state: function that returns model and data of one simulation; the data have its state, but no forward
+            pass, and are valid until the next call.
 
     Attributes:
         sim: the same simulation.
@@ -28,13 +37,15 @@ class StateArrays:
         threads: number of threads.
         qpos, qvel, ctrl: positions, velocities and controls of MuJoCo's data.
         servos: velocity servos.
+        has_moved: True after the first step.
     """
 
-    def __init__(self, sim: Simulation, batch: Any) -> None:
-        self.sim, self._batch = sim, batch
+    def __init__(self, sim: Simulation, batch: Any, read_state: ReadState) -> None:
+        self.sim, self._batch, self.state_of = sim, batch, read_state
         self.count: int = batch.nsim
         self.threads: int = batch.nthread
         self._fields: dict[str, Floats] = {}
+        self.has_moved = False
         self.qpos, self.qvel, self.ctrl = self.field("qpos"), self.field("qvel"), self.field("ctrl")
         self.servos = VelocityServoRows(sim.engine.velocity_servos, self.count, self.qpos, self.qvel, self.ctrl)
         self._frames: dict[str, tuple[int, Pose | None]] = {}
@@ -43,7 +54,13 @@ class StateArrays:
         """Return an array of MuJoCo's data, such as `xpos` with the shape (count, bodies, 3)."""
         if name not in self._fields:
             self._fields[name] = self._batch.bind(name)
+            if self.has_moved:  # the array of a new field is zero until the next call of the engine
+                self._batch.forward(None, _VELOCITIES)
         return self._fields[name]
+
+    def time_ns_of(self, row: int) -> int:
+        """Return the time of one simulation [ns]."""
+        return self.sim.engine.clock.time_ns(round(float(self.field("time")[row]) / self.sim.timestep))
 
     # ------------------------------------------------------------------ poses and velocities
 

@@ -146,6 +146,10 @@ class Sensor(Sampler):
 
     # ------------------------------------------------------------------ readings
 
+    def make_first_message(self, reading: Reading, time_ns: int) -> Message:
+        """Return the message of a reading that `latest` would show."""
+        return self._products[next(iter(self._topics))].make(reading, time_ns)
+
     @property
     def topics(self) -> Mapping[str, str]:
         """Topic of each product that is published."""
@@ -304,9 +308,6 @@ class Sensor(Sampler):
     def bind(self, compiled: Compiled) -> None:
         """Find the sensor in a compiled model; called again after every change of structure."""
         self._finish_kept_samples()  # the physics states of the samples belong to the previous model
-        for _, publisher, _ in self._publishers:
-            # messages that wait for a reader belong to the previous model too
-            self.sim.communication.bus.settle_topic(publisher.topic)
         self._link_name = self._find_link(compiled.names)
         link = compiled.names.link(self._link_name)
         self._body = int(link.body)
@@ -370,6 +371,8 @@ class Sensor(Sampler):
         self._process_pending()
         for sample in self._kept_samples():
             self._finish_sample(sample)
+        for _, publisher, _ in self._publishers:  # messages that wait for a reader
+            self.sim.communication.bus.settle_topic(publisher.topic)
 
     def _noise_changed(self) -> None:
         super()._noise_changed()

@@ -38,16 +38,19 @@ class SampleGroup:
         product: product that is published.
 
     Attributes:
+        product: product that is published.
         ticks, captures: tick and captured values of each sample.
+        packed: type and CDR of each message; None until one of them is serialised, empty if they are made one by one.
     """
 
     def __init__(self, sampler: GroupedSampler, product: str) -> None:
-        self._sampler, self._product = sampler, product
+        self._sampler, self.product = sampler, product
         self._first = 0  # number of the first sample
         self.ticks: list[int] = []
         self.captures: list[Reading] = []
         self._samples: dict[int, Sample] = {}
-        self._packed: Sequence[bytes] | None = None
+        self.packed: list[tuple[str, bytes]] | None = None
+        self._type_name = sampler._products[product].type_name
 
     def add(self, tick: int, captured: Reading) -> PackedMessage:
         """Add a sample; return its message."""
@@ -71,16 +74,14 @@ class SampleGroup:
 
     def message(self, position: int) -> Message:
         """Return the message of a sample."""
-        return self._sampler._message(self.sample(position), self._product)
+        return self._sampler._message(self.sample(position), self.product)
 
     def serialised(self, position: int) -> tuple[str, bytes]:
-        """Return the type and the CDR of the message of a sample."""
-        packed = self._packed
-        if packed is None:
+        """Return the type and the CDR of the message of a sample; the first call serialises all samples."""
+        if self.packed is None:
             self._sampler._end_group(self)
-            packed = self._packed = self._pack()
-        type_name = self._sampler._products[self._product].type_name
-        return type_name, packed[position] if packed else msgs.serialize(self.message(position))
+            self.packed = [(self._type_name, data) for data in self._pack()]
+        return self.packed[position] if self.packed else (self._type_name, msgs.serialize(self.message(position)))
 
     def _pack(self) -> Sequence[bytes]:
         if len(self.ticks) < _MIN_SAMPLES:
@@ -102,4 +103,5 @@ class PackedMessage(LazyMessage):
         return self._group.message(self._position)
 
     def serialised(self) -> object:
-        return self._group.serialised(self._position)
+        packed = self._group.packed
+        return packed[self._position] if packed else self._group.serialised(self._position)

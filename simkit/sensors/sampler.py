@@ -15,6 +15,7 @@ from simkit.runtime import Publisher, Simulation
 from simkit.runtime.communication.subscription import LazyMessage, PendingWork
 from simkit.runtime.engine.physics_state import HeldState
 from simkit.runtime.engine.scheduler import Timetable
+from simkit.runtime.engine.simulated_time import TickGrid
 from simkit.sensors.artefacts import Artefact, MessageArtefact
 from simkit.sensors.lasting_samples import LastingSample, LastingSamples, LastingTimetable
 from simkit.sensors.noise import NoiseKeeper
@@ -40,6 +41,7 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
     lasting: LastingSamples | None = None  # samples that are being measured, of a kind whose measurement lasts
     is_manual = False  # True if only calls of `sample` take samples, and none are taken at the rate
     _times: SampleTimes
+    _is_switched = False  # True if the sensor can be without power
 
     def __init__(self) -> None:
         super().__init__()
@@ -52,7 +54,7 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         self._group: SampleGroup | None = None  # samples whose readers do not need them at once
         self._revision, self._patience = -1, 0.0
         self._read_publishers: list[tuple[str, Publisher, bool]] = []
-        self._is_read = self._gathers = self._is_served = self._is_unread = False
+        self._is_read = self._gathers = self._is_served = self._is_unread = self._is_direct = False
         self._skipped = 0  # unread samples; only the last of them can still be read
         self._held: tuple[int, HeldState] | None = None  # tick and physics state of that last sample
         self._index, self._time_ns = 0, -1
@@ -75,7 +77,7 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
 
     def sample_only_while(self, is_on: Callable[[], bool]) -> None:
         """Sample at due times only while `is_on()` returns true; a sensor without power has no samples."""
-        self._is_on, self._selects_ticks = is_on, True
+        self._is_on, self._selects_ticks, self._is_switched = is_on, True, True
 
     def _overrides(self, method: str) -> bool:
         return getattr(type(self), method) is not getattr(Sampler, method)
@@ -89,6 +91,10 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
     def capture(self, model: mujoco.MjModel, data: mujoco.MjData) -> object:
         """Copy from the data the values that `finish` needs; by default, the reading itself."""
         return self.measure(model, data)
+
+    def capture_other(self, model: mujoco.MjModel, data: mujoco.MjData) -> object:
+        """Capture a state of another simulation of the same world, whose forward pass is up to date."""
+        return self.capture(model, data)
 
     def capture_held(self, model: mujoco.MjModel, data: mujoco.MjData, sample: Sample) -> object:
         """Capture the physics state held for a sample; overridden by kinds that measure more than the physics."""
@@ -113,10 +119,14 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
     def check_available(self) -> None:
         """Raise a SimkitError if this machine cannot make the readings; called for every reader of a reading."""
 
+    def packs(self, product: str) -> bool:
+        """Check whether `pack_samples` can serialise a product, and whether captures are small enough to be stored."""
+        return False
+
     def pack_samples(self, first: int, times: Sequence[int], captures: Sequence[Reading]) -> Sequence[bytes]:
         """Return the serialised messages of samples; empty if only `finish` and the product can make them now.
 
-        Overridden by kinds with one product and many samples a second, whose noise does not drift.
+        Overridden by kinds with many samples a second, whose noise does not drift.
 
         Args:
             first: number of the first sample.
@@ -124,6 +134,14 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
             captures: captured values of each sample.
         """
         return ()
+
+    @property
+    def makes_directly(self) -> bool:
+        """True if `make_directly` makes the message of the only product with the present noise."""
+        return False
+
+    def make_directly(self, raw: Reading, index: int, time_ns: int) -> Message:
+        """Return the message of a sample from its captured values, because a reading takes as long as a message."""
 
     # a kind whose measurement lasts sets `lasting` before it is attached, and overrides the next four methods and
     # `capture_held`, which makes the reading from the surroundings that `end_measurement` returns
@@ -151,7 +169,12 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
     def keeps_to_grid(self) -> bool:
         """True if a message is published at every tick of the rate and phase, with noise that does not drift."""
         is_plain = self._delayed is None and self.timing.jitter == 0 and not self._evolves
-        return is_plain and not (self._selects_ticks or self._selects_products_of_sample)
+        return is_plain and not (self.selects_ticks or self._selects_products_of_sample)
+
+    @property
+    def selects_ticks(self) -> bool:
+        """True if the sensor may take no sample at a due tick."""
+        return self._selects_ticks
 
     @property
     def is_read_now(self) -> bool:
@@ -184,6 +207,15 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
             # measured in the present data, whose forward pass the next step needs anyway
             sample.raw, sample.held = self._capture_now(tick), None
 
+    def _publish_directly(self, tick: int) -> None:
+        """Publish the message that `make_directly` returns for a new sample."""
+        index, time_ns = self._index + 1, self.sim.engine.clock.time_ns(tick)
+        raw = self._capture_now(tick)
+        sample = Sample(index, time_ns)
+        sample.raw = raw  # read by `latest` and `truth`
+        message = sample.messages[next(iter(self._products))] = self.make_directly(raw, index, time_ns)
+        self.publish_made(sample, message)
+
     def publish_made(self, sample: Sample, message: Message) -> None:
         """Take over a sample whose only message a batch has made, and publish it."""
         self._index, self._time_ns, self._newest = sample.index, sample.time_ns, sample
@@ -213,6 +245,23 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         """Return the ticks at which the scenery must have its pose; None is every step."""
         return None if self.lasting is not None else self.timetable()
 
+    @property
+    def is_silent(self) -> bool:
+        """True if a sample calls no code that may read another sensor."""
+        if self._revision != self.sim.communication.bus.revision:
+            self._update_readers()
+        return not self._read_publishers
+
+    @property
+    def keeps_last(self) -> bool:
+        """True if only the last of several samples at due ticks can be read; `skip` counts the others."""
+        is_usual = self.lasting is None and not (self._selects_ticks or self._overrides("sample"))
+        return is_usual and self.is_silent and self._is_unread and isinstance(self.timetable(), TickGrid)
+
+    def skip(self, count: int) -> None:
+        """Count samples that are not taken, because only a later one can be read."""
+        self._skipped += count
+
     def sample(self, tick: int) -> None:
         """Sample at a due tick: measure and publish if the sensor has a reader, else keep the physics state."""
         if self._delayed is not None:
@@ -230,10 +279,14 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
             self._skipped += 1
             self._held = tick, sim.engine.physics.hold()
             return
-        # every reader needs its message at once: a batch makes the messages of its sensors together
-        is_batched = self._is_served and not self.artefacts
-        if is_batched and self.batch is not None and self.batch.publish_sample(self, tick):
-            return
+        # every reader needs its message at once: a batch makes the messages of its sensors together, and a kind may
+        # make its message from the captured values, without a reading
+        if self._is_served and not self.artefacts:
+            if self.batch is not None and self.batch.publish_sample(self, tick):
+                return
+            if self._is_direct:
+                self._publish_directly(tick)
+                return
         if self._group is not None:  # no reader needs its message at once: many samples become messages together
             packed = self._group.add(tick, self._capture_now(tick))
             for _, publisher, _ in self._read_publishers:
@@ -381,14 +434,12 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         # a drifting noise advances at every sample, and a delayed sample is delivered later, so neither is skipped
         self._is_unread = not (self._read_publishers or changes or self._delayed or self._needs_each_sample)
         self._patience = max(patience, default=0.0)
-        is_packed = is_plain and self.is_deferred and not changes and self._overrides("pack_samples")
-        is_packed = (
-            is_packed
-            and self._is_read
-            and not self.artefacts
-            and not any(publisher.is_live for publisher in publishers)
-        )
-        self._group = SampleGroup(self, next(iter(self._products))) if is_packed else None
+        self._is_direct = is_plain and self._is_read and not changes and self.makes_directly
+        products = {product for product, _, _ in self._read_publishers}
+        is_packed = is_plain and self.is_deferred and self._is_read and not (changes or self.artefacts)
+        is_packed = is_packed and not any(publisher.is_live for publisher in publishers)
+        is_packed = is_packed and len(products) == 1 and self.packs(*products)
+        self._group = SampleGroup(self, *products) if is_packed else None
 
     def _process_pending(self) -> None:
         """Make samples of the gathered captures, and publish the newest ones, which a reader's queue can keep."""
@@ -416,7 +467,7 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
             count = len(group.ticks)
             self._index, self._time_ns = self._index + count, self.sim.engine.clock.time_ns(group.ticks[-1])
             self._newest = group.sample(count - 1)
-            self._group = SampleGroup(self, next(iter(self._products)))
+            self._group = SampleGroup(self, group.product)
 
     def _apply_rate(self, rate: float) -> None:
         self.update_rate = rate

@@ -58,14 +58,13 @@ def check_folder(path: Path) -> None:
 
 
 def check_target(path: Path, folder: str, *, overwrite: bool) -> None:
-    """Check that a file and its asset folder can be written.
+    """Check that a file and its asset folder can be written; missing parent folders are no obstacle.
 
     Raises:
-        InputError: SK-CLI-016 a path exists, or the parent folder does not exist.
+        InputError: SK-CLI-016 a path exists, or no folder can be made for the file.
     """
-    absolute = path.absolute()
-    if not absolute.parent.is_dir():
-        raise InputError("SK-CLI-016", f"folder {absolute.parent} does not exist")
+    if not path.absolute().parent.is_dir() and (reason := write_obstacle(path)):
+        raise InputError("SK-CLI-016", f"cannot write {path}: {reason}")
     check_file(path, overwrite=overwrite)
     asset_folder = path.with_name(folder)
     if asset_folder.exists() and not overwrite:
@@ -78,6 +77,8 @@ def _report_existing(path: Path) -> InputError:
 
 class AtomicOutput:
     """File with an asset folder, written to a hidden folder and moved to its path at the end.
+
+    Missing parent folders are made, and removed again if nothing was written.
 
     Args:
         path: file to write.
@@ -96,9 +97,13 @@ class AtomicOutput:
         self._path, self._asset_folder = path.absolute(), path.absolute().with_name(folder)
 
     def __enter__(self) -> AtomicOutput:
+        parent = self._path.parent
+        self._new_folders = [each for each in (parent, *parent.parents) if not each.exists()]
         try:
-            self._stage = Path(tempfile.mkdtemp(prefix=f".{self._path.stem}.", dir=self._path.parent))
+            parent.mkdir(parents=True, exist_ok=True)
+            self._stage = Path(tempfile.mkdtemp(prefix=f".{self._path.stem}.", dir=parent))
         except OSError as error:
+            self._remove_empty_folders()
             raise self._failed(error) from None
         self.file, self.folder = self._stage / self._path.name, self._stage / self._asset_folder.name
         return self
@@ -113,8 +118,15 @@ class AtomicOutput:
             raise self._failed(problem) from None
         finally:
             shutil.rmtree(self._stage, ignore_errors=True)
+            self._remove_empty_folders()
         if isinstance(error, OSError):
             raise self._failed(error) from None
+
+    def _remove_empty_folders(self) -> None:
+        """Remove the folders that were made for the output, if nothing is in them."""
+        for folder in self._new_folders:
+            with suppress(OSError):
+                folder.rmdir()
 
     def _move(self) -> None:
         """Move the folder first, because the file refers to it."""

@@ -132,6 +132,9 @@ def test_a_world_that_is_not_there_is_one_message(world: Path) -> None:
     assert "SK-LOAD-002" in result.stderr
     assert "did you mean 'ball.sdf'" in result.stderr
     assert not (world.parent / "run.mcap").exists()
+    listed = "give a file, or a world of simkit: "
+    assert listed in simkit("run", "nothing_like_it", "--duration", 1).stderr
+    assert listed not in simkit("run", "folder/nothing_like_it", "--duration", 1).stderr
 
 
 @pytest.mark.parametrize(
@@ -241,7 +244,7 @@ def test_convert_writes_files_that_mujoco_opens(world: Path) -> None:
     assert model.body("ball::body").mass[0] == 1.0
     assert model.nq == 7
     assert simkit("convert", world, "-o", "ball.xml").exit_code == 2
-    assert simkit("convert", world, "-o", "no/ball.xml").exit_code == 2
+    assert simkit("convert", world, "-o", "new/ball.xml").exit_code == 0
 
 
 def test_bag_recover_completes_a_bag(world: Path) -> None:
@@ -264,6 +267,18 @@ def test_doctor_names_versions_and_the_renderer_with_its_speed() -> None:
     assert re.search(r"^picture +320 × 240 px in \S+ ms$", result.stdout, re.MULTILINE)
     assert "no problems found" in result.stdout
     assert "ImportError: cannot import name" not in result.stdout, "the drawing process uses the modules of today"
+
+
+@pytest.mark.slow
+def test_doctor_lists_extras_and_the_packages_that_they_miss(monkeypatch: pytest.MonkeyPatch) -> None:
+    needed = [
+        "numpy>=2.0",
+        "pytest; extra == 'tests-of-mine'",
+        "no-such-package>=1; (os_name == 'nt') and extra == 'odd'",
+    ]
+    monkeypatch.setattr("simkit.cli.doctor.requires", lambda _: needed)
+    assert json.loads(simkit("doctor", "--json").stdout)["extras"] == {"odd": ["no-such-package"], "tests-of-mine": []}
+    assert "odd (no-such-package)" in simkit("doctor").stdout
 
 
 @pytest.mark.slow

@@ -137,8 +137,17 @@ def test_output_is_replaced_only_by_force_and_nothing_is_half_written(here: Path
     assert {p: p.read_bytes() for p in here.rglob("*") if p.is_file()} == before
     assert run("convert", arm, "-o", "arm.xml", "--force").exit_code == 0
     assert {p: p.read_bytes() for p in here.rglob("*") if p.is_file()} == before
-    assert run("convert", arm, "-o", "nowhere/arm.xml").exit_code == 2
     assert run("convert", arm, "-o", "arm.usd").exit_code == 2
+
+
+def test_missing_folders_of_the_output_are_made_and_removed_again_after_an_error(here: Path) -> None:
+    assert run("convert", "arm_description/meshes/base.mtl", "-o", "new/folder/arm.xml").exit_code == 2
+    assert not (here / "new").exists()
+    assert run("convert", "arm_description/urdf/arm.urdf", "-o", "new/folder/arm.xml").exit_code == 0
+    assert (here / "new" / "folder" / "arm.xml").is_file()
+    below_a_file = run("convert", "arm_description/urdf/arm.urdf", "-o", "new/folder/arm.xml/arm.xml")
+    assert below_a_file.exit_code == 2
+    assert "is not a folder" in below_a_file.stderr
 
 
 # ---------------------------------------------------------------------- SDF

@@ -92,7 +92,7 @@ def test_a_file_that_is_not_there_is_a_diagnostic(words: str, world: Path) -> No
     ("words", "message"),
     [
         ("run ball.sdf --durration 3", "No such option: --durration"),
-        ("run", "Missing argument"),
+        ("run", "no world is given; give a file or a world of simkit: "),
         ("run ball.sdf --seed x", "Invalid value for '--seed'"),
         ("run ball.sdf --timeout 3", "--timeout needs --until"),
         ("golden check", "Missing argument"),

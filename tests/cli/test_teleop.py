@@ -265,7 +265,7 @@ def test_the_key_n_advances_one_step_and_pauses() -> None:
         assert sim.paused
 
 
-def test_keys_after_a_step_wait_for_its_end() -> None:
+def test_keys_after_a_step_wait_for_its_end(capfd: pytest.CaptureFixture[str]) -> None:
     with simkit.load(world()) as sim:
         sim.paused = True
         keys = RunKeys(sim, Hands(sim, {0.0: "n.n ", 0.006: "x"}))
@@ -275,6 +275,7 @@ def test_keys_after_a_step_wait_for_its_end() -> None:
             sim.control.pausing.advance(10)
             ticks.append(sim.tick)
         assert ticks == [1, 2, 3, 13, 23]
+        assert capfd.readouterr().err.splitlines() == [f"t={step * sim.timestep:g} s" for step in (1, 2, 3)]
         sim.control.pausing.step(1)
         sim.reset()  # takes the step back, and nothing waits for it
         keys.press(" ")

@@ -46,3 +46,16 @@ def test_a_packer_places_numbers_and_whole_arrays() -> None:
         linear_acceleration={"x": -3.5},
     )
     assert pack(7, 0.25, np.arange(9.0).tobytes(), -3.5) == msgs.serialize(expected)
+
+
+def test_whole_lists_of_numbers_are_replaced() -> None:
+    fields = ("header.stamp.sec", "range_max", "ranges")
+    constant = {"header": {"frame_id": "abcd"}, "ranges": [0.0] * 3, "intensities": [1.0, 2.0]}
+    template = CdrTemplate(msgs.make("sensor_msgs/msg/LaserScan", **constant), fields)
+    rows = np.array([[1.0, np.inf, 3.0], [0.1, 0.2, -0.3]])
+    found = template.fill(2, dict(zip(fields, (np.array([5, 6]), np.array([7.0, 8.0]), rows), strict=True)))
+    for number, row in enumerate(rows):
+        changed = {"header": {"frame_id": "abcd", "stamp": {"sec": 5 + number}}, "range_max": 7.0 + number}
+        message = msgs.make("sensor_msgs/msg/LaserScan", **{**constant, **changed, "ranges": row})
+        assert found[number] == msgs.serialize(message)
+        assert template.packer()(5 + number, 7.0 + number, message.ranges.tobytes()) == found[number]

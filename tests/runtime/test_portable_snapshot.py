@@ -165,3 +165,18 @@ def test_a_run_specification_can_be_pickled() -> None:
         spec = sim.run_spec
     content = pickle.dumps(spec)
     assert pickle.loads(content) == spec and len(content) < 2000
+
+
+def test_a_compact_snapshot_repeats_the_run_and_cannot_be_pickled() -> None:
+    with simkit.load("turtlebot3_world", seed=3) as sim:
+        sim.publish("/cmd_vel", {"linear": {"x": 0.2}, "angular": {"z": 0.7}})
+        sim.step(100)
+        before, small = sim.snapshot(), sim.snapshot(compact=True)
+        found = []
+        for snapshot in (before, small):
+            sim.restore(snapshot)
+            sim.step(150)
+            found.append((state_hash(sim), str(sim.sensor("turtlebot3::imu_link::imu").latest)))
+        assert found[0] == found[1]
+        with pytest.raises(ValueError, match="compact"):
+            pickle.dumps(small)

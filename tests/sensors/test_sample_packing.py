@@ -57,6 +57,7 @@ ACTIONS: dict[str, Action] = {
     "rate": lambda sim: sim.sensor("ball::body::imu").set_rate(100.0),
     "latest": lambda sim: sim.sensor("ball::body::imu").latest,
     "reference": turn_reference,
+    "other noise": lambda sim: setattr(sim.sensor("ball::body::imu"), "noise", 0.2),
     "more noise": lambda sim: sim.sensor("ball::body::imu").add_white_noise(0.1),
     "spawn": lambda sim: sim.spawn('<sdf version="1.9"><model name="rock"><link name="a"/></model></sdf>'),
     "listen": lambda sim: sim.subscribe("/imu", lambda _: None),
@@ -120,6 +121,53 @@ def test_the_bytes_are_those_of_the_messages_for_any_options_of_the_sensor(
         sim.run(0.5)
         assert list(map(msgs.serialize, kept.messages))[-1] == msgs.serialize(sim.sensor("ball::body::imu").latest)
     assert list(recorded(path)) == [msgs.serialize(message) for message in kept.messages]
+
+
+LIDAR = """
+<sdf version="1.9"><world name="w">
+  <model name="wall"><static>true</static><pose>2 0 0 0 0 0</pose>
+    <link name="a"><collision name="c"><geometry><box><size>1 4 4</size></box></geometry></collision></link></model>
+  <model name="ball"><pose>0 0 50 0 0 0.3</pose>
+    <link name="body">
+      <inertial><mass>1</mass><inertia><ixx>0.1</ixx><iyy>0.2</iyy><izz>0.3</izz></inertia></inertial>
+      <sensor name="lidar" type="lidar"><update_rate>100</update_rate><topic>scan</topic>
+        <lidar><scan><horizontal><samples>37</samples><min_angle>-2</min_angle><max_angle>2</max_angle></horizontal>
+        <vertical><samples>3</samples><min_angle>-0.1</min_angle><max_angle>0.1</max_angle></vertical></scan>
+        <range><min>0.2</min><max>3</max></range>
+        <noise><type>gaussian</type><mean>0.001</mean><stddev>0.5</stddev></noise></lidar>
+      </sensor>
+    </link>
+  </model>
+</world></sdf>
+"""
+LIDAR_ACTIONS: dict[str, Action] = {
+    "nothing": nothing,
+    "reset": lambda sim: sim.reset(seed=5),
+    "restore": restore,
+    "rate": lambda sim: sim.sensor("ball::body::lidar").set_rate(50.0),
+    "frame": lambda sim: (sim.communication.bus.settle(), sim.sensor("ball::body::lidar").set_frame_id("other")),
+    "noise": lambda sim: setattr(sim.sensor("ball::body::lidar"), "noise", 0.2),
+    "more noise": lambda sim: (sim.communication.bus.settle(), sim.sensor("ball::body::lidar").add_ray_noise(0.1)),
+    "spawn": lambda sim: sim.spawn('<sdf version="1.9"><model name="rock"><link name="a"/></model></sdf>'),
+    "listen": lambda sim: sim.subscribe("/scan", lambda _: None),
+    "keep": lambda sim: sim.subscribe("/scan"),
+    "clouds": lambda sim: sim.communication.bus.tap("/scan/points", lambda _: None, takes_later=True),
+}
+
+
+@pytest.mark.parametrize("action", LIDAR_ACTIONS)
+def test_a_recording_of_a_lidar_has_the_bytes_of_scans_that_are_made_at_once(tmp_path: Path, action: str) -> None:
+    made: list[bytes] = []
+    with simkit.load(LIDAR) as sim:
+        sim.communication.bus.tap("/scan", lambda message: made.append(msgs.serialize(message)))
+        run(sim, LIDAR_ACTIONS[action])
+    with simkit.load(LIDAR) as sim, Recorder(sim, tmp_path / "a.mcap", topics=("/scan",)):
+        run(sim, LIDAR_ACTIONS[action])
+        assert (sim.sensor("ball::body::lidar")._group is not None) == (action not in ("listen", "keep", "clouds"))
+    with (tmp_path / "a.mcap").open("rb") as file:
+        found = [message.data for _, _, message in make_reader(file).iter_messages(log_time_order=False)]
+    assert found == made
+    assert len(made) > 90
 
 
 def test_a_recorded_sensor_makes_no_message_and_counts_its_samples(tmp_path: Path) -> None:

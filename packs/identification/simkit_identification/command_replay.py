@@ -7,10 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from simkit import RunSpec
 from simkit.errors import InputError
+from simkit.recording import open_bag_to_read
 from simkit.recording.bags.playback import Playback
-from simkit.recording.bags.reader import open_bag_to_read
-from simkit.run_spec import RunSpec
 
 if TYPE_CHECKING:
     from simkit import Simulation

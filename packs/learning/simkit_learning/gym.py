@@ -57,7 +57,7 @@ def make_vec(
     *,
     num_envs: int,
     batch: bool | None = None,
-    processes: bool | None = None,
+    processes: bool | int | None = None,
     autoreset: Autoreset = "next_step",
     threads: int = 0,
     **options: Unpack[EnvironmentOptions],
@@ -73,7 +73,10 @@ def make_vec(
         num_envs: number of environments.
         batch: True for a batch or an error; False for no batch; None for a batch where the parts allow it.
         processes: True runs each environment in a process of its own, with shared memory for observations. False runs
-            all of them in the present process, one after another. None for a batch, or else processes.
+            all of them in the present process, one after another, each in a simulation of its own. With a number, so
+            many processes have one simulation each, in which their environments take turns; 1 is the present process.
+            None for a batch, or else a process for each environment, or for more than four environments for each
+            processor, a process for each processor.
         autoreset: start of the next episode: "next_step", "same_step" or "disabled", as Gymnasium defines these words.
         threads: number of threads of a batch; 0 for all processors.
         options: options of `make`.

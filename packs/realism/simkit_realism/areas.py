@@ -10,7 +10,7 @@ from simkit.number_text import parse_number
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from simkit.params import Params
+    from simkit import Params
 
 CODE: Final = "SK-SENSOR-247"
 _FARTHEST = 1e9  # [m]

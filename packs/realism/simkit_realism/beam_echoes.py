@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from simkit.pose import Vector
+from simkit.extend import Vector
 from simkit_realism.optical_rays import Returns
 
 

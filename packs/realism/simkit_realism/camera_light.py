@@ -5,12 +5,12 @@ from __future__ import annotations
 import abc
 from collections.abc import Callable
 from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from simkit.sensors.artefacts import Artefact, Reading
-from simkit.sensors.cameras.image_noise import CameraReading, ChangedReading
+from simkit.extend import Artefact, CameraReading, ChangedReading
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
 from simkit.sensors.cameras.tone_curve import WHITE, colour_table, light_table
 
@@ -26,10 +26,10 @@ def decode(colours: Bytes) -> Light:
 
 def encode(light: Light) -> Bytes:
     """Return the colours of linear light by sRGB; light beyond white is white."""
-    return colour_table().take(quantise(light, WHITE).astype(np.uint16))
+    return colour_table().take(light_levels(light, WHITE).astype(np.uint16))
 
 
-def quantise(light: Light, levels: int) -> Light:
+def light_levels(light: Light, levels: int) -> Light:
     """Return light as whole numbers from 0 to `levels`, which is white."""
     numbers = light * np.float32(levels)
     np.rint(numbers, out=numbers)
@@ -82,7 +82,7 @@ class LightArtefact(Artefact):
             camera: number of the camera in the sensor, from 0.
         """
 
-    def apply(self, reading: Reading, truth: Reading, index: int) -> Reading:
+    def apply(self, reading: Any, truth: Any, index: int) -> Any:
         if isinstance(reading, tuple):
             return tuple(self._on_camera(picture, index, n) for n, picture in enumerate(reading))
         return self._on_camera(reading, index, 0)

@@ -12,8 +12,8 @@ from simkit.input_file import read_failure, read_input_text
 from simkit.number_text import parse_number
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
-    from simkit.params import Params
+    from simkit import Params
+    from simkit.extend import SpecBuilder
 
 CODE: Final = "SK-SENSOR-245"
 

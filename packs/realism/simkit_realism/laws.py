@@ -9,8 +9,7 @@ import numpy as np
 
 from simkit import Params
 from simkit.elementary_functions import power
-from simkit.params import LARGEST
-from simkit.pose import Vector
+from simkit.extend import LARGEST, Vector
 
 
 @dataclass(frozen=True, slots=True)

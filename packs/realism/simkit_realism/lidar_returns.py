@@ -8,8 +8,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from simkit.pose import Vector
-from simkit.sensors.rays.lidar_measurement import LidarMeasurement, LidarReading
+from simkit.extend import LidarMeasurement, LidarReading, Vector
 from simkit.sensors.rays.ray_probes import HitSurfaces
 from simkit_realism.optical_rays import Returns
 

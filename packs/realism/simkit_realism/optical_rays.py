@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from simkit.pose import Vector
+from simkit.extend import Vector
 from simkit.sensors.rays.geom_types import Ids
 from simkit.sensors.rays.hit_normals import dots
 from simkit.sensors.rays.ray_fan import RayFan

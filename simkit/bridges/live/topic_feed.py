@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from typing import TYPE_CHECKING, Any
 
+from simkit import msgs
 from simkit.bridges.live.message_log import MOST_DEPTH, ClientSubscription, LogMemory, MessageLog
 from simkit.errors import MessageError
 from simkit.msgs.message_types import Message
-from simkit.recording.message_taps import MessageQueue, serialised
-from simkit.runtime.communication.subscription import NO_MESSAGE, LazyMessage
+from simkit.recording.message_taps import MessageQueue
+from simkit.runtime.communication.subscription import LazyMessage
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.subscription import Subscription
@@ -34,7 +36,7 @@ class TopicFeed:
         self._sim, self.topic, self._memory, self._common = sim, topic, memory, common
         self.log, self._physics, self.time_of = MessageLog(memory), sim.engine.physics, sim.engine.clock.time_ns
         # a message is serialised at once, even if it waits for an image, because its publisher may change it later
-        self._queue: MessageQueue[TopicFeed] = MessageQueue(_deliver, _serialise_valid)
+        self._queue: MessageQueue[TopicFeed] = MessageQueue(_deliver, serialises=True, drops_invalid=True)
         self._tap: Subscription | None = None
         self._is_rendered = False  # True for images, whose rendering costs much more than anything else here
 
@@ -82,9 +84,8 @@ class TopicFeed:
         log.add(first, is_first=True)
 
         def keep(message: Message) -> None:
-            content = _serialise_valid(message)
-            if content is not NO_MESSAGE:
-                log.append(self._sim.time_ns, *content)
+            with contextlib.suppress(MessageError):  # the feed drops an invalid message
+                log.append(self._sim.time_ns, msgs.type_name(message), msgs.serialize(message))
 
         self._sim.communication.bus.tap(self.topic, keep).close()
         reader.first = first
@@ -125,17 +126,9 @@ class TopicFeed:
             self.log.count_lost()
 
 
-def _serialise_valid(message: Message | LazyMessage) -> Any:
-    """Return type and CDR of a message; `NO_MESSAGE` if it cannot be serialised: the feed drops an invalid message."""
-    try:
-        return serialised(message)
-    except MessageError:
-        return NO_MESSAGE
-
-
 def _deliver(feeds: list[TopicFeed], ticks: list[int], contents: list[Any]) -> None:
-    """Queue serialised messages, types and CDR in turn, for all clients of their topics."""
-    for feed, tick, type_name, data in zip(feeds, ticks, contents[::2], contents[1::2], strict=True):
+    """Queue serialised messages, each a tuple of type and CDR, for all clients of their topics."""
+    for feed, tick, (type_name, data) in zip(feeds, ticks, contents, strict=True):
         feed.log.append(feed.time_of(tick), type_name, data)
 
 
@@ -149,7 +142,7 @@ class TopicFeeds:
     def __init__(self, sim: Simulation) -> None:
         self._sim, self.memory = sim, LogMemory()
         self._feeds: dict[str, TopicFeed] = {}
-        self._common: MessageQueue[TopicFeed] = MessageQueue(_deliver, _serialise_valid)
+        self._common: MessageQueue[TopicFeed] = MessageQueue(_deliver, serialises=True, drops_invalid=True)
         self._reviewed = 0.0
 
     def add(self, reader: ClientSubscription, *, takes_latched: bool = True) -> None:

@@ -132,6 +132,10 @@ class RunKeys:
 
     def poll(self) -> None:
         """Process the keys pressed since the last call, in order. Keys after a step key wait until the step ends."""
+        if self._step_ends is not None and not self._is_stepping():
+            if self._sim.control.pausing.is_paused:
+                print_status(f"t={self._sim.time:.9g} s")
+            self._step_ends = None
         if not self._left:
             self._left.extend(self._keyboard.read())
         while self._left and not self._is_stepping():

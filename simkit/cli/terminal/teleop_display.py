@@ -45,7 +45,7 @@ class DriverLine:
             return f"driving {self._teleop.target.topic}"
         pose = model.pose
         yaw = math.degrees(float(pose.rpy[2]))
-        position = f"x {pose.position[0]:.2f}  y {pose.position[1]:.2f}  {yaw:.0f}°"
+        position = f"x {pose.position[0]:.2f}  y {pose.position[1]:.2f}  {round(yaw)}°"
         parts = [self._speed_text(*_velocity(model, pose)), position, self._obstacle_text(model, pose)]
         return "   ".join(part for part in parts if part)
 

@@ -69,11 +69,15 @@ def find_bundled_world(name: str) -> Path | None:
     return None
 
 
+def bundled_worlds() -> list[str]:
+    """Return the bare names of the bundled worlds."""
+    return sorted({p.stem for bundle in bundled_folders("worlds") for p in bundle.glob("*.sdf")})
+
+
 def bundled_names() -> list[str]:
     """Return the bare names of the bundled worlds and models."""
-    worlds = [p.stem for bundle in bundled_folders("worlds") for p in bundle.glob("*.sdf")]
     models = [p.parent.name for bundle in bundled_folders("assets") for p in bundle.glob("**/model.config")]
-    return sorted({*worlds, *models})
+    return sorted({*bundled_worlds(), *models})
 
 
 def turtlebot3_uri(uri: str, where: Where, diagnostics: Diagnostics) -> str | None:

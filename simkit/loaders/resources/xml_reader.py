@@ -89,7 +89,7 @@ def _describe_content(data: bytes) -> str:
         return "a binary file"
     if b"<" not in data:
         return "a text without any element"
-    return ""
+    return f"a text that begins with {shorten(head.decode('utf-8', errors='replace').splitlines()[0], 40)!r}"
 
 
 def _is_binary_stl(data: bytes) -> bool:

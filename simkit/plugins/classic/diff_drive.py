@@ -10,9 +10,7 @@ from __future__ import annotations
 
 import abc
 import copy
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
@@ -27,12 +25,18 @@ from simkit.plugins.drives.odometry import (
     COMMAND_TYPES,
     DeadReckoning,
     OdometryRows,
-    planar_pose,
     rim_speeds,
     rolling_twist,
     wheel_motion,
 )
-from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, BodyTwist, odometry_message
+from simkit.plugins.drives.odometry_messages import (
+    ODOMETRY,
+    TRANSFORMS,
+    BodyTwist,
+    LatePose,
+    PlanarPose,
+    odometry_message,
+)
 from simkit.plugins.drives.odometry_noise import (
     EquivalentWheelAngles,
     NoisyOdometry,
@@ -56,7 +60,7 @@ from simkit.plugins.options import (
     without_effect,
 )
 from simkit.plugins.ros_names import is_ros_1
-from simkit.pose import Pose, Vector
+from simkit.pose import Vector
 from simkit.runtime.array_rules import CannotBatchError, Ids, Ticks, TopicRule, is_due, next_due
 from simkit.runtime.handles.joint import wheel_angles
 
@@ -284,7 +288,7 @@ class GazeboRosDiffDrive(CommandedDrive):
             self._outputs.tell(*self._measured(), *self._covariances())
         self._outputs.tell_joints()
 
-    def _measured(self) -> tuple[Pose | Callable[[], Pose], BodyTwist]:
+    def _measured(self) -> tuple[LatePose, BodyTwist]:
         """Return pose and twist from `<odometry_source>`; the twist is in the robot's own axes.
 
         The pose may be a function that computes it later.
@@ -298,8 +302,8 @@ class GazeboRosDiffDrive(CommandedDrive):
             return self._true.state()
         pair = self.options.pairs[0]
         reckoned = self._reckoning
-        pose_then = partial(planar_pose, reckoned.x, reckoned.y, reckoned.yaw)
-        return pose_then, rolling_twist(self._wheels, pair.radius, pair.separation)
+        twist = rolling_twist(self._wheels, pair.radius, pair.separation)
+        return PlanarPose(reckoned.x, reckoned.y, reckoned.yaw), twist
 
     def _create_noisy_odometry(self) -> tuple[NoisyOdometry | None, EquivalentWheelAngles | None]:
         """Return the odometry with noise; for ground truth, also return the wheel angles of the true motion."""

@@ -12,6 +12,7 @@ from simkit.plugins.drives.odometry_messages import (
     TRANSFORMS,
     BodyTwist,
     LatePose,
+    PlanarPose,
     odometry_message,
     transforms,
 )
@@ -109,7 +110,9 @@ class DriveOutputs(SharedByCopies):
         """
         now = self._sim.time_ns
         if self._odom is not None and self._odom.wanted:
-            options, level = self._options, partial(_level, pose) if self._options.is_level else pose
+            options, level = self._options, pose
+            if options.is_level and not isinstance(pose, PlanarPose):
+                level = partial(_level, pose)
             frames = options.odometry_frame, options.robot_base_frame
             spread = covariances or (self._covariance,)
             self._odom.publish_later(partial(odometry_message, now, *frames, level, twist, *spread))

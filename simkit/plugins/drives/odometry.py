@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from simkit.plugins.drives.odometry_messages import BodyTwist
+from simkit.plugins.drives.odometry_messages import BodyTwist, PlanarPose
 from simkit.plugins.not_deep_copied import SharedByCopies
-from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_rotate
+from simkit.pose import Pose, Vector, quat_conjugate, quat_rotate
 from simkit.runtime.array_rules import CannotBatchError, Floats, Grid, Ids, Ticks, is_due, last_due
 from simkit.runtime.handles.joint import first_velocity
 
@@ -110,16 +110,11 @@ class DeadReckoning:
     @property
     def pose(self) -> Pose:
         """Pose with z = 0."""
-        return planar_pose(self.x, self.y, self.yaw)
+        return PlanarPose(self.x, self.y, self.yaw)()
 
     def __deepcopy__(self, memo: dict[int, object]) -> DeadReckoning:
         """Return a copy for a snapshot, in a tenth of the time of `deepcopy`."""
         return DeadReckoning(self.x, self.y, self.yaw)
-
-
-def planar_pose(x: float, y: float, yaw: float) -> Pose:
-    """Return the pose of x, y [m] and yaw [rad] with z = 0."""
-    return Pose((x, y, 0.0), quat_from_rpy(0.0, 0.0, yaw))
 
 
 def rolling_twist(wheels: Sequence[Joint], radius: float, separation: float) -> BodyTwist:

@@ -6,13 +6,13 @@ import functools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from simkit import msgs
 from simkit.msgs.cdr_template import CdrTemplate, packs
-from simkit.pose import Pose, Vector
+from simkit.pose import Pose, Vector, quat_from_rpy
 
 if TYPE_CHECKING:
     from simkit.msgs import Message
@@ -20,7 +20,25 @@ if TYPE_CHECKING:
 
 ODOMETRY = "nav_msgs/msg/Odometry"
 TRANSFORMS = "tf2_msgs/msg/TFMessage"
-LatePose = Pose | Callable[[], Pose]
+
+
+class PlanarPose(NamedTuple):
+    """Pose with z = 0; calling it returns the `Pose`, whose checks take as long as three messages.
+
+    Attributes:
+        x, y: position [m].
+        yaw: yaw angle [rad].
+    """
+
+    x: float
+    y: float
+    yaw: float
+
+    def __call__(self) -> Pose:
+        return Pose((self.x, self.y, 0.0), quat_from_rpy(0.0, 0.0, self.yaw))
+
+
+LatePose = Pose | PlanarPose | Callable[[], Pose]
 """Pose, or a function that returns it at any later time."""
 
 _NS = 1_000_000_000
@@ -71,13 +89,12 @@ def odometry_message(
         covariance: Row-major covariance of the pose, shape (36,); zeros if omitted.
         twist_covariance: Covariance of the twist, shape (36,); equal to the pose's if omitted.
     """
-    types, pose = message_types(), pose() if callable(pose) else pose
+    types, (px, py, pz, *axes) = message_types(), _numbers(pose)
     point, vector, quaternion = types["Point"], types["Vector3"], types["Quaternion"]
-    w, x, y, z = pose.quaternion.tolist()
     # copies: a subscriber may keep or change the arrays of a message
     first = np.zeros(36) if covariance is None else covariance.copy()
     second = first.copy() if twist_covariance is None else twist_covariance.copy()
-    pose_message = types["Pose"](point(*pose.position.tolist()), quaternion(x, y, z, w))
+    pose_message = types["Pose"](point(px, py, pz), quaternion(*axes))
     motion = types["Twist"](vector(*map(float, twist.linear)), vector(*map(float, twist.angular)))
     message: msgs.Odometry = types["Odometry"](
         msgs.header(time_ns, frame),
@@ -98,11 +115,9 @@ def _pack_odometry(
     covariance: Vector | None = None,
     twist_covariance: Vector | None = None,
 ) -> tuple[str, bytes]:
-    pose = pose() if callable(pose) else pose
-    w, *axes = pose.quaternion.tolist()
     first = _NO_COVARIANCE if covariance is None else covariance.tobytes()
     second = first if twist_covariance is None else twist_covariance.tobytes()
-    place = *divmod(time_ns, _NS), *pose.position.tolist(), *axes, w
+    place = time_ns // _NS, time_ns % _NS, *_numbers(pose)
     return ODOMETRY, _odometry_packer(frame, child)(*place, first, *twist.linear, *twist.angular, second)
 
 
@@ -113,9 +128,8 @@ def _odometry_packer(frame: str, child: str) -> Callable[..., bytes]:
 
 def transform(time_ns: int, frame: str, child: str, pose: LatePose) -> msgs.TransformStamped:
     """Return a `geometry_msgs/msg/TransformStamped` with the pose of `child` in `frame`."""
-    types, pose = message_types(), pose() if callable(pose) else pose
-    w, x, y, z = pose.quaternion.tolist()
-    transform_message = types["Transform"](types["Vector3"](*pose.position.tolist()), types["Quaternion"](x, y, z, w))
+    types, (x, y, z, *axes) = message_types(), _numbers(pose)
+    transform_message = types["Transform"](types["Vector3"](x, y, z), types["Quaternion"](*axes))
     message: msgs.TransformStamped = types["TransformStamped"](msgs.header(time_ns, frame), child, transform_message)
     return message
 
@@ -135,9 +149,7 @@ def transforms(time_ns: int, *items: tuple[str, str, LatePose]) -> msgs.TFMessag
 def _pack_transforms(time_ns: int, *items: tuple[str, str, LatePose]) -> tuple[str, bytes]:
     stamp, values = divmod(time_ns, _NS), []
     for _, _, pose in items:
-        pose = pose() if callable(pose) else pose
-        w, *axes = pose.quaternion.tolist()
-        values += [*stamp, *pose.position.tolist(), *axes, w]
+        values += [*stamp, *_numbers(pose)]
     return TRANSFORMS, _transforms_packer(tuple([item[:2] for item in items]))(*values)
 
 
@@ -145,6 +157,16 @@ def _pack_transforms(time_ns: int, *items: tuple[str, str, LatePose]) -> tuple[s
 def _transforms_packer(frames: tuple[tuple[str, str], ...]) -> Callable[..., bytes]:
     fields = tuple(f"transforms[{i}].{name}" for i in range(len(frames)) for name in _TRANSFORM_FIELDS)
     return CdrTemplate(transforms(0, *((*pair, Pose()) for pair in frames)), fields).packer()
+
+
+def _numbers(pose: LatePose) -> tuple[float, ...]:
+    """Return position and quaternion (x, y, z, w) of a pose."""
+    if isinstance(pose, PlanarPose):
+        w, *axes = _attitude(pose.yaw)
+        return pose.x, pose.y, 0.0, *axes, w
+    pose = pose() if callable(pose) else pose
+    w, *axes = pose.quaternion.tolist()
+    return *pose.position.tolist(), *axes, w
 
 
 def _attitude(yaw: float) -> tuple[float, float, float, float]:

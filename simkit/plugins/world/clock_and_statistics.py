@@ -5,10 +5,11 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable, Iterator
-from functools import partial
+from functools import cache, partial
 from typing import TYPE_CHECKING, Final
 
 from simkit import msgs
+from simkit.msgs.cdr_template import CdrTemplate, packs
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
@@ -27,6 +28,7 @@ STATISTICS_RATE: Final = 5.0
 CLOCK_RATE: Final = 100.0
 POSE_RATE: Final = 60.0
 """Rate of the poses [Hz of simulated time], the same number as gz's default of `dynamic_pose_hertz`."""
+_NS: Final = 1_000_000_000
 _WINDOW: Final = 20  # number of statistics in the average real-time factor, as in gz's server
 
 
@@ -117,7 +119,7 @@ class WorldStats(WorldPlugin):
         return statistics
 
     def _clock(self, _topic: str) -> Callable[[], msgs.Clock]:
-        return partial(_clock_message, self.sim.time_ns)
+        return partial(clock_message, self.sim.time_ns)
 
     def _all_poses(self, _topic: str) -> Callable[[], msgs.TFMessage]:
         sim = self.sim
@@ -150,9 +152,20 @@ class WorldStats(WorldPlugin):
             yield from self._of_model(nested, with_visuals)
 
 
-def _clock_message(time_ns: int) -> msgs.Clock:
+def clock_message(time_ns: int) -> msgs.Clock:
+    """Return a `rosgraph_msgs/msg/Clock` with a time [ns]."""
     message: msgs.Clock = msgs.type_of(CLOCK)(msgs.time(time_ns))
     return message
+
+
+@packs(clock_message)
+def _pack_clock(time_ns: int) -> tuple[str, bytes]:
+    return CLOCK, _clock_packer()(time_ns // _NS, time_ns % _NS)
+
+
+@cache
+def _clock_packer() -> Callable[..., bytes]:
+    return CdrTemplate(clock_message(0), ("clock.sec", "clock.nanosec")).packer()
 
 
 class ClockPublisher(WorldPlugin):
@@ -166,4 +179,4 @@ class ClockPublisher(WorldPlugin):
 
     def after_step(self) -> None:
         if self._clock.wanted:
-            self._clock.publish_later(partial(_clock_message, self.sim.time_ns))
+            self._clock.publish_later(partial(clock_message, self.sim.time_ns))

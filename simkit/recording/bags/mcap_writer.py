@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterable
+from collections.abc import Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import IO, Final
 from zlib import crc32
+
+import numpy as np
 
 from simkit.recording.bags.mcap_records import (
     CHANNEL,
@@ -24,7 +26,13 @@ from simkit.recording.bags.mcap_records import (
 _MESSAGE_INDEX, _ATTACHMENT_INDEX, _METADATA_INDEX, _SUMMARY_OFFSET = 7, 10, 13, 14
 _COMPRESSION: Final = "zstd"
 _pack_message_head = struct.Struct("<BQHIQQ").pack  # opcode, length, and the fields of `mcap_records.MESSAGE_HEAD`
+_HEAD_FIELDS: Final = ("opcode", "length", "channel", "sequence", "time", "publish")
+_HEADS: Final = np.dtype(list(zip(_HEAD_FIELDS, ("u1", "<u8", "<u2", "<u4", "<u8", "<u8"), strict=True)))
+_LENGTH_BYTES: Final = 9  # opcode and length
 _MESSAGE_HEAD_BYTES: Final = 22
+_PLACE_BYTES: Final = 16
+_pack_place = struct.Struct("<QQ").pack  # time and place of a message
+_FEW: Final = 8  # fewer messages are faster one by one
 
 
 def _text(value: str) -> bytes:
@@ -32,7 +40,7 @@ def _text(value: str) -> bytes:
     return struct.pack("<I", len(encoded)) + encoded
 
 
-def _record(opcode: int, *parts: bytes) -> bytes:
+def _record(opcode: int, *parts: bytes | bytearray) -> bytes:
     return struct.pack("<BQ", opcode, sum(map(len, parts))) + b"".join(parts)
 
 
@@ -40,10 +48,6 @@ def _table(numbers: dict[int, int]) -> bytes:
     """Return a table of 64-bit numbers by 16-bit numbers."""
     rows = (struct.pack("<HQ", key, value) for key, value in numbers.items())
     return struct.pack("<I", len(numbers) * 10) + b"".join(rows)
-
-
-Row = tuple[int, int, bytes, int, int]
-"""Message to write: number of its channel, recording time [ns], data, publication time [ns] and sequence number."""
 
 
 class McapWriter:
@@ -74,7 +78,7 @@ class McapWriter:
 
     def _begin_chunk(self) -> None:
         self._content = bytearray()
-        self._indexes: dict[int, list[int]] = {}  # times and places in the chunk, alternately, by channel
+        self._indexes: dict[int, bytearray] = {}  # times and places in the chunk, alternately, by channel
         self._chunk_start = self._chunk_end = 0
 
     def register_schema(self, name: str, encoding: str, data: bytes) -> int:
@@ -99,32 +103,60 @@ class McapWriter:
         if len(self._content) > self._chunk_bytes:
             self.end_chunk()
 
+    def count(self, channel_id: int) -> int:
+        """Return the number of messages of a channel so far."""
+        return self._counts.get(channel_id, 0) + len(self._indexes.get(channel_id, b"")) // _PLACE_BYTES
+
     def add_message(self, channel_id: int, time_ns: int, data: bytes, publish_ns: int, sequence: int) -> None:
         """Add a message with its recording time, publication time and sequence number."""
-        self.add_messages(((channel_id, time_ns, data, publish_ns, sequence),))
+        content, index = self._content, self._indexes.get(channel_id)
+        if index is None:
+            index = self._begin_index(channel_id, time_ns)
+        index += _pack_place(time_ns, len(content))
+        self._chunk_start, self._chunk_end = min(self._chunk_start, time_ns), max(self._chunk_end, time_ns)
+        size = _MESSAGE_HEAD_BYTES + len(data)
+        content += _pack_message_head(MESSAGE, size, channel_id, sequence, time_ns, publish_ns)
+        content += data
+        if len(content) > self._chunk_bytes:
+            self.end_chunk()
 
-    def add_messages(self, rows: Iterable[Row]) -> None:
-        """Add messages; several in one call take half the time."""
-        content, indexes, limit = self._content, self._indexes, self._chunk_bytes
-        for channel_id, time_ns, data, publish_ns, sequence in rows:
-            index = indexes.get(channel_id)
+    def add_messages(self, channel_ids: Sequence[int], times: Sequence[int], data: Sequence[bytes]) -> None:
+        """Add messages with their recording times [ns], which are also those of publication.
+
+        The sequence number of a message is the number of earlier messages of its channel. Many messages in one call
+        take a fifth of the time of `add_message`.
+        """
+        sizes = list(map(len, data))
+        total = len(self._content) + sum(sizes) + len(sizes) * _HEADS.itemsize
+        if len(sizes) < _FEW or total > self._chunk_bytes:
+            for channel_id, time_ns, content in zip(channel_ids, times, data, strict=True):
+                self.add_message(channel_id, time_ns, content, time_ns, self.count(channel_id))
+            return
+        heads, places = np.empty(len(sizes), _HEADS), np.empty((len(sizes), 2), "<u8")
+        lengths = np.array(sizes) + _MESSAGE_HEAD_BYTES
+        begins = np.cumsum(lengths + _LENGTH_BYTES) + (len(self._content) - _LENGTH_BYTES) - lengths
+        heads["opcode"], heads["length"], heads["channel"] = MESSAGE, lengths, channel_ids
+        heads["time"] = heads["publish"] = places[:, 0] = times
+        places[:, 1] = begins
+        numbers, sequences = np.array(channel_ids), np.empty(len(sizes), np.int64)
+        for channel_id in dict.fromkeys(channel_ids):
+            index = self._indexes.get(channel_id)
             if index is None:
-                index = self._begin_index(channel_id, time_ns)
-            index += (time_ns, len(content))
-            if time_ns > self._chunk_end:
-                self._chunk_end = time_ns
-            if time_ns < self._chunk_start:
-                self._chunk_start = time_ns
-            size = _MESSAGE_HEAD_BYTES + len(data)
-            content += _pack_message_head(MESSAGE, size, channel_id, sequence, time_ns, publish_ns)
-            content += data
-            if len(content) > limit:
-                self.end_chunk()
-                content, indexes = self._content, self._indexes
+                index = self._begin_index(channel_id, times[0])
+            rows, first = np.flatnonzero(numbers == channel_id), self.count(channel_id)
+            sequences[rows] = np.arange(first, first + len(rows))
+            index += places[rows].tobytes()
+        heads["sequence"] = sequences
+        self._chunk_start, self._chunk_end = min(self._chunk_start, *times), max(self._chunk_end, *times)
+        head_bytes, size = heads.tobytes(), _HEADS.itemsize
+        pieces = [b""] * (2 * len(sizes))
+        pieces[::2] = [head_bytes[at : at + size] for at in range(0, len(head_bytes), size)]
+        pieces[1::2] = data
+        self._content += b"".join(pieces)
 
-    def _begin_index(self, channel_id: int, time_ns: int) -> list[int]:
-        """Return the new list of the places of a channel's messages in the chunk."""
-        index = self._indexes[channel_id] = []
+    def _begin_index(self, channel_id: int, time_ns: int) -> bytearray:
+        """Return the new table of the places of a channel's messages in the chunk."""
+        index = self._indexes[channel_id] = bytearray()
         if len(self._indexes) == 1:
             self._chunk_start = time_ns
             self._start = min(self._start, time_ns) if self._counts else time_ns
@@ -145,7 +177,7 @@ class McapWriter:
         self._begin_chunk()
         self._start, self._end = min(self._start, start), max(self._end, end)
         for channel_id, index in indexes.items():
-            self._counts[channel_id] += len(index) // 2
+            self._counts[channel_id] += len(index) // _PLACE_BYTES
         self._wait()
         self._written = self._thread.submit(self._write_chunk, content, indexes, start, end)
 
@@ -159,7 +191,7 @@ class McapWriter:
         self._file.write(data)
         self._position += len(data)
 
-    def _write_chunk(self, content: bytearray, indexes: dict[int, list[int]], start: int, end: int) -> None:
+    def _write_chunk(self, content: bytearray, indexes: dict[int, bytearray], start: int, end: int) -> None:
         """Write a chunk and the places of its messages."""
         import zstandard
 
@@ -171,8 +203,7 @@ class McapWriter:
         length = 0
         for channel_id, index in indexes.items():
             places[channel_id] = index_position + length
-            head = struct.pack("<HI", channel_id, 8 * len(index))
-            records.append(_record(_MESSAGE_INDEX, head, struct.pack(f"<{len(index)}Q", *index)))
+            records.append(_record(_MESSAGE_INDEX, struct.pack("<HI", channel_id, len(index)), index))
             length += len(records[-1])
         self._write(b"".join(records))
         place = struct.pack("<QQ", position, index_position - position), _table(places), struct.pack("<Q", length)

@@ -5,12 +5,12 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.errors import SimkitError
 from simkit.recording.bags.bag_contents import matches_topic
 from simkit.recording.bags.writer import McapBag, open_bag
-from simkit.recording.message_taps import MessageQueue, TopicTaps, serialised
+from simkit.recording.message_taps import MessageQueue, TopicTaps
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -60,7 +60,7 @@ class Recorder:
         self._check_available()
         self._bag: McapBag | None = open_bag(self.path, overwrite=overwrite)
         # while an image is rendered, later messages wait as bytes, so that all messages stay in order
-        self._queue = MessageQueue(self._write, serialised)
+        self._queue = MessageQueue(self._write, serialises=True)
         self._first_tick = self._end_tick = 0  # ticks of the present second, from the first message of the second on
         self._taps = TopicTaps(sim, self._receiver_of, self._queue.deliver_ready)
         self._taps.open()
@@ -154,28 +154,25 @@ class Recorder:
         """Check whether the options select the topic."""
         return topic in self._taps
 
-    def _write(self, topics: list[str], ticks: list[int], contents: list[Any]) -> None:
-        """Write serialised messages, types and CDR in turn."""
-        bag, time_of = self._bag, self._sim.engine.clock.time_ns
+    def _write(self, topics: list[str], ticks: list[int], contents: list[tuple[str, bytes]]) -> None:
+        """Write serialised messages, each a tuple of type and CDR."""
+        bag, times = self._bag, self._sim.engine.clock.times_ns(ticks)
         if bag is None:
             return
-        types, data = contents[::2], contents[1::2]
+        types, data = zip(*contents, strict=True)
         try:
-            known = [
-                bag_channel
-                for bag_channel in map(bag.channels.get, zip(topics, types, strict=True))
-                if bag_channel is not None
-            ]
-            if len(known) == len(data) and time_of(min(ticks)) // _SECOND == time_of(max(ticks)) // _SECOND:
-                bag.write_all(known, data, [time_of(tick) for tick in ticks])
+            channels = list(map(bag.channels.get, zip(topics, types, strict=True)))
+            known = [channel for channel in channels if channel is not None]
+            if len(known) == len(data) and min(times) // _SECOND == max(times) // _SECOND:
+                bag.write_all(known, data, times)
                 return
-            for topic, tick, type_name, content in zip(topics, ticks, types, data, strict=True):
+            for topic, time_ns, (type_name, content) in zip(topics, times, contents, strict=True):
                 channel = bag.channels.get((topic, type_name))
                 if channel is None:
                     bus = self._sim.communication.bus
                     drawn_by = self._sim.engine.renderer if bus.check_available(topic) else ""
                     channel = bag.channel(topic, type_name, topic in bus.latched(), drawn_by)
-                bag.write_raw(channel, content, time_of(tick))
+                bag.write_raw(channel, content, time_ns)
         except OSError as error:
             self._stop(error)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
@@ -11,7 +11,7 @@ from typing import IO, TYPE_CHECKING
 from simkit import msgs
 from simkit.errors import InputError
 from simkit.output_file import open_target
-from simkit.recording.bags.mcap_writer import McapWriter, Row
+from simkit.recording.bags.mcap_writer import McapWriter
 from simkit.writers.atomic_output import write_obstacle
 
 if TYPE_CHECKING:
@@ -50,14 +50,13 @@ _CHUNK_BYTES = 4 << 20
 
 @dataclass
 class Channel:
-    """Topic with one type, and the number of messages written to it."""
+    """Topic with one type."""
 
     id: int
     topic: str
     type_name: str
     latched: bool
     type_hash: str = ""
-    count: int = 0
 
 
 @dataclass
@@ -149,23 +148,17 @@ class McapBag:
         """Append one serialised message. The time of publication is the recording time, unless it is given."""
         self._begin_second(time_ns // _SECOND)
         publish_ns = time_ns if publish_ns is None else publish_ns
-        self._writer.add_message(channel.id, time_ns, data, publish_ns, channel.count)
-        channel.count += 1
+        self._writer.add_message(channel.id, time_ns, data, publish_ns, self._writer.count(channel.id))
         self.span.add(time_ns)
 
     def write_all(self, channels: Sequence[Channel], data: Sequence[bytes], times: Sequence[int]) -> None:
-        """Append serialised messages of one second with their recording times [ns], in half the time of `write_raw`."""
+        """Append serialised messages of one second with their recording times [ns]; see `McapWriter.add_messages`."""
         first, last = min(times), max(times)
         self._begin_second(first // _SECOND)
-        self._writer.add_messages(self._rows(channels, data, times))
+        self._writer.add_messages([channel.id for channel in channels], times, data)
         self.span.add(first)
         self.span.add(last)
         self.span.count += len(data) - 2
-
-    def _rows(self, channels: Sequence[Channel], data: Sequence[bytes], times: Sequence[int]) -> Iterator[Row]:
-        for channel, content, time_ns in zip(channels, data, times, strict=True):
-            yield channel.id, time_ns, content, time_ns, channel.count
-            channel.count += 1
 
     def _begin_second(self, second: int) -> None:
         if second != self._second:
@@ -246,7 +239,7 @@ class Rosbag2Folder(McapBag):
                         "offered_qos_profiles": [qos_profile(channel.latched)],
                         "type_description_hash": channel.type_hash,
                     },
-                    "message_count": channel.count,
+                    "message_count": self._writer.count(channel.id),
                 }
                 for channel in self.channels.values()
             ],

@@ -125,6 +125,11 @@ class Publisher(InProcess):
         return readers.is_called or readers.feeds or self.latched
 
     @property
+    def is_only_streamed(self) -> bool:
+        """True if every subscription passes on each message, and none keeps messages."""
+        return self._readers.is_streamed and not self._readers.keeps
+
+    @property
     def patience(self) -> float:
         """Number of newest messages that the subscribers keep; 0 if the owner must publish each message at once.
 

@@ -400,6 +400,12 @@ class PhysicsState:
 
     # ------------------------------------------------------------------ state
 
+    def state_vector(self) -> npt.NDArray[np.float64]:
+        """Return MuJoCo's state vector, `mjSTATE_INTEGRATION`."""
+        values = np.empty(self._held_size)
+        mujoco.mj_getState(self.model, self.data, values, INTEGRATION_STATE)
+        return values
+
     def get_state(self) -> PhysicsMemory:
         """Return the state beside MuJoCo's data, for a snapshot."""
         applied, pushed = self.last_applied.copy(), self.last_pushed.copy()

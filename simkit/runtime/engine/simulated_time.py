@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -74,6 +74,11 @@ class Clock:
         if self._whole_ns:
             return tick * self._whole_ns
         return math.floor(tick * self._step_ns + Fraction(1, 2))
+
+    def times_ns(self, ticks: Sequence[int]) -> list[int]:
+        """Return the times of several ticks [ns]; see `time_ns`."""
+        whole = self._whole_ns
+        return [tick * whole for tick in ticks] if whole else list(map(self.time_ns, ticks))
 
     def tick_at(self, time_ns: int) -> int:
         """Return the first tick at or after a time [ns]."""

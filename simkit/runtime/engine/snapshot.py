@@ -17,6 +17,7 @@ from simkit.compiler.state_transfer import restore_compiled_fields
 from simkit.errors import ArgumentValueError
 from simkit.in_process import InProcess
 from simkit.memory_error import memory_errors
+from simkit.runtime.engine.physics_state import INTEGRATION_STATE
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.engine import Engine
@@ -34,7 +35,7 @@ class Snapshot(InProcess):
 
     Attributes:
         structure: structure of the world.
-        data: MuJoCo's data.
+        data: MuJoCo's data; in a compact snapshot their state vector (`mjSTATE_INTEGRATION`).
         fields: fields of the model that were written to, and its gravity.
         sensors, plugins: their states.
         handles: states of all other parts, in the order of restoring.
@@ -47,7 +48,7 @@ class Snapshot(InProcess):
     """
 
     structure: WorldStructure
-    data: mujoco.MjData
+    data: mujoco.MjData | npt.NDArray[np.float64]
     fields: dict[str, npt.NDArray[np.float64]]
     sensors: list[tuple[AttachedSensor, AttachedState]]
     plugins: list[tuple[AttachedPlugin, AttachedState]]
@@ -89,6 +90,8 @@ class Snapshot(InProcess):
         if not self.is_complete or self.pack is None:
             message = "the snapshot was requested in a step that has not ended; pickle it after that step"
             raise ArgumentValueError(message)
+        if isinstance(self.data, np.ndarray):
+            raise ArgumentValueError("a compact snapshot cannot be pickled; leave out compact=True")
         return self.pack(self)
 
     def __getattr__(self, name: str) -> NoReturn:
@@ -182,14 +185,19 @@ class Snapshots:
             raise ArgumentValueError("the snapshot is from before the world got other overrides")
 
     @memory_errors()
-    def take(self) -> Snapshot:
-        """Take a snapshot of the present state."""
+    def take(self, *, compact: bool = False) -> Snapshot:
+        """Take a snapshot of the present state.
+
+        Args:
+            compact: store the state vector instead of MuJoCo's data, which take 0.2 MB and ten times as long. Where
+                bodies may sleep or rest, the data are stored all the same, because that is no part of the vector.
+        """
         engine = self._engine
         model, structure, physics = engine.mj_model, engine.structure, engine.physics
         plugins = [
             (p, engine.faults.state_of(p)) for p in structure.all_plugins()
         ]  # first, because `get_state` may disable a plugin
-        data = copy.copy(physics.data)
+        data = physics.state_vector() if compact and not physics.sleep.counts else copy.copy(physics.data)
         fields = {f: getattr(model, f).copy() for f in engine.originals}
         fields["gravity"] = model.opt.gravity.copy()
         return Snapshot(
@@ -230,7 +238,10 @@ class Snapshots:
             if field != "gravity" and field not in engine.originals:
                 engine.touch(field)[:] = snapshot.fields[field]
         model.opt.gravity[:] = snapshot.fields["gravity"]
-        mujoco.mj_copyData(physics.data, model, snapshot.data)
+        if isinstance(snapshot.data, np.ndarray):
+            mujoco.mj_setState(model, physics.data, snapshot.data, INTEGRATION_STATE)
+        else:
+            mujoco.mj_copyData(physics.data, model, snapshot.data)
         engine.loop.jump(snapshot.tick - physics.tick)
         physics.set_state(snapshot.physics, is_model_changed=bool(engine.originals))
         if with_inbox:

@@ -6,6 +6,8 @@ from typing import ClassVar
 
 from simkit.sensors.base import Product
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
+from simkit.sensors.cameras.rendered_sampler import camera_rule
+from simkit.sensors.measured_rows import MeasuredRows
 
 
 class Camera(RenderedCamera):
@@ -13,6 +15,9 @@ class Camera(RenderedCamera):
 
     kinds: ClassVar[tuple[str, ...]] = ("camera",)
     artefact_families: ClassVar[tuple[str, ...]] = ("colour",)
+
+    def array_rule(self) -> MeasuredRows:
+        return camera_rule(self)
 
     def products(self) -> dict[str, Product]:
         return {"image": self._colour_product(), "camera_info": self._info_product()}

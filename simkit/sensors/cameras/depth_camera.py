@@ -10,8 +10,10 @@ import numpy as np
 from simkit.diagnostics import Diagnostics
 from simkit.runtime import Simulation
 from simkit.scene import SceneSensor
+from simkit.sensors.cameras.rendered_sampler import camera_rule
 from simkit.sensors.cameras.rendering.view import Colours, Depths, Shot
 from simkit.sensors.cameras.rgbd_camera import RgbdCamera
+from simkit.sensors.measured_rows import MeasuredRows
 from simkit.sensors.sample import Reading
 
 
@@ -36,6 +38,9 @@ class DepthCamera(RgbdCamera):
             model = self.options.model
             self.options = replace(self.options, depth_near=model.near, depth_far=model.far)
         super().attach(sim)
+
+    def array_rule(self) -> MeasuredRows:
+        return camera_rule(self)
 
     def shots(self) -> Sequence[Shot]:
         # without a reader of the colours, only depths are drawn

@@ -271,6 +271,10 @@ class RenderedCamera(RenderedSampler):
         self._trigger.counts = counts
         self.sim.communication.bus.listen(topic, types, self._trigger.on_message)
 
+    @property
+    def selects_ticks(self) -> bool:
+        return self._trigger is not None or self._is_switched
+
     def accepts(self, tick: int) -> bool:
         return self._trigger is None or self._trigger.take()
 

@@ -12,6 +12,7 @@ from simkit.diagnostics import Diagnostics
 from simkit.errors import RenderError
 from simkit.msgs.message_types import Message
 from simkit.runtime import Publisher
+from simkit.runtime.array_rules import CannotBatchError
 from simkit.runtime.communication.subscription import NO_MESSAGE, LazyMessage
 from simkit.runtime.particle_clouds import has_sources
 from simkit.scene import SceneSensor
@@ -23,6 +24,7 @@ from simkit.sensors.cameras.rendering import render_thread
 from simkit.sensors.cameras.rendering.lights_and_shadows import read_lights, use_lights
 from simkit.sensors.cameras.rendering.scene_composition import Composition
 from simkit.sensors.cameras.rendering.view import DrawnView, Shot
+from simkit.sensors.measured_rows import MeasuredRows
 from simkit.sensors.particle_echoes import drawer_of_particles
 from simkit.sensors.sample import Memory, Reading
 
@@ -77,6 +79,10 @@ class RenderedSampler(Sensor):
         if self._has_callback or not (self.sim.engine.render_thread and renderer_choice.is_ready(self.sim)):
             return render_thread.run_now(expose)
         return render_thread.submit(expose)
+
+    def capture_other(self, model: mujoco.MjModel, data: mujoco.MjData) -> render_thread.RenderJob:
+        self.surroundings = self.capture_surroundings()
+        return self.capture(model, data)
 
     def capture_held(self, model: mujoco.MjModel, data: mujoco.MjData, sample: Sample) -> render_thread.RenderJob:
         # labels, temperatures, lights and structure may have changed since the sample
@@ -251,6 +257,17 @@ class RenderedSampler(Sensor):
         self.sim.engine.reports.warning(error.code, message, self.scene.where)
         if not is_known:  # an error common to all cameras is logged once
             self.sim.engine.log.error("%s %s", error.code, message)
+
+
+def camera_rule(camera: RenderedSampler) -> MeasuredRows:
+    """Return the array rule of a camera, which draws the simulations one after another with one renderer.
+
+    Raises:
+        CannotBatchError: particles are in front of the camera.
+    """
+    if has_sources(camera.sim):
+        raise CannotBatchError(f"particles in front of sensor {camera.scoped!r}")
+    return MeasuredRows(camera)
 
 
 def _make_messages_early(work: render_thread.RenderJob, messages: Sequence[LazyMessage]) -> None:

@@ -26,8 +26,10 @@ from simkit.sensors.cameras.depth_range import DepthRange, clip_planes
 from simkit.sensors.cameras.disparity_noise import DisparityNoise, read_disparity_noise
 from simkit.sensors.cameras.image_noise import CameraReading, ImageNoise, NoisyCameraReading
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
+from simkit.sensors.cameras.rendered_sampler import camera_rule
 from simkit.sensors.cameras.rendering.appearance import Appearance
 from simkit.sensors.cameras.rendering.view import Colours, Depths, DrawnView, Ids, Shot, View
+from simkit.sensors.measured_rows import MeasuredRows
 from simkit.sensors.particle_echoes import Echoes, find_echoes
 from simkit.sensors.sample import Reading
 from simkit.sensors.topics_and_frames import OPTICAL_POSE
@@ -127,6 +129,9 @@ class RgbdCamera(RenderedCamera):
             near, far = clip_planes(options.model.near, options.model.far)
             self._view = replace(super()._drawn_view(), near=near, far=far)
         return self._view
+
+    def array_rule(self) -> MeasuredRows:
+        return camera_rule(self)
 
     def shots(self) -> Sequence[Shot]:
         return self._with_geoms(with_colours=True)

@@ -13,6 +13,7 @@ from simkit.linear_algebra import matmul
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.runtime.handles.joint_mechanics import torque_about, transmitted_wrench
+from simkit.sensors.measured_rows import MeasuredRows
 from simkit.sensors.noise import ThreeAxes, read_axes
 from simkit.sensors.vector_sensor import VectorSensor
 
@@ -94,6 +95,9 @@ class ForceTorque(VectorSensor):
         self._joint_frame = self._link.offset @ joint.pose_child
         self._is_turned = not np.array_equal(self._axes_turn, np.eye(3))
         self._viewed: mujoco.MjData | None = None
+
+    def array_rule(self) -> MeasuredRows:
+        return MeasuredRows(self)
 
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Vector:
         """Return the force [N] and the torque [N·m], six numbers."""

@@ -11,6 +11,7 @@ from simkit import msgs
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.sensors.environment.air_sensor import AirSensor
+from simkit.sensors.measured_rows import MeasuredRows
 from simkit.sensors.noise import NoiseModel, read_noise
 
 
@@ -54,6 +55,9 @@ class AirPressure(AirSensor):
             message = "<reference_altitude> has no effect with <gazebo_quirks>, because Gazebo ignores it"
             where = self.scene.params.block("air_pressure").block("reference_altitude").where
             self.diagnostics.warning("SK-SENSOR-062", message, where, "change the z of the model's <pose> instead")
+
+    def array_rule(self) -> MeasuredRows:
+        return MeasuredRows(self)
 
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Vector:
         return np.array((self._column.at(self._height(data)).pressure,))

@@ -12,6 +12,7 @@ from simkit.compiler import Compiled
 from simkit.linear_algebra import matmul
 from simkit.params import Params
 from simkit.pose import Vector
+from simkit.sensors.measured_rows import MeasuredRows
 from simkit.sensors.noise import NoiseModel, read_noise
 from simkit.sensors.vector_sensor import VectorSensor
 
@@ -63,6 +64,9 @@ class Altimeter(VectorSensor):
         """Reference height in the world [m] of the measured positions."""
         assert self._reference is not None
         return self._reference
+
+    def array_rule(self) -> MeasuredRows:
+        return MeasuredRows(self)
 
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Vector:
         """Return the height above the reference [m] and its rate [m/s]."""

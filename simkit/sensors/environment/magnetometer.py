@@ -23,6 +23,7 @@ from simkit.sensors.environment.magnetic_field import (
     EarthField,
     decimal_year,
 )
+from simkit.sensors.measured_rows import MeasuredRows
 from simkit.sensors.noise import ThreeAxes, read_axes
 from simkit.sensors.vector_sensor import VectorSensor
 
@@ -120,6 +121,9 @@ class Magnetometer(VectorSensor):
             # Gazebo ignores the world's heading when it maps north, east and down to the world's axes
             sine, cosine = np.sin(coordinates.heading), np.cos(coordinates.heading)
             self._to_world = np.array(((sine, cosine, 0.0), (cosine, -sine, 0.0), (0.0, 0.0, -1.0)))
+
+    def array_rule(self) -> MeasuredRows:
+        return MeasuredRows(self)
 
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Vector:
         position, rotation = self._frame_in_world(data)

@@ -16,6 +16,7 @@ from simkit.pose import Vector, wrap_angle
 from simkit.scene import SphericalCoordinates
 from simkit.sensors.base import Product, Sensor
 from simkit.sensors.environment.geodesy import WorldOnPlanet, east_north_up
+from simkit.sensors.measured_rows import MeasuredRows
 from simkit.sensors.noise import Noise, NoiseModel, read_noise
 
 FIX, VELOCITY, GPS = "sensor_msgs/msg/NavSatFix", "geometry_msgs/msg/Vector3Stamped", "gps_msgs/msg/GPSFix"
@@ -127,6 +128,10 @@ class NavSat(Sensor):
             self._quirks, self._heading_offset = False, math.pi
             self._locate(replace(coordinates, heading=coordinates.heading + self._heading_offset))
 
+    @property
+    def selects_ticks(self) -> bool:
+        return self._planet is None or self._is_switched
+
     def accepts(self, tick: int) -> bool:
         return self._planet is not None
 
@@ -140,6 +145,9 @@ class NavSat(Sensor):
     def default_topics(self) -> dict[str, str]:
         topic = self._default_topic("navsat")
         return {"fix": topic, "velocity": f"{topic}/velocity", "gps_fix": f"{topic}/gps_fix"}
+
+    def array_rule(self) -> MeasuredRows:
+        return MeasuredRows(self)
 
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> NavSatReading:
         planet = self._planet

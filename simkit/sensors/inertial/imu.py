@@ -12,7 +12,7 @@ from simkit.msgs.cdr_template import CdrTemplate
 from simkit.pose import Vector
 from simkit.sensors.base import Product
 from simkit.sensors.bias_drift import NoiseInterval, NoiseState
-from simkit.sensors.inertial.imu_measurement import ImuMeasurement, ImuReading, ImuRule
+from simkit.sensors.inertial.imu_measurement import ImuMeasurement, ImuReading, ImuRule, unpack_numbers
 from simkit.sensors.inertial.inertial_kinematics import NO_ROTATION, sensor_motion
 from simkit.sensors.noise import with_noise
 from simkit.sensors.sample import Sample
@@ -160,6 +160,9 @@ class Imu(ImuMeasurement):
     def array_rule(self) -> ImuRule:
         return ImuRule(self)
 
+    def packs(self, product: str) -> bool:
+        return True
+
     def pack_samples(self, first: int, times: Sequence[int], captures: Sequence[bytes]) -> list[bytes]:
         if _batch_key(self) is None:
             return []
@@ -174,6 +177,30 @@ class Imu(ImuMeasurement):
             attitude = NO_ROTATION
         columns = [np.array(times) // _NS, np.array(times) % _NS, *attitude, *noisy.T]
         return self._template().fill(len(times), dict(zip(_VARIABLE_FIELDS, columns, strict=True)))
+
+    @property
+    def makes_directly(self) -> bool:
+        return self.has_plain_noise
+
+    def make_directly(self, raw: bytes, index: int, time_ns: int) -> msgs.Imu:
+        mount = None if self.is_mounted_straight else self._mount
+        reference = None if self.is_against_world else self._from_reference
+        attitude, motion = sensor_motion(unpack_numbers(raw), self._arm, mount, self._rotation, reference)
+        noisy = motion if self.noise.is_silent else self.noise.apply_to_numbers(motion, index)
+        w, x, y, z = attitude if self.options.enable_orientation else NO_ROTATION
+        rx, ry, rz, fx, fy, fz = noisy
+        make, vector, quaternion, header, time = msgs.types_of(*_BATCH_TYPES)
+        orientation_cov, rate_cov, force_cov = self.covariances()
+        message: msgs.Imu = make(
+            header(time(time_ns // _NS, time_ns % _NS), self.frame_id),
+            quaternion(x, y, z, w),
+            orientation_cov,
+            vector(rx, ry, rz),
+            rate_cov,
+            vector(fx, fy, fz),
+            force_cov,
+        )
+        return message
 
     def _template(self) -> CdrTemplate:
         """Return the serialised message whose numbers are replaced; it changes with the covariances."""

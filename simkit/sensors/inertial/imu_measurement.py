@@ -29,7 +29,7 @@ from simkit.sensors.sample import Memory
 if TYPE_CHECKING:
     from simkit.runtime.state_arrays import StateArrays
 
-_unpack_numbers = struct.Struct("=31d").unpack  # captured numbers
+unpack_numbers = struct.Struct("=31d").unpack  # captured numbers
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +149,7 @@ class ImuMeasurement(Sensor):
         if self._more_noise is not None:
             self._noises.remove(self._more_noise)
         self._more_noise = None if model is None else self._make_noise((model,) * 9, "more")
-        self._covariances_of = None
+        self._covariances_of, self._revision = None, -1
 
     def _make_pending_messages(self) -> None:
         """Make the messages of earlier samples with the present reference and noise."""
@@ -211,7 +211,7 @@ class ImuMeasurement(Sensor):
     def finish(self, raw: bytes) -> ImuReading:
         mount = None if self.is_mounted_straight else self._mount
         reference = None if self.is_against_world else self._from_reference
-        return ImuReading(*sensor_motion(_unpack_numbers(raw), self._arm, mount, self._rotation, reference))
+        return ImuReading(*sensor_motion(unpack_numbers(raw), self._arm, mount, self._rotation, reference))
 
     def perturb(self, reading: ImuReading, index: int) -> ImuReading:
         orientation, motion = reading.orientation, reading.motion

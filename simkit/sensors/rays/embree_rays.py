@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import functools
 import importlib
-import math
-from collections.abc import Iterator
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -18,13 +17,15 @@ import numpy.typing as npt
 from simkit.linear_algebra import matmul
 from simkit.pose import Vector
 from simkit.sensors.rays.geom_types import BOX, HFIELD, MESH, Ids
-from simkit.sensors.rays.numpy_rays import rotate_vectors
+from simkit.sensors.rays.numpy_rays import rotate_columns
 from simkit.sensors.rays.ray_culling import RayBundle, reaches_between_cones
 
 Faces = npt.NDArray[np.int32]
 
 _FLAT = 1e-2
 """Cosine between ray and normal below which rounding decides where a ray meets the plane of a triangle."""
+_MANY = 1000
+"""Rays towards one body from which rotating them alone is faster than with a matrix for each ray."""
 _CUBE = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float64)
 _CUBE_FACES = np.array(
     [
@@ -52,6 +53,10 @@ class TriangleScene:
     Args:
         vertices: positions [m], shape (n, 3).
         faces: vertex indices, shape (m, 3).
+
+    Attributes:
+        planes: unit normal of each triangle, and its product with the triangle's points [m], shape (1 + m, 4). The
+            first row is NaN, for rays without a triangle.
     """
 
     def __init__(self, vertices: Vector, faces: Faces) -> None:
@@ -69,7 +74,8 @@ class TriangleScene:
         length = np.linalg.norm(normals, axis=1, keepdims=True)
         np.divide(normals, length, out=normals, where=length > 0)
         offset = np.einsum("ij,ij->i", normals, a)
-        self._planes = np.ascontiguousarray(np.column_stack((normals, offset)))
+        self.planes = np.full((1 + len(faces), 4), np.nan)
+        self.planes[1:, :3], self.planes[1:, 3] = normals, offset
         self._scene = EmbreeScene(robust=True)
         TriangleMesh(self._scene, self.vertices.astype(np.float32), np.ascontiguousarray(faces, dtype=np.int32))
 
@@ -87,51 +93,127 @@ class TriangleScene:
         Returns:
             Indices of the rays that hit, their distances from the origin [m], and the triangles.
         """
-        local_origin = origin - self.centre
-        rays = directions.astype(np.float32)
-        if start > 0:
-            starts = rays * np.float32(start)
-            starts += local_origin.astype(np.float32)
-        else:
-            starts = np.broadcast_to(local_origin.astype(np.float32), rays.shape)
-        # a slightly larger limit, because rounding to float32 may move a surface just beyond the limit
-        reach = (limit - np.float32(start)) * np.float32(1.000001)
-        reach += np.float32(1e-5)
-        first_triangles = self._scene.run(starts, rays, dists=reach)
-        hits = np.flatnonzero(first_triangles >= 0)
-        triangles = first_triangles[hits]
-        planes = self._planes.take(triangles, 0)
-        hit_directions = directions.take(hits, 0)
-        normals = planes[:, :3]
-        slope = np.einsum("ij,ij->i", normals, hit_directions)
-        if local_origin.ndim == 1:
-            height = planes[:, 3] - np.einsum("ij,j->i", normals, local_origin)
-        else:
-            local_origin = local_origin.take(hits, 0)
-            height = planes[:, 3] - np.einsum("ij,ij->i", normals, local_origin)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            distances = height / slope
-        flat = np.flatnonzero(np.abs(slope) < _FLAT)
+        distances, rows = self.trace(origin.T, directions.T, start, limit)
+        hits = np.flatnonzero(rows)
+        return hits, distances.take(hits), (rows.take(hits) - 1).astype(np.int32)
+
+    def trace(
+        self, origin: Vector, directions: Vector, start: float, limit: npt.NDArray[np.float32] | float
+    ) -> tuple[Vector, Ids]:
+        """Find the first triangle on each ray, with vectors as columns.
+
+        Args:
+            origin: common origin of the rays [m], shape (3,), or the origin of each, shape (3, n).
+            directions: unit vectors, shape (3, n).
+            start: distance from the origin at which the rays start [m].
+            limit: distance beyond which hits may be omitted [m], shape (n,), or one for all rays.
+
+        Returns:
+            Distances from the origin [m], NaN for no hit, and rows of `planes`, 0 for no hit; each of the shape (n,).
+        """
+        local_origin = origin - (self.centre if origin.ndim == 1 else self.centre[:, None])
+        rays, starts = single_precision(local_origin, directions, start)
+        rows = np.add(self.first(starts, rays, reach_of(limit, start)), 1, dtype=np.intp)
+        distances, flat = distances_to_planes(self.planes.take(rows, 0).T, local_origin, directions)
         if len(flat):
-            at = local_origin if local_origin.ndim == 1 else local_origin[flat, None]
-            distances[flat] = self._clamp_grazing(distances[flat], at, hit_directions[flat], triangles[flat])
+            own_origin = local_origin if origin.ndim == 1 else local_origin[:, flat].T
+            self.clamp_grazing(distances, flat, own_origin, directions[:, flat].T, rows[flat] - 1)
         np.maximum(distances, start, out=distances)
-        return hits, distances, triangles
+        return distances, rows
+
+    def first(
+        self,
+        starts: npt.NDArray[np.float32],
+        rays: npt.NDArray[np.float32],
+        reach: npt.NDArray[np.float32] | float,
+    ) -> npt.NDArray[np.int32]:
+        """Return the first triangle on each ray, -1 for none, with Embree.
+
+        Args:
+            starts: points around `centre` at which the rays start [m], shape (3, n).
+            rays: directions, shape (3, n).
+            reach: lengths of the rays [m], shape (n,), or one for all.
+        """
+        triangles: npt.NDArray[np.int32] = self._scene.run(starts.T, rays.T, dists=reach)
+        return triangles
 
     def normals_of(self, triangles: npt.NDArray[np.int32]) -> Vector:
         """Return the unit normals of triangles, shape (k, 3)."""
-        normals: Vector = self._planes.take(triangles, 0)[:, :3]
+        normals: Vector = self.planes.take(triangles + 1, 0)[:, :3]
         return normals
 
-    def _clamp_grazing(
-        self, distances: Vector, origin: Vector, directions: Vector, triangles: npt.NDArray[np.int32]
-    ) -> Vector:
-        """Clamp the distance of each ray almost parallel to its triangle to the distances of the triangle's corners."""
-        corners = self.vertices[self.faces[triangles]] - origin
+    def clamp_grazing(
+        self, distances: Vector, flat: Ids, origin: Vector, directions: Vector, triangles: npt.NDArray[np.integer[Any]]
+    ) -> None:
+        """Clamp the distances of rays almost parallel to their triangles to the distances of the triangles' corners.
+
+        Args:
+            distances: distances of all rays [m], shape (n,).
+            flat: numbers of these rays, shape (k,).
+            origin: their common origin [m], shape (3,), or their origins, shape (k, 3).
+            directions: their directions, shape (k, 3).
+            triangles: their triangles, shape (k,).
+        """
+        corners = self.vertices[self.faces[triangles]] - (origin if origin.ndim == 1 else origin[:, None])
         along = np.einsum("ijk,ik->ij", corners, directions)
         low, high = along.min(axis=1), along.max(axis=1)
-        clamped: Vector = np.clip(np.where(np.isfinite(distances), distances, low), low, high)
-        return clamped
+        found = distances[flat]
+        distances[flat] = np.clip(np.where(np.isfinite(found), found, low), low, high)
+
+
+def single_precision(
+    origin: Vector, directions: Vector, start: float
+) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
+    """Return directions of rays and the points at which they start in float32, shapes (3, n).
+
+    Args:
+        origin: common origin of the rays, shape (3,), or the origin of each, shape (3, n) [m].
+        directions: unit vectors, shape (3, n).
+        start: distance from the origin at which the rays start [m].
+    """
+    rays, origins = directions.astype(np.float32), origin.astype(np.float32)
+    if origins.ndim == 1:
+        origins = origins[:, None]
+    if start > 0:
+        starts = rays * np.float32(start)
+        starts += origins
+        return rays, starts
+    return rays, np.broadcast_to(origins, rays.shape)
+
+
+def reach_of(limit: npt.NDArray[np.float32] | float, start: float) -> npt.NDArray[np.float32] | float:
+    """Return the lengths of rays that start at a distance [m] and end beyond the limits of their hits [m].
+
+    They are slightly longer, because rounding to float32 may move a surface just beyond the limit.
+    """
+    if isinstance(limit, float):
+        return float((np.float32(limit) - np.float32(start)) * np.float32(1.000001) + np.float32(1e-5))
+    reach = (limit - np.float32(start)) * np.float32(1.000001)
+    reach += np.float32(1e-5)
+    return reach
+
+
+def distances_to_planes(planes: Vector, origin: Vector, directions: Vector) -> tuple[Vector, Ids]:
+    """Return the distances of planes along rays [m], and the numbers of the rays almost parallel to their planes.
+
+    Args:
+        planes: normals and offsets, shape (4, n).
+        origin: common origin of the rays [m], shape (3,), or the origin of each, shape (3, n).
+        directions: unit vectors, shape (3, n).
+    """
+    slope, distances = _dot(planes, directions), _dot(planes, origin)
+    np.subtract(planes[3], distances, out=distances)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        distances /= slope
+    return distances, np.flatnonzero(np.abs(slope, out=slope) < _FLAT)
+
+
+def _dot(first: Vector, second: Vector) -> Vector:
+    """Return the products of columns; the components are added in the order of einsum for rows of three."""
+    product: Vector = first[0] * second[0]
+    product += first[2] * second[2]
+    product += first[1] * second[1]
+    return product
 
 
 class TriangleBody:
@@ -140,6 +222,8 @@ class TriangleBody:
     Attributes:
         centre, radius: bounding sphere in the body's frame [m].
         geoms: geoms that the triangles belong to.
+        geom_of: geom of each triangle, shape (1 + m,); the first entry is -1, for rays without a triangle.
+        scene: the triangles.
 
     Args:
         model: compiled model.
@@ -154,85 +238,144 @@ class TriangleBody:
     ) -> None:
         self.carrier, self.body, self.geoms = carrier, body, geoms
         parts = [triangles_of(model, int(geom)) for geom in geoms]
-        self._geom_of = np.repeat(geoms, [len(faces) for _, faces in parts]).astype(np.int32)
+        self.geom_of = np.repeat(np.append(-1, geoms), [1, *(len(faces) for _, faces in parts)]).astype(np.int32)
         key = tuple(_geometry_key(model, int(geom)) for geom in geoms)
         if key not in scenes:
             starts = np.cumsum([0] + [len(vertices) for vertices, _ in parts[:-1]])
             vertices = np.concatenate([vertices for vertices, _ in parts])
             faces = np.concatenate([faces + start for (_, faces), start in zip(parts, starts, strict=True)])
             scenes[key] = TriangleScene(vertices, faces)
-        self._scene = scenes[key]
-        self.centre, self.radius = self._scene.centre, self._scene.radius
+        self.scene = scenes[key]
+        self.centre, self.radius = self.scene.centre, self.scene.radius
 
     def cast(
-        self, data: mujoco.MjData, origin: Vector, directions: Vector, start: float, limit: npt.NDArray[np.float32]
-    ) -> tuple[Ids, Vector, npt.NDArray[np.int32]]:
-        """Cast rays given in the world frame.
+        self, origin: Vector, directions: Vector, start: float, limit: npt.NDArray[np.float32] | float
+    ) -> tuple[Vector, npt.NDArray[np.int32]]:
+        """Cast rays given in the body's frame.
 
         Args:
-            data: physics data with up-to-date poses.
-            origin: origin of the rays [m], shape (3,).
-            directions: unit vectors, shape (n, 3).
+            origin: common origin of the rays [m], shape (3,), or the origin of each, shape (3, n).
+            directions: unit vectors, shape (3, n).
             start: distance from the origin at which the rays start [m].
-            limit: distance beyond which hits may be omitted [m], shape (n,).
+            limit: distance beyond which hits may be omitted [m], shape (n,), or one for all rays.
 
         Returns:
-            Indices of the rays that hit, their distances [m], and the geoms.
+            Distances [m], NaN for no hit, and geoms, -1 for no hit; each of the shape (n,).
         """
-        if self.body > 0:
-            turn = data.xmat[self.body].reshape(3, 3)
-            origin, directions = matmul(origin - data.xpos[self.body], turn), rotate_vectors(directions, turn)
-        return self.cast_local(origin, directions, start, limit)
-
-    def cast_local(
-        self, origin: Vector, directions: Vector, start: float, limit: npt.NDArray[np.float32]
-    ) -> tuple[Ids, Vector, npt.NDArray[np.int32]]:
-        """Cast rays given in the body's frame, each from its own origin, shape (n, 3), or all from one."""
-        hits, distances, triangles = self._scene.nearest(origin, directions, start, limit)
-        return hits, distances, self._geom_of.take(triangles)
+        distances, rows = self.scene.trace(origin, directions, start, limit)
+        return distances, self.geom_of.take(rows)
 
     def hit_normals(
         self, origins: Vector, directions: Vector, start: float, limit: npt.NDArray[np.float32]
     ) -> tuple[Ids, Vector]:
         """Return the rays that hit and the normals of their triangles; all in the body's frame, one origin per ray."""
-        hits, _, triangles = self._scene.nearest(origins, directions, start, limit)
-        return hits, self._scene.normals_of(triangles)
+        hits, _, triangles = self.scene.nearest(origins, directions, start, limit)
+        return hits, self.scene.normals_of(triangles)
 
 
 class MovingBodies:
-    """Bodies with triangles, except static bodies without a sensor."""
+    """Bodies with triangles, except static bodies without a sensor, which are cast together.
+
+    Embree traces each body with the rays that may hit it. Everything else is computed for all these rays at once.
+    """
 
     def __init__(self, bodies: list[TriangleBody]) -> None:
         self._bodies = bodies
         self._ids = np.array([body.body for body in bodies], dtype=np.intp)
         self._centres = np.array([body.centre for body in bodies]).reshape(-1, 3)
         self._radii = np.array([body.radius for body in bodies])
+        scenes = {id(body.scene): body.scene for body in bodies}
+        rows = np.cumsum([0, *(len(scene.planes) for scene in scenes.values())]).tolist()
+        self._planes = np.concatenate([scene.planes for scene in scenes.values()]) if scenes else np.empty((0, 4))
+        first_rows = dict(zip(scenes, rows, strict=False))
+        # row of each body's first plane, and of its first entry in `_geom_of`
+        self._first_planes = np.array([first_rows[id(body.scene)] for body in bodies], dtype=np.intp)
+        self._first_geoms = np.cumsum([0, *(len(body.geom_of) for body in bodies)])[:-1]
+        self._geom_of = np.concatenate([body.geom_of for body in bodies]) if bodies else np.empty(0, np.int32)
 
     def __len__(self) -> int:
         return len(self._bodies)
 
-    def reached(self, data: mujoco.MjData, rays: RayBundle) -> Iterator[tuple[TriangleBody, Ids]]:
-        """Yield each body that rays may hit, with the indices of those rays."""
+    def cast(self, data: mujoco.MjData, rays: RayBundle, best: Vector, hits: npt.NDArray[np.int32]) -> None:
+        """Shorten distances and set hits where a body is hit first.
+
+        Args:
+            data: physics data with up-to-date poses.
+            rays: rays to cast.
+            best: shortest distances so far [m], shape (n,).
+            hits: geoms at those distances, shape (n,).
+        """
         if not self._bodies:
             return
         turns = data.xmat.take(self._ids, 0).reshape(-1, 3, 3)
-        centres = data.xpos.take(self._ids, 0) + np.einsum("bij,bj->bi", turns, self._centres) - rays.origin
+        positions = data.xpos.take(self._ids, 0)
+        centres = positions + np.einsum("bij,bj->bi", turns, self._centres) - rays.origin
+        origins = np.einsum("bj,bji->bi", rays.origin - positions, turns) - self._centres
+        reached = self._reached(centres, rays)
+        for spheres, which in rays.pairs(centres.take(reached, 0), self._radii.take(reached)):
+            if which.size:
+                owners = np.broadcast_to(reached.take(spheres), which.shape)
+                self._cast_pairs(owners, which, rays, (origins, turns), best, hits)
+
+    def _reached(self, centres: Vector, rays: RayBundle) -> Ids:
+        """Return the bodies that rays may hit, for the centres of their spheres from the origin of the rays [m]."""
+        if not len(centres):
+            return np.empty(0, np.intp)
         squares = np.einsum("ij,ij->i", centres, centres)
         height = matmul(centres, rays.axis)
         side = np.sqrt(np.maximum(squares - height * height, 0.0))
         is_reached = reaches_between_cones(height, side, self._radii, rays.lowest, rays.highest)
-        distance = np.sqrt(squares)
-        is_reached &= distance - self._radii <= rays.reach
-        for i in np.flatnonzero(is_reached).tolist():
-            far, radius = float(distance[i]), float(self._radii[i])
-            if far <= radius * (1 + 1e-9):
-                yield self._bodies[i], np.arange(len(rays.directions))
-                continue
-            # the cosine between ray and centre is at least that of the sphere's edge; a margin of 1e-6 loses no ray
-            least = math.sqrt(max(0.0, 1.0 - (radius / far) ** 2)) * far - 1e-6 * far
-            near_rays = np.flatnonzero(rotate_vectors(rays.directions, centres[i]) >= least)
-            if near_rays.size:
-                yield self._bodies[i], near_rays
+        is_reached &= np.sqrt(squares) - self._radii <= rays.reach
+        return np.flatnonzero(is_reached)
+
+    def _cast_pairs(
+        self,
+        owners: Ids,
+        which: Ids,
+        rays: RayBundle,
+        frames: tuple[Vector, Vector],
+        best: Vector,
+        hits: npt.NDArray[np.int32],
+    ) -> None:
+        """Cast rays on the body of each of them.
+
+        Args:
+            owners: bodies, ascending, shape (k,); not empty.
+            which: numbers of the rays, shape (k,).
+            rays: rays to cast.
+            frames: origin of the rays in the frame of each body, relative to `centre` [m], shape (m, 3), and rotation
+                matrices of the bodies, shape (m, 3, 3).
+            best: shortest distances so far [m], shape (n,).
+            hits: geoms at those distances, shape (n,).
+        """
+        bounds = np.flatnonzero(owners[1:] != owners[:-1]) + 1
+        pieces = [slice(*ends) for ends in zip([0, *bounds.tolist()], [*bounds.tolist(), len(owners)], strict=True)]
+        bodies = owners[[piece.start for piece in pieces]].tolist()
+        directions, local = rays.columns.take(which, 1), np.empty((3, len(which)))
+        if len(which) < _MANY * len(bodies):
+            np.einsum("in,nij->jn", directions, frames[1].take(owners, 0), out=local)
+        else:
+            for i, piece in zip(bodies, pieces, strict=True):
+                rotate_columns(frames[1][i].T, directions[:, piece], local[:, piece])
+        origins = frames[0].T.take(owners, 1)
+        single, starts = single_precision(origins, local, rays.start)
+        reach: Any = reach_of(np.minimum(best.take(which), rays.reach, dtype=np.float32), rays.start)
+        rows = np.empty(len(which), np.intp)
+        for i, piece in zip(bodies, pieces, strict=True):
+            rows[piece] = self._bodies[i].scene.first(starts[:, piece], single[:, piece], reach[piece])
+        rows += 1
+        planes = self._planes.take(rows + self._first_planes.take(owners), 0).T
+        distances, flat = distances_to_planes(planes, origins, local)
+        for i in sorted(set(owners[flat].tolist())):
+            own = flat[owners[flat] == i]
+            self._bodies[i].scene.clamp_grazing(distances, own, origins[:, own].T, local[:, own].T, rows[own] - 1)
+        np.maximum(distances, rays.start, out=distances)
+        nearer = np.flatnonzero(distances < best.take(which))[::-1]  # of equal distances, the first body counts
+        which, distances, owners = which.take(nearer), distances.take(nearer), owners.take(nearer)
+        np.minimum.at(best, which, distances)
+        geoms = self._geom_of.take(rows.take(nearer) + self._first_geoms.take(owners))
+        is_first = best.take(which) == distances
+        hits[which[is_first]] = geoms[is_first]
 
 
 def _geometry_key(model: mujoco.MjModel, geom: int) -> tuple[object, ...]:

@@ -10,7 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit import msgs
+from simkit.msgs.cdr_template import CdrTemplate
+from simkit.runtime.array_rules import CannotBatchError, SensorRule
+from simkit.runtime.particle_clouds import has_sources
 from simkit.sensors.base import Product
+from simkit.sensors.measured_rows import MeasuredRows
 from simkit.sensors.point_cloud_messages import LEGACY_CLOUD_TYPE, legacy_point_cloud, point_cloud
 from simkit.sensors.rays.geom_types import Ids
 from simkit.sensors.rays.lidar_batch import LidarBatch, lidar_batch_key
@@ -23,6 +27,9 @@ RANGE = "sensor_msgs/msg/Range"
 _NAMES, _FORMATS = ["x", "y", "z", "intensity", "ring"], ["<f4", "<f4", "<f4", "<f4", "<u2"]
 _RING_POINT = np.dtype({"names": _NAMES, "formats": _FORMATS, "offsets": [0, 4, 8, 12, 16], "itemsize": 18})
 _WIDE_POINT = np.dtype({"names": _NAMES, "formats": _FORMATS, "offsets": [0, 4, 8, 16, 20], "itemsize": 32})
+_MOST_PACKED_RAYS = 1024  # above it, copies of the memory take longer than a scan at its time
+_NS = 1_000_000_000
+_VARIABLE_FIELDS = ("header.stamp.sec", "header.stamp.nanosec", "ranges")
 _POINT = np.dtype([(name, "<f4") for name in ("x", "y", "z", "intensity")])
 
 
@@ -46,6 +53,7 @@ class Lidar(LidarMeasurement):
     keeps_order = False
     radiation = 1
     field_of_view: float | None = None
+    _template_of: object = None
     replaced_products: Mapping[str, Product] = MappingProxyType({})
 
     @classmethod
@@ -53,8 +61,20 @@ class Lidar(LidarMeasurement):
         if cls is Lidar:
             form_batches(sensors, LidarBatch, lidar_batch_key)
 
-    def array_rule(self) -> LidarRule:
-        return LidarRule(self)
+    def array_rule(self) -> SensorRule:
+        """Return the array rule.
+
+        More than 2047 rays, rays that may hit moving meshes, clouds and ranges are measured one after another.
+
+        Raises:
+            CannotBatchError: plugins add noise to the lidar, or particles are in front of it.
+        """
+        if self.ray_noise is not None or self.range_noise is not None:
+            raise CannotBatchError(f"noise that a plugin adds to sensor {self.scoped!r}")
+        if self.sees_visuals and has_sources(self.sim):
+            raise CannotBatchError(f"particles in front of sensor {self.scoped!r}")
+        is_scan = next(iter(self.topics)) == "scan"
+        return LidarRule(self) if is_scan and self.fan.casts_in_rows else MeasuredRows(self, casts=True)
 
     def products(self) -> dict[str, Product]:
         return {
@@ -78,6 +98,34 @@ class Lidar(LidarMeasurement):
         return topics
 
     # ------------------------------------------------------------------ messages
+
+    def packs(self, product: str) -> bool:
+        is_streamed = all(publisher.is_only_streamed for _, publisher, _ in self._publishers if publisher.wanted)
+        return product == "scan" and self.fan.count <= _MOST_PACKED_RAYS and is_streamed
+
+    def pack_samples(self, first: int, times: Sequence[int], captures: Sequence[LidarReading]) -> Sequence[bytes]:
+        o = self.options
+        is_changed = type(self)._scan_message is not Lidar._scan_message or "scan" in self.replaced_products
+        has_more_noise = self.ray_noise is not None or self.range_noise is not None
+        has_intensities = self._retro is not None or self.min_intensity > 0
+        if is_changed or has_more_noise or has_intensities or o.sweep is not None or self.noise.evolves:
+            return ()
+        ranges = np.stack([capture.ranges for capture in captures])
+        if not self.noise.is_silent:
+            exact, ranges = ranges, self.noise.apply_to_samples(ranges, first)
+            self._limit(ranges, exact, np.stack([capture.infinite for capture in captures]))
+        seconds, nanoseconds = np.divmod(np.array(times), _NS)
+        layer = o.vertical.samples // 2 * o.horizontal.samples
+        columns = seconds, nanoseconds, ranges[:, layer : layer + o.horizontal.samples]
+        return self._template(captures[0]).fill(len(times), dict(zip(_VARIABLE_FIELDS, columns, strict=True)))
+
+    def _template(self, reading: LidarReading) -> CdrTemplate:
+        """Return the serialised scan whose numbers are replaced; it changes with the rate and the frame."""
+        constants = self.frame_id, self.update_rate, self.time_increment
+        if self._template_of != constants:
+            self._templates = CdrTemplate(self._scan_message(reading, 0), _VARIABLE_FIELDS)
+            self._template_of = constants
+        return self._templates
 
     def _scan_message(self, reading: LidarReading, time_ns: int) -> msgs.LaserScan:
         """Make a scan of all rays, or of the middle layer if there are several layers."""

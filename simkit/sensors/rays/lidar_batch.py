@@ -80,7 +80,8 @@ class LidarBatch(SensorBatch[LidarMeasurement]):
         for i, fan in enumerate(fans):
             own_rays = slice(i * count, (i + 1) * count)
             fan.distances, fan.hits = best[own_rays], hits[own_rays]
-            fan.cast_on_planes_and_triangles(data, fan.rays_from(origins[i], rotations[i], start))
+            rays = fan.rays_from(origins[i], rotations[i], start)
+            fan.cast_on_planes_and_triangles(data, rays, fan.distances, fan.hits)
         for fan_indices, shapes in self._near(fans, data, origins, rotations):
             shapes_in_fans = self._targets.shapes_in_frame(
                 data, self._which.take(shapes), origins.take(fan_indices, 0), rotations.take(fan_indices, 0)

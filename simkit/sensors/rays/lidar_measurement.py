@@ -17,7 +17,7 @@ from simkit.diagnostics import Diagnostics
 from simkit.linear_algebra import matmul
 from simkit.params import Params
 from simkit.pose import Vector
-from simkit.runtime.array_rules import CannotBatchError, Ids, SensorRule, Ticks
+from simkit.runtime.array_rules import Ids, SensorRule, Ticks
 from simkit.runtime.engine.pose_history import PoseRows
 from simkit.runtime.particle_clouds import has_sources
 from simkit.scene import SceneSensor
@@ -51,7 +51,7 @@ _BRIGHTEST = 2000.0  # upper limit of intensities of Gazebo's rendered lidars
 
 
 @dataclass(frozen=True, slots=True)
-class Sweep:
+class AngleRange:
     """Range of `samples` angles from `low` to `high` [rad], both included."""
 
     samples: int
@@ -78,8 +78,8 @@ class LidarOptions:
         sweep: times of the rays; None for a scan at one instant.
     """
 
-    horizontal: Sweep
-    vertical: Sweep
+    horizontal: AngleRange
+    vertical: AngleRange
     range_min: float
     range_max: float
     noise: NoiseModel
@@ -188,12 +188,12 @@ class LidarMeasurement(Sensor):
             low, high = 0.0, 1.0
         if not high > low:
             limits.error("SK-PARAM-002", f"found a range from {low:g} to {high:g} m; expected a <max> above <min>")
-        horizontal = _read_sweep(scan.block("horizontal"), 640)
-        vertical = _read_sweep(scan.block("vertical"), 1)
+        horizontal = _read_angle_range(scan.block("horizontal"), 640)
+        vertical = _read_angle_range(scan.block("vertical"), 1)
         if horizontal.samples * vertical.samples > _MAX_RAYS:
             rays = horizontal.samples * vertical.samples
             scan.error("SK-PARAM-002", f"found {rays} rays; expected at most {_MAX_RAYS}")
-            horizontal = vertical = Sweep(1, 0.0, 0.0)
+            horizontal = vertical = AngleRange(1, 0.0, 0.0)
         noise, mask = read_noise(block, "gaussian"), read_visibility_mask(block)
         fan = horizontal.samples, vertical.samples, horizontal.high - horizontal.low
         sweep = read_sweep(params, block, *fan, self.update_rate)
@@ -528,24 +528,14 @@ class LidarMeasurement(Sensor):
 class LidarRule(SensorRule):
     """Ranges of a lidar's scan in n simulations, within the range limits.
 
-    Raises:
-        CannotBatchError: plugins add noise to the lidar, its first message is no scan, or its rays are cast in a way
-            that depends on single simulations.
+    Args:
+        lidar: lidar of the simulation that resets all others; its first message is a scan, and `casts_in_rows` is true
+            for its fan.
     """
 
     inputs = ("xpos", "xmat", "xquat")
 
     def __init__(self, lidar: LidarMeasurement) -> None:
-        name = lidar.scoped
-        if lidar.ray_noise is not None or lidar.range_noise is not None:
-            raise CannotBatchError(f"noise that a plugin adds to sensor {name!r}")
-        if lidar.sees_visuals and has_sources(lidar.sim):
-            raise CannotBatchError(f"particles in front of sensor {name!r}")
-        if not lidar.fan.casts_in_rows:
-            raise CannotBatchError(f"more than 2047 rays, or rays that may hit moving meshes, of sensor {name!r}")
-        product = next(iter(lidar.topics))
-        if product != "scan":
-            raise CannotBatchError(f"message {product!r} of sensor {name!r}")
         self._lidar = lidar
 
     def bind(self, states: StateArrays, *, is_truth: bool) -> None:
@@ -573,7 +563,7 @@ class LidarRule(SensorRule):
         return np.clip(layer, float(options.range_min), float(options.range_max))
 
 
-def _read_sweep(params: Params, samples: int) -> Sweep:
+def _read_angle_range(params: Params, samples: int) -> AngleRange:
     resolution = params.number("resolution", 1.0, minimum=0)
     count = params.integer("samples", samples, minimum=1)
     if count > 1 and resolution not in (0.0, 1.0):
@@ -585,7 +575,7 @@ def _read_sweep(params: Params, samples: int) -> Sweep:
         text = f"found angles from {low:g} to {high:g}; expected a <max_angle> of at least <min_angle>"
         params.warning("SK-PARAM-008", f"{text}; the two are exchanged")
         low, high = high, low
-    return Sweep(count, low, high)
+    return AngleRange(count, low, high)
 
 
 def _scoped_names(compiled: Compiled) -> npt.NDArray[np.object_]:

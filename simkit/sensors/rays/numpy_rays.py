@@ -8,6 +8,7 @@ column.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
@@ -22,7 +23,7 @@ Interval = tuple[Vector, Vector]
 
 _CHUNK = 32768  # pairs of ray and shape processed at a time, so that they stay in the processor's cache
 _ROWS = 4096
-_LARGE_BLOCK = 256  # number of rays towards one shape from which the shape is processed alone
+_LARGE_BLOCK = 1500  # number of rays towards one shape from which the shape is processed alone
 _TINY = 1e-300  # replacement for a zero divisor
 
 
@@ -35,6 +36,36 @@ def rotate_vectors(vectors: Vector, matrix: Vector, out: Vector | None = None) -
     for i in range(0, len(vectors), _ROWS):
         np.matmul(vectors[i : i + _ROWS], matrix, out=out[i : i + _ROWS])
     return out
+
+
+def rotate_columns(matrix: Vector, columns: Vector, out: Vector | None = None) -> Vector:
+    """Return `matrix @ columns` for vectors in contiguous rows, shape (3, n); the bits do not depend on n."""
+    if columns.shape[1] > 1:
+        return np.einsum("ij,jn->in", matrix, columns, out=out)
+    # for a single column, einsum adds in another order
+    rotated: Vector = matrix[:, :1] * columns[:1] + matrix[:, 1:2] * columns[1:2] + matrix[:, 2:] * columns[2:]
+    if out is None:
+        return rotated
+    out[:] = rotated
+    return out
+
+
+def rays_towards(directions: Vector, centres: Vector, radii: Vector) -> Iterator[Ids]:
+    """Yield the numbers of the rays that may hit each sphere; no such ray is missing.
+
+    Args:
+        directions: unit vectors, shape (n, 3).
+        centres: centres of the spheres from the origin of the rays [m], shape (m, 3).
+        radii: radii of the spheres [m], shape (m,).
+    """
+    for centre, radius in zip(centres, radii.tolist(), strict=True):
+        far = math.sqrt(float(matmul(centre, centre)))
+        if far <= radius * (1 + 1e-9) + 1e-9:
+            yield np.arange(len(directions))
+            continue
+        # the cosine between ray and centre is at least that of the sphere's edge; a margin of 1e-6 loses no ray
+        least = math.sqrt(max(0.0, 1.0 - (radius / far) ** 2)) * far - 1e-6 * far
+        yield np.flatnonzero(rotate_vectors(directions, centre) >= least)
 
 
 def _quadratic(a: Vector, b: Vector, gap: Vector) -> Interval:
@@ -128,40 +159,40 @@ class FanDirections:
         if grid is not None and np.abs(grid[0]).max() <= np.pi / 2 + 1e-9:
             self._grid = grid
 
-    def pairs(self, centres: Vector, radii: Vector) -> Iterator[tuple[Ids, Ids]]:
+    def pairs(self, centres: Vector, radii: Vector, large: int = _LARGE_BLOCK) -> Iterator[tuple[Ids, Ids]]:
         """Yield spheres and the rays that may hit them, some thousands at a time.
 
         Args:
             centres: centres of the spheres in the sensor's frame [m], shape (m, 3).
             radii: radii of the spheres [m], shape (m,).
+            large: number of rays from which a sphere comes alone.
 
         Yields:
-            Indices of spheres and of rays, either as pairs, or one sphere and all rays towards it.
+            Indices of spheres and of rays, either as pairs, spheres ascending, or one sphere and all rays towards it.
         """
-        distance = np.sqrt(np.einsum("ij,ij->i", centres, centres))
-        within = distance <= radii * (1 + 1e-9) + 1e-9
-        # wider by a margin, so that rounding loses no ray, not even that of NumPy's arcsin on some processors
-        width = np.where(within, np.pi, np.arcsin(np.minimum(1.0, radii / np.maximum(distance, _TINY))) + 1e-6)
         if self._grid is None:
-            for i, angle in enumerate(width.tolist()):
-                along = rotate_vectors(self.directions, centres[i])
-                yield np.array((i,)), np.flatnonzero(along >= distance[i] * np.cos(min(angle, np.pi)) - 1e-9)
+            for i, rays in enumerate(rays_towards(self.directions, centres, radii)):
+                yield np.array((i,)), rays
             return
-        spheres, first_row, rows, first, columns = self._blocks(centres, distance, width)
+        spheres, first_row, rows, first, columns = self._blocks(centres, radii)
         row_length = len(self._grid[1])
-        large = rows * columns >= _LARGE_BLOCK
-        for i in np.flatnonzero(large).tolist():
+        is_large = rows * columns >= large
+        for i in np.flatnonzero(is_large).tolist():
             block = np.arange(first_row[i], first_row[i] + rows[i])[:, None] * row_length
             yield spheres[i : i + 1], (block + np.arange(first[i], first[i] + columns[i])).ravel()
-        small = np.flatnonzero(~large)
+        small = np.flatnonzero(~is_large)
         if small.size:
             owners = np.repeat(small, rows[small])
             row = first_row[owners] + _count_within_runs(rows[small])
             yield from _expand_runs(spheres[owners], row * row_length + first[owners], columns[owners])
 
-    def _blocks(self, centres: Vector, distance: Vector, width: Vector) -> tuple[Ids, Ids, Ids, Ids, Ids]:
+    def _blocks(self, centres: Vector, radii: Vector) -> tuple[Ids, Ids, Ids, Ids, Ids]:
         """Return blocks of the grid: sphere, first row, number of rows, first column, number of columns."""
         assert self._grid is not None
+        distance = np.sqrt(np.einsum("ij,ij->i", centres, centres))
+        within = distance <= radii * (1 + 1e-9) + 1e-9
+        # wider by a margin, so that rounding loses no ray, not even that of NumPy's arcsin on some processors
+        width = np.where(within, np.pi, np.arcsin(np.minimum(1.0, radii / np.maximum(distance, _TINY))) + 1e-6)
         elevations, azimuths = self._grid
         height = np.arcsin(np.clip(centres[:, 2] / np.maximum(distance, _TINY), -1.0, 1.0))
         first_row = np.searchsorted(elevations, height - width, "left")
@@ -277,7 +308,7 @@ def cast_on_shapes(
             directions = fan.columns.take(rays, 1)
             rays = rays + begin.take(owners)
             if len(owners) == 1:
-                directions = matmul(selected.turns[owners[0]].T, directions)
+                directions = rotate_columns(selected.turns[owners[0]].T, directions)
             else:
                 directions = np.einsum("in,nij->jn", directions, selected.turns.take(owners, 0))
             with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -299,21 +330,21 @@ def cast_on_plane(
 ) -> Vector | None:
     """Return distances [m], shape (n,), to the front of a plane or rectangle, infinite for misses.
 
-    The result is None if the origin is behind the plane.
+    Directions have the shape (3, n). The result is None if the origin is behind the plane.
     """
     normal = turn[:, 2]
     height = float(matmul(origin - position, normal))
     if height <= 0:
         return None
-    descent = rotate_vectors(directions, normal)
-    out = np.full(len(directions), np.inf)
+    descent = _dot(directions, normal)
+    out = np.full(len(descent), np.inf)
     np.divide(-height, descent, out=out, where=descent < -1e-15)
     if start > 0:
         out[out < start] = np.inf
     for axis in (0, 1):
         if size[axis] > 0:
             side = turn[:, axis]
-            offset = rotate_vectors(directions, side)
+            offset = _dot(directions, side)
             with np.errstate(invalid="ignore"):
                 offset *= out
                 offset += float(matmul(origin - position, side))

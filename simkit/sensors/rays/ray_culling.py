@@ -8,7 +8,7 @@ along the chain.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import mujoco
@@ -17,6 +17,11 @@ import numpy.typing as npt
 
 from simkit.linear_algebra import matmul, norm
 from simkit.pose import Pose, Vector
+from simkit.sensors.rays.geom_types import Ids
+from simkit.sensors.rays.numpy_rays import FanDirections, rays_towards
+
+MANY_PAIRS = 1 << 15
+"""Number of rays towards one sphere from which they are no longer computed together with those towards others."""
 
 
 @dataclass(slots=True)  # not frozen, which would cost a microsecond per cast
@@ -25,22 +30,47 @@ class RayBundle:
 
     Attributes:
         origin: origin in the world [m], shape (3,).
-        directions: unit vectors in the world, shape (n, 3).
+        columns: unit vectors in the world, shape (3, n).
         start: distance from the origin at which the rays start [m].
         reach: distance beyond which hits are ignored [m].
         limit: bits of the reach (see `finite_limit_bits`).
         axis: unit vector in the world, shape (3,).
         lowest, highest: elevations above the plane perpendicular to `axis` that contain all rays [rad].
+        search: directions in the sensor's frame, which know the rays towards a sphere; None tests every ray.
+        rotation: rotation matrix of the sensor's frame, shape (3, 3).
     """
 
     origin: Vector
-    directions: Vector
+    columns: Vector
     start: float
     reach: float
     limit: npt.NDArray[np.uint64]
     axis: Vector
     lowest: float
     highest: float
+    search: FanDirections | None = None
+    rotation: Vector | None = None
+
+    @property
+    def directions(self) -> Vector:
+        """Unit vectors in the world, shape (n, 3)."""
+        return self.columns.T
+
+    def pairs(self, centres: Vector, radii: Vector) -> Iterator[tuple[Ids, Ids]]:
+        """Yield spheres and the rays that may hit them, some at a time; no such ray is missing.
+
+        Args:
+            centres: centres of the spheres from the origin, in the world [m], shape (m, 3).
+            radii: radii [m], shape (m,).
+
+        Yields:
+            Indices of spheres, ascending, and of rays, either as pairs, or one sphere and all rays towards it.
+        """
+        if self.search is not None and self.rotation is not None:
+            yield from self.search.pairs(matmul(centres, self.rotation), radii, large=MANY_PAIRS)
+        elif len(centres):
+            near = list(rays_towards(self.directions, centres, radii))
+            yield np.repeat(np.arange(len(near)), [len(rays) for rays in near]), np.concatenate(near)
 
 
 RayHits = tuple[Vector, npt.NDArray[np.int32], npt.NDArray[np.bool_]]

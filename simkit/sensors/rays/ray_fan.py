@@ -15,7 +15,9 @@ Embree's float32 decides on which side of a mesh edge a ray passes.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Final
+from functools import partial
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import mujoco
 import numpy as np
@@ -25,16 +27,17 @@ from simkit.compiler.name_map import NameMap
 from simkit.linear_algebra import matmul
 from simkit.pose import Pose, Vector
 from simkit.sensors.rays.embree_rays import MovingBodies, TriangleBody
-from simkit.sensors.rays.geom_types import Ids
 from simkit.sensors.rays.mujoco_rays import ReducedModelCaster
 from simkit.sensors.rays.numpy_rays import (
     FanDirections,
     cast_on_plane,
     cast_on_shapes,
+    rotate_columns,
     rotate_vectors,
 )
 from simkit.sensors.rays.ray_culling import ENDLESS, NearbyGeoms, RayBundle, can_reach, finite_limit_bits, reaches_plane
 from simkit.sensors.rays.ray_targets import MAX_MOVING_BODIES, RayTargets
+from simkit.sensors.rays.ray_threads import ray_threads
 
 if TYPE_CHECKING:
     from simkit.runtime.state_arrays import StateArrays
@@ -43,7 +46,23 @@ MANY_RAYS: Final = 2048
 """Number of rays from which NumPy is faster on shapes than the engine."""
 
 _RAYS_PER_CHUNK = 1 << 18  # rays traced at a time, which limits the memory besides the result
+_RAYS_PER_THREAD = 1 << 13  # fewest rays for which a thread saves time
 _LARGEST = float(np.finfo(np.float64).max)
+_LARGEST_SINGLE = 3e38  # of float32, with a margin
+
+
+class FanPart(NamedTuple):
+    """Rays of a fan that one thread casts.
+
+    Attributes:
+        rays: their numbers.
+        directions: their directions in the sensor's frame.
+        bounds: their lowest and highest elevation [rad].
+    """
+
+    rays: slice
+    directions: FanDirections
+    bounds: tuple[float, float]
 
 
 class RayFan:
@@ -90,7 +109,7 @@ class RayFan:
         self._nearby: NearbyGeoms | None = None
         self._static: list[TriangleBody] | None = None
         self._movers = MovingBodies([])
-        self._rotated = np.empty((self.count, 3))
+        self._parts: list[FanPart] = []
         self.groups = np.zeros(6, dtype=np.uint8)
         self.groups[list(groups)] = 1
         self.grid, self.numpy_directions = (
@@ -98,9 +117,7 @@ class RayFan:
             None if self.count < MANY_RAYS else FanDirections(self.directions, grid),
         )
         self._use_embree = use_embree
-        self.bounds = -np.pi / 2, np.pi / 2
-        if grid is not None and np.abs(grid[0]).max() <= np.pi / 2:
-            self.bounds = float(grid[0].min()), float(grid[0].max())
+        self.bounds = _bounds(grid)
 
     @property
     def geoms(self) -> npt.NDArray[np.int32]:
@@ -170,28 +187,27 @@ class RayFan:
             rotation: rotation matrix of the sensor's frame, shape (3, 3).
             start: distance from the origin at which the rays start [m].
         """
-        rays, targets = self.rays_from(origin, rotation, start), self.targets
+        targets = self.targets
         if targets.needs_engine:
+            rays = self._rays_for_engine(origin, rotation, start)
             self.distances, self.hits, self.infinite = targets.whole.cast(data, rays, self.body, self.own_geoms)
             return
-        if self.by_engine:
-            shapes = targets.shapes_by_engine
-            if shapes is not None:
-                if self._nearby is None:
-                    movers = shapes.reachable_movers(self.carrier, self.body, self.offset, *self.bounds)
-                    self._nearby = NearbyGeoms(targets.model, movers, shapes.movers[movers])
-                self.distances, self.hits, self.infinite = shapes.cast(data, rays, self._nearby)
-                if not targets.triangles_for_engine:
-                    self.ids = shapes.ids
-                    return
-                self.hits = shapes.ids[self.hits]
-            else:
-                self._clear()
-            self._cast_on_triangles(targets.triangles_for_engine, data, rays)
+        if not self.by_engine:
+            self._clear()
+            self._cast_parts(data, origin, rotation, start)
+            self.finish()
+            return
+        rays, shapes = self._rays_for_engine(origin, rotation, start), targets.shapes_by_engine
+        if shapes is not None:
+            self.distances, self.hits, self.infinite = shapes.cast(data, rays, self._nearby_movers(shapes))
+            if not targets.triangles_for_engine:
+                self.ids = shapes.ids
+                return
+            self.hits = shapes.ids[self.hits]
         else:
             self._clear()
-            self.cast_on_planes_and_triangles(data, rays)
-            self._cast_on_shapes(data, rays, rotation)
+        self._find_triangles(targets.triangles_for_engine)
+        self._cast_on_triangles(data, rays, self.distances, self.hits)
         self.finish()
 
     def use(self, distances: Vector, geoms: npt.NDArray[np.int32]) -> None:
@@ -201,9 +217,42 @@ class RayFan:
         self.distances, self.hits = distances, geoms
         self.finish()
 
-    def rays_from(self, origin: Vector, rotation: Vector, start: float) -> RayBundle:
-        rotate_vectors(self.directions, rotation.T, out=self._rotated)
-        return RayBundle(origin, self._rotated, start, self.reach, self._limit, rotation[:, 2], *self.bounds)
+    def _rays_for_engine(self, origin: Vector, rotation: Vector, start: float) -> RayBundle:
+        directions = rotate_vectors(self.directions, rotation.T)
+        return RayBundle(origin, directions.T, start, self.reach, self._limit, rotation[:, 2], *self.bounds)
+
+    def rays_from(self, origin: Vector, rotation: Vector, start: float, part: FanPart | None = None) -> RayBundle:
+        """Return the rays, or those of a part, in the world; see `cast`."""
+        search, bounds = (self.numpy_directions, self.bounds) if part is None else part[1:]
+        assert search is not None
+        columns, axis = rotate_columns(rotation, search.columns), rotation[:, 2]
+        return RayBundle(origin, columns, start, self.reach, self._limit, axis, *bounds, search, rotation)
+
+    def _nearby_movers(self, shapes: ReducedModelCaster) -> NearbyGeoms:
+        if self._nearby is None:
+            movers = shapes.reachable_movers(self.carrier, self.body, self.offset, *self.bounds)
+            self._nearby = NearbyGeoms(self.targets.model, movers, shapes.movers[movers])
+        return self._nearby
+
+    def _cast_parts(self, data: mujoco.MjData, origin: Vector, rotation: Vector, start: float) -> None:
+        """Cast the rays in NumPy and with Embree: one part in each thread. Each ray is computed alone."""
+        self._find_triangles(self.targets.triangles_and_boxes)
+        self._find_shapes()
+        count = min(ray_threads.count, max(1, self.count // _RAYS_PER_THREAD))
+        if len(self._parts) != count:
+            assert self.numpy_directions is not None
+            self._parts = _parts_of(self.numpy_directions, self.grid, count)
+
+        def cast_part(part: FanPart) -> None:
+            rays, best, hits = (
+                self.rays_from(origin, rotation, start, part),
+                self.distances[part.rays],
+                self.hits[part.rays],
+            )
+            self.cast_on_planes_and_triangles(data, rays, best, hits)
+            self._cast_on_shapes(data, rays, best, hits)
+
+        ray_threads.run([partial(cast_part, part) for part in self._parts])
 
     def finish(self) -> None:
         self.infinite = self.distances > min(self.reach, _LARGEST)
@@ -213,10 +262,13 @@ class RayFan:
         self.hits = np.full(self.count, -1, dtype=np.int32)
         self.distances = np.full(self.count, np.inf)
 
-    def cast_on_planes_and_triangles(self, data: mujoco.MjData, rays: RayBundle) -> None:
-        """Cast on planes in NumPy and on triangles with Embree."""
-        best, targets = self.distances, self.targets
-        self._cast_on_triangles(targets.triangles_and_boxes, data, rays)
+    def cast_on_planes_and_triangles(
+        self, data: mujoco.MjData, rays: RayBundle, best: Vector, hits: npt.NDArray[np.int32]
+    ) -> None:
+        """Cast on planes in NumPy and on triangles with Embree; shorten `best` and set `hits`, shapes (n,)."""
+        targets = self.targets
+        self._find_triangles(targets.triangles_and_boxes)
+        self._cast_on_triangles(data, rays, best, hits)
         for i in targets.planes.tolist():
             if self.carrier and targets.carriers[i] == self.carrier:
                 continue
@@ -224,47 +276,47 @@ class RayFan:
             turn, size = data.geom_xmat[geom].reshape(3, 3), targets.model.geom_size[geom]
             if not reaches_plane(rays, data.geom_xpos[geom].tolist(), turn[:, 2].tolist()):
                 continue
-            plane_distances = cast_on_plane(rays.origin, rays.directions, data.geom_xpos[geom], turn, size, rays.start)
+            plane_distances = cast_on_plane(rays.origin, rays.columns, data.geom_xpos[geom], turn, size, rays.start)
             if plane_distances is not None:
                 nearer = plane_distances < best
                 np.copyto(best, plane_distances, where=nearer)
-                self.hits[nearer] = geom
+                hits[nearer] = geom
 
-    def _cast_on_shapes(self, data: mujoco.MjData, rays: RayBundle, rotation: Vector) -> None:
-        targets = self.targets
+    def _find_shapes(self) -> None:
         if self._nearby is None:
-            which = targets.shapes
+            targets, which = self.targets, self.targets.shapes
             if self.carrier:
                 which = which[targets.carriers[which] != self.carrier]
             self._nearby = NearbyGeoms(targets.model, which, targets.geoms[which])
-        which = self._nearby.reached(data, rays)
-        if not len(which):
-            return
-        assert self.numpy_directions is not None
-        shapes = targets.shapes_in_frame(data, which, rays.origin, rotation)
-        cast_on_shapes(self.numpy_directions, shapes, rays.reach, rays.start, self.distances, self.hits)
 
-    def _cast_on_triangles(self, bodies: list[TriangleBody], data: mujoco.MjData, rays: RayBundle) -> None:
-        """Cast on static triangles, then on each moving body with the rays that may hit it."""
+    def _cast_on_shapes(self, data: mujoco.MjData, rays: RayBundle, best: Vector, hits: npt.NDArray[np.int32]) -> None:
+        assert self._nearby is not None and rays.search is not None and rays.rotation is not None
+        which = self._nearby.reached(data, rays)
+        if len(which):
+            shapes = self.targets.shapes_in_frame(data, which, rays.origin, rays.rotation)
+            cast_on_shapes(rays.search, shapes, rays.reach, rays.start, best, hits)
+
+    def _find_triangles(self, bodies: list[TriangleBody]) -> None:
         if self._static is None:
             self._static = [body for body in bodies if not body.carrier]
             self._movers = MovingBodies([body for body in bodies if body.carrier and self._can_reach(body)])
-        for body in self._static:
-            for first in range(0, self.count, _RAYS_PER_CHUNK):
-                part = slice(first, first + _RAYS_PER_CHUNK)
-                limit = np.minimum(self.distances[part], rays.reach, dtype=np.float32)
-                body_hits = body.cast(data, rays.origin, rays.directions[part], rays.start, limit)
-                self._shorten(body_hits[0] + first, *body_hits[1:])
-        for body, rays_of_body in self._movers.reached(data, rays):
-            limit = np.minimum(self.distances.take(rays_of_body), rays.reach, dtype=np.float32)
-            body_hits = body.cast(data, rays.origin, rays.directions.take(rays_of_body, 0), rays.start, limit)
-            self._shorten(rays_of_body[body_hits[0]], *body_hits[1:])
 
-    def _shorten(self, rays: Ids, distances: Vector, geoms: npt.NDArray[np.int32]) -> None:
-        """Replace the distances and geoms of those rays whose new distance is shorter."""
-        nearer = distances < self.distances.take(rays)
-        rays = rays[nearer]
-        self.distances[rays], self.hits[rays] = distances[nearer], geoms[nearer]
+    def _cast_on_triangles(
+        self, data: mujoco.MjData, rays: RayBundle, best: Vector, hits: npt.NDArray[np.int32]
+    ) -> None:
+        """Cast on static triangles, then on each moving body with the rays that may hit it."""
+        assert self._static is not None
+        for body in self._static:
+            for first in range(0, len(best), _RAYS_PER_CHUNK):
+                part = slice(first, first + _RAYS_PER_CHUNK)
+                limit: Any = min(rays.reach, _LARGEST_SINGLE)
+                if body is not self._static[0] or self.by_engine:  # other geoms may be nearer
+                    limit = np.minimum(best[part], rays.reach, dtype=np.float32)
+                distances, geoms = body.cast(rays.origin, rays.columns[:, part], rays.start, limit)
+                nearer = distances < best[part]
+                np.copyto(best[part], distances, where=nearer)
+                np.copyto(hits[part], geoms, where=nearer)
+        self._movers.cast(data, rays, best, hits)
 
     def _can_reach(self, body: TriangleBody) -> bool:
         if body.carrier == self.carrier:
@@ -272,6 +324,30 @@ class RayFan:
         if self.offset is None:
             return True
         return bool(can_reach(self.targets.model, self.body, self.offset, body.geoms, *self.bounds).any())
+
+
+def _bounds(grid: tuple[Vector, Vector] | None) -> tuple[float, float]:
+    """Return the lowest and highest elevation of rays [rad]."""
+    if grid is not None and np.abs(grid[0]).max() <= np.pi / 2:
+        return float(grid[0].min()), float(grid[0].max())
+    return -np.pi / 2, np.pi / 2
+
+
+def _parts_of(whole: FanDirections, grid: tuple[Vector, Vector] | None, count: int) -> list[FanPart]:
+    """Divide the rays of a fan into parts, which are complete layers of a grid."""
+    if count == 1:
+        return [FanPart(slice(0, len(whole.directions)), whole, _bounds(grid))]
+    layers = len(whole.directions) if grid is None else len(grid[0])
+    length, ends = len(whole.directions) // layers, [i * layers // count for i in range(count + 1)]
+    parts = []
+    for first, last in pairwise(ends):
+        if last > first:
+            rays, own_grid = (
+                slice(first * length, last * length),
+                None if grid is None else (grid[0][first:last], grid[1]),
+            )
+            parts.append(FanPart(rays, FanDirections(whole.directions[rays], own_grid), _bounds(own_grid)))
+    return parts
 
 
 class RayFanRows:
@@ -355,16 +431,16 @@ class RayFanRows:
 
     def _cast_on_triangles(self, origins: Vector, directions: Vector, distances: Vector, start: float) -> None:
         """Shorten the distances of rays that hit static triangles, for all simulations with the same ones at once."""
-        fan, data = self._fan, self._states.sim.mj_data
+        fan = self._fan
         kinds = np.array([id(bodies) for bodies in self._triangles])
         for kind in set(kinds.tolist()):
             rows = np.flatnonzero(kinds == kind)
-            points = np.repeat(origins[rows], fan.count, axis=0)
-            rays, shortest = directions[rows].reshape(-1, 3), distances[rows].reshape(-1)
+            points = np.repeat(origins[rows].T, fan.count, axis=1)
+            rays, shortest = directions[rows].reshape(-1, 3).T, distances[rows].reshape(-1)
             for body in self._triangles[rows[0]]:
                 limit = np.minimum(shortest, fan.reach, dtype=np.float32)
-                hits, lengths, _ = body.cast(data, points, rays, start, limit)
-                shortest[hits] = np.minimum(shortest[hits], lengths)
+                lengths, _ = body.cast(points, rays, start, limit)
+                np.fmin(shortest, lengths, out=shortest)
             distances[rows] = shortest.reshape(len(rows), -1)
 
 

@@ -15,6 +15,7 @@ from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.scene import SceneSensor
 from simkit.sensors.base import Product, Sensor
+from simkit.sensors.measured_rows import MeasuredRows
 from simkit.sensors.noise import Noise, NoiseModel, read_noise
 from simkit.sensors.rays.nearest_in_cone import NearestInCone
 
@@ -124,6 +125,9 @@ class Sonar(Sensor):
         """Scoped name of the collision that the newest reading hit; empty for none."""
         reading: SonarReading | None = self._true_reading()
         return reading.hit if reading is not None else ""
+
+    def array_rule(self) -> MeasuredRows:
+        return MeasuredRows(self, casts=True)
 
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> SonarReading:
         options = self.options

@@ -250,7 +250,8 @@ class SweptCaster:
         else:
             self._cast_on_static_geoms(data, rays, start, hits)
         if self._static:
-            origins, directions, numbers = rays.all_origins(), rays.all_directions(), rays.numbers.ravel()
+            origins = np.broadcast_to(rays.origins[:, None], rays.directions.shape).reshape(3, -1)
+            directions, numbers = rays.directions.reshape(3, -1), rays.numbers.ravel()
             for body in self._static:
                 self._cast_on_triangles(body, numbers, origins, directions, start, hits)
         if len(self._mover_carriers):
@@ -260,10 +261,10 @@ class SweptCaster:
         self, body: TriangleBody, numbers: Ids, origins: Vector, directions: Vector, start: float, hits: SweptHits
     ) -> None:
         limit = np.minimum(hits.distances.take(numbers), self._fan.reach, dtype=np.float32)
-        which, distances, geoms = body.cast_local(origins, directions, start, limit)
-        nearer = distances < hits.distances.take(numbers[which])
-        chosen = numbers[which][nearer]
-        hits.distances[chosen], hits.geoms[chosen] = distances[nearer], geoms[nearer]
+        distances, geoms = body.cast(origins, directions, start, limit)
+        nearer = np.flatnonzero(distances < hits.distances.take(numbers))
+        chosen = numbers.take(nearer)
+        hits.distances[chosen], hits.geoms[chosen] = distances.take(nearer), geoms.take(nearer)
 
     def _cast_on_static_shapes(self, rays: WorldRays, start: float, hits: SweptHits) -> None:
         """Cast on static planes and shapes with the engine, as `mj_ray` does."""
@@ -415,7 +416,7 @@ class SweptCaster:
             if body is not None:
                 own = np.flatnonzero(carriers == index)
                 if len(own):
-                    local, turned = (np.ascontiguousarray(part[:, own].T) for part in (origins, directions))
+                    local, turned = origins.take(own, 1), directions.take(own, 1)
                     self._cast_on_triangles(body, numbers[own], local, turned, start, hits)
 
     def _pairs_of_movers(self, rays: WorldRays) -> tuple[Ids, Ids]:

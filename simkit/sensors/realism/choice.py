@@ -14,7 +14,7 @@ from simkit.scene import SceneModel, SceneWorld
 from simkit.sensors.realism.change import Change
 from simkit.sensors.realism.datasheet import Datasheet
 from simkit.sensors.realism.ideal import Ideal
-from simkit.sensors.realism.model_parts import with_parts
+from simkit.sensors.realism.model_change import change_model
 from simkit.sensors.realism.realism_file import FromFile, read_realism_file
 
 IDEAL_OR_DATASHEET: Final = ("datasheet", "ideal")
@@ -34,14 +34,14 @@ class Realism:
     def world(self, world: SceneWorld, diagnostics: Diagnostics) -> SceneWorld:
         """Return a world with changed sensors; notes and errors go to `diagnostics`."""
         change = self._make_change(diagnostics)
-        models = tuple(with_parts(model, change.sensor, change.plugin) for model in world.models)
+        models = tuple(change_model(model, change.sensor, change.plugin) for model in world.models)
         change.report(is_world=True)
         return replace(world, models=models)
 
     def model(self, model: SceneModel, diagnostics: Diagnostics) -> SceneModel:
         """Return a spawned model with changed sensors."""
         change = self._make_change(diagnostics)
-        changed = with_parts(model, change.sensor, change.plugin)
+        changed = change_model(model, change.sensor, change.plugin)
         change.report(is_world=False)
         return changed
 

@@ -52,6 +52,11 @@ class LatestMessage(TopicListener):
             raise UndecidedValue(f"no message received on {self.topic}")
         return message
 
+    def restore(self, message: object) -> None:
+        """Set the newest message, or None, as after the restore of a snapshot."""
+        if self._subscription is not None:
+            self._subscription.restore_latest(message)
+
 
 class MessageCounter(TopicListener):
     """Number and times of the messages on a topic; the content of the messages is not read.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Collection, Container, Iterable, Mapping, Sequence
 from typing import Any, Literal, Protocol
 
@@ -305,6 +306,24 @@ class WorldView:
     def remembers(self) -> bool:
         """True if expressions use messages, or values of the whole run, that a reset of the simulation does not end."""
         return bool(self._latest_messages or self._counters or self._histories)
+
+    def present_messages(self) -> dict[str, object]:
+        """Return the newest message of each topic that expressions read, without topics that have none."""
+        found: dict[str, object] = {}
+        for topic, listener in self._latest_messages.items():
+            with contextlib.suppress(UndecidedValue):
+                found[topic] = listener.latest()
+        return found
+
+    def restore_messages(self, messages: Mapping[str, object]) -> None:
+        """Return to the messages of `present_messages`, after a snapshot of the same time was restored."""
+        for topic, listener in self._latest_messages.items():
+            listener.restore(messages.get(topic))
+
+    @property
+    def accumulates(self) -> bool:
+        """True if expressions count messages, or use values of the whole run, which no snapshot contains."""
+        return bool(self._counters or self._histories)
 
     def close(self) -> None:
         """End all subscriptions and observations."""

@@ -41,6 +41,7 @@ def refused(path: Path) -> simkit.Diagnostic:
         (b"abc\0def", "a binary file"),
         (b"world:\n  models: []\n", "a text without any element"),
         (b"# a run\nworld: hall\nlimits: [time < 3]\n", SCENARIO),
+        (b"# Read me\n\nUse <tag>.\n", "a text that begins with '# Read me'"),
         (b"version https://git-lfs.github.com/spec/v1\n", LFS),
     ],
 )  # fmt: skip

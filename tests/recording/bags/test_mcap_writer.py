@@ -46,3 +46,27 @@ def test_a_channel_without_messages_is_in_the_summary() -> None:
     writer.register_channel("/never", "cdr", writer.register_schema("a/msg/T", "ros2msg", b"int32 x"), {})
     writer.finish()
     assert b"/never" in file.getvalue()
+
+
+def test_messages_that_are_added_together_have_the_bytes_of_messages_one_by_one() -> None:
+    for seed in range(30):
+        source = random.Random(seed)
+        files, counts = (io.BytesIO(), io.BytesIO()), dict[int, int]()
+        alone, together = (McapWriter(file, "ros2", "simkit", CHUNK_BYTES) for file in files)
+        for writer in (alone, together):
+            schema = writer.register_schema("a/msg/T", "ros2msg", b"int32 x")
+            for number in range(4):
+                writer.register_channel(f"/t{number}", "cdr", schema, {})
+        for _ in range(20):
+            count = source.randrange(1, 40)
+            channels = [source.randrange(1, 5) for _ in range(count)]
+            times = [source.randrange(10**12) for _ in range(count)]
+            data = [source.randbytes(source.randrange(100)) for _ in range(count)]
+            for channel, time_ns, content in zip(channels, times, data, strict=True):
+                alone.add_message(channel, time_ns, content, time_ns, counts.setdefault(channel, 0))
+                counts[channel] += 1
+            together.add_messages(channels, times, data)
+            assert [together.count(channel) for channel in counts] == list(counts.values())
+        alone.finish()
+        together.finish()
+        assert files[0].getvalue() == files[1].getvalue(), f"seed {seed}"

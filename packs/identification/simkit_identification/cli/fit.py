@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, cast
 
@@ -81,7 +82,7 @@ def fit(
         seed,
     )  # fmt: skip
     spec = scenario_spec(world, given, allow_code=allow_code)
-    on_stage = (lambda _: None) if quiet else print_status
+    on_stage: Callable[[str], None] = (lambda _: None) if quiet else print_status
     result = fit_run(spec, bags, vary, chosen, on_stage)
     add_to_report(**result.as_dict())
     add_diagnostics(result.diagnostics)
@@ -89,12 +90,8 @@ def fit(
         for line in result.lines():
             stdout_console().print(line, markup=False, soft_wrap=True)
     print_diagnostics(result.diagnostics, verbose=True)
-    written = [
-        *([] if output is None else [result.save(output)]),
-        *([] if report is None else [result.report(report)]),
-        *([] if plot is None else [result.plot(plot)]),
-    ]
+    writers = (output, result.save), (report, result.report), (plot, result.plot)
+    written = [write(path) for path, write in writers if path is not None]
     add_to_report(files=[str(path) for path in written])
     for path in written:
-        if not quiet:
-            print_status(f"wrote {path}")
+        on_stage(f"wrote {path}")

@@ -7,7 +7,7 @@ from typing import Final, Literal
 
 import numpy as np
 
-from simkit_identification.measures.recording import Floats, Recording, Signal
+from simkit_identification.measures.recording import Floats, Signal, SignalRecording
 from simkit_identification.measures.signals import is_constant
 
 Align = Literal["auto", "none", "start", "correlation"]
@@ -19,7 +19,7 @@ _LONGEST: Final = 3600.0  # [s] of a recording that are correlated
 _PREFERRED: Final = ("linear.x", "angular.z", "angular_velocity.z")  # speeds: they vary, and do not drift
 
 
-def alignment_offset(a: Recording, b: Recording, align: Align) -> tuple[float, str]:
+def alignment_offset(a: SignalRecording, b: SignalRecording, align: Align) -> tuple[float, str]:
     """Return the time to add to b [s], and a sentence about it.
 
     Args:
@@ -40,7 +40,7 @@ def alignment_offset(a: Recording, b: Recording, align: Align) -> tuple[float, s
     return offset, f"{reason}b is moved by {offset:+.3f} s, so that both begin at the same time"
 
 
-def _start(recording: Recording, other: Recording) -> float:
+def _start(recording: SignalRecording, other: SignalRecording) -> float:
     """Return the time of the first message on a topic of both recordings [s]."""
     starts = [
         float(stream.received[0])
@@ -50,7 +50,7 @@ def _start(recording: Recording, other: Recording) -> float:
     return min(starts, default=0.0)
 
 
-def _best_shift(a: Recording, b: Recording) -> tuple[float, float, str] | None:
+def _best_shift(a: SignalRecording, b: SignalRecording) -> tuple[float, float, str] | None:
     """Return shift [s], correlation and name of the signal that fits best; None if none fits."""
     best: tuple[float, float, str] | None = None
     for name, one, two in _candidates(a, b):
@@ -60,7 +60,7 @@ def _best_shift(a: Recording, b: Recording) -> tuple[float, float, str] | None:
     return best
 
 
-def _candidates(a: Recording, b: Recording) -> Iterator[tuple[str, Signal, Signal]]:
+def _candidates(a: SignalRecording, b: SignalRecording) -> Iterator[tuple[str, Signal, Signal]]:
     for topic, stream in a.streams.items():
         other = b.streams.get(topic)
         if other is None:

@@ -16,7 +16,7 @@ from simkit_identification.measures.context import Context
 from simkit_identification.measures.inertial import VECTORS, still_statistics
 from simkit_identification.measures.motion import pose_paths
 from simkit_identification.measures.ranges import RANGE_EDGES, still_blocks
-from simkit_identification.measures.recording import Floats, Recording, Signal, Stream
+from simkit_identification.measures.recording import Floats, Signal, SignalRecording, Stream
 from simkit_identification.measures.signals import FIELD_OF_MEASURE, is_constant, segment_spectra
 
 _MOST_SIGNALS: Final = 4  # signals of a topic that are drawn
@@ -26,7 +26,7 @@ _SAME_INTERVAL: Final = 0.1  # relative differences of intervals up to which the
 _ROLES: Final = ("a", "b")
 
 
-def charts_of(a: Recording, b: Recording | None, rows: Sequence[Row]) -> list[tuple[str, str]]:
+def charts_of(a: SignalRecording, b: SignalRecording | None, rows: Sequence[Row]) -> list[tuple[str, str]]:
     """Return title and SVG of each chart of a comparison: topics with differences first."""
     differing = {row.topic for row in rows if row.verdict in DIFFERING}
     topics = list(dict.fromkeys(row.topic for row in rows))
@@ -48,7 +48,7 @@ def _wanted_signals(rows: Sequence[Row], topic: str) -> list[str]:
     return list(dict.fromkeys(match["field"] for match in matches if match is not None))
 
 
-_Sides = list[tuple[Stream, Recording, str]]
+_Sides = list[tuple[Stream, SignalRecording, str]]
 
 
 def _topic_charts(sides: _Sides, wanted: Sequence[str]) -> Iterator[PageChart]:
@@ -115,7 +115,7 @@ def _path_charts(topic: str, sides: _Sides) -> Iterator[PageChart]:
         yield PageChart(lines, title, "x [m]", "y [m]", height=260, caption=title)
 
 
-def _spectrum_chart(title: str, found: list[tuple[Signal, Recording, str]]) -> Iterator[PageChart]:
+def _spectrum_chart(title: str, found: list[tuple[Signal, SignalRecording, str]]) -> Iterator[PageChart]:
     lines: list[tuple[Series, str]] = []
     duration = min(side.duration for _, side, _ in found)
     for signal, _, role in found:

@@ -9,10 +9,9 @@ from typing import Any, Final
 
 from simkit import RunSpec
 from simkit.argument_checks import wrong_type
-from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
+from simkit.extend import did_you_mean
 from simkit.msgs.data_frames import DataFrame
-from simkit.run_spec import FilePath
 from simkit_identification.comparison.alignment import ALIGNMENTS, Align, alignment_offset
 from simkit_identification.comparison.charts import charts_of
 from simkit_identification.comparison.paired_runs import compare_sets, is_set
@@ -26,16 +25,16 @@ from simkit_identification.comparison.sources import (
     world_spec,
 )
 from simkit_identification.comparison.table import Comparison
-from simkit_identification.comparison.tolerances import INVALID, Tolerance, parse_tolerances
-from simkit_identification.measures.recording import Recording
+from simkit_identification.comparison.tolerances import INVALID, Tolerance, parse_tolerances, unused_tolerances
+from simkit_identification.measures.recording import SignalRecording
 
 _NOTHING_IN_COMMON: Final = "SK-COMPARE-002"
 _NEAR: Final = 1.0  # [s] up to which two simulated clocks count as the same
 
 
 def compare(
-    a: FilePath | DataFrame,
-    b: FilePath | RunSpec | DataFrame | None = None,
+    a: str | os.PathLike[str] | DataFrame,
+    b: str | os.PathLike[str] | RunSpec | DataFrame | None = None,
     *,
     names: Mapping[str, str] | None = None,
     topics: str | Sequence[str] = (),
@@ -87,7 +86,9 @@ def compare(
         return _compare(first, second, "none", choice, confidence, checked, played=frozenset(first.commands))
     other = Path(_file(b))
     old_names = choice.old_names
-    second = read_bag(other, lambda topic: choice.takes(old_names.get(topic, topic))).renamed(old_names)
+    second = read_bag(other, lambda topic: choice.takes(old_names.get(topic, topic)))
+    _check_names(first, second, choice)
+    second = second.renamed(old_names)
     if align == "auto" and has_simulated_times(path) and has_simulated_times(other) and _begin_together(first, second):
         align = "none"
     return _compare(first, second, align, choice, confidence, checked)
@@ -114,7 +115,7 @@ def _file(value: Any) -> str:
     return os.fspath(value)
 
 
-def _world(b: FilePath | RunSpec) -> str | RunSpec:
+def _world(b: str | os.PathLike[str] | RunSpec) -> str | RunSpec:
     return b if isinstance(b, RunSpec) else _file(b)
 
 
@@ -128,16 +129,16 @@ def _bag_path(a: Any) -> Path:
     return path
 
 
-def _begin_together(a: Recording, b: Recording) -> bool:
+def _begin_together(a: SignalRecording, b: SignalRecording) -> bool:
     starts = [min((float(s.received[0]) for s in side.streams.values() if s.count), default=0.0) for side in (a, b)]
     return abs(starts[0] - starts[1]) < _NEAR
 
 
-def _chosen(recording: Recording, choice: TopicChoice) -> list[str]:
+def _chosen(recording: SignalRecording, choice: TopicChoice) -> list[str]:
     return [topic for topic in recording.streams if choice.takes(topic)]
 
 
-def _notes(*sides: Recording) -> list[str]:
+def _notes(*sides: SignalRecording) -> list[str]:
     notes: dict[str, None] = {}
     for side in sides:
         notes.update(dict.fromkeys(side.notes))
@@ -146,7 +147,7 @@ def _notes(*sides: Recording) -> list[str]:
     return list(notes)
 
 
-def _report(a: Recording, choice: TopicChoice, confidence: float) -> Comparison:
+def _report(a: SignalRecording, choice: TopicChoice, confidence: float) -> Comparison:
     rows = rows_of_one(a, _chosen(a, choice), confidence)
     table = Comparison(a.name, "", rows, confidence, _notes(a))
     table.charts = charts_of(a, None, rows)
@@ -154,8 +155,8 @@ def _report(a: Recording, choice: TopicChoice, confidence: float) -> Comparison:
 
 
 def _compare(
-    a: Recording,
-    b: Recording,
+    a: SignalRecording,
+    b: SignalRecording,
     align: Align,
     choice: TopicChoice,
     confidence: float,
@@ -165,9 +166,7 @@ def _compare(
     topics = [t for t in _chosen(a, choice) if t not in played]
     topics += [t for t in _chosen(b, choice) if t not in a.streams and t not in played]
     if not any(t in a.streams and t in b.streams for t in topics):
-        names = [", ".join(sorted(side.streams)) or "none" for side in (a, b)]
-        text = f"{a.name} and {b.name} have no topic in common; a has {names[0]}; b has {names[1]}"
-        raise InputError(_NOTHING_IN_COMMON, text, help="name topics that correspond: --map /scan=/lidar/scan")
+        raise _nothing_in_common(a, b, played)
     offset, sentence = alignment_offset(a, b, align)
     b = b.shifted(offset)
     if sentence:
@@ -179,11 +178,35 @@ def _compare(
         raise InputError(_NOTHING_IN_COMMON, text, help="align them by their first messages: --align start")
     a, b = a.between(start, end), b.between(start, end)
     rows = rows_of_two(a, b, topics, confidence, tolerances)
+    b.notes += [f"tolerance {t.pattern}: no row is called so" for t in unused_tolerances(tolerances[:-1], rows)]
     table = Comparison(a.name, b.name, rows, confidence, _notes(a, b))
     table.charts = charts_of(a, b, rows)
     return table
 
 
-def _start(recording: Recording) -> float:
+def _check_names(a: SignalRecording, b: SignalRecording, choice: TopicChoice) -> None:
+    """Check that the topics of `names` are in the recordings, each with its own names."""
+    problems: list[str] = []
+    for old, new in choice.names.items():
+        if not choice.takes(old):
+            continue
+        for side, topic in ((a, old), (b, new)):
+            if topic not in side.streams:
+                known = sorted(side.streams)
+                hint = did_you_mean(topic, known) or f"it has {', '.join(known)}"
+                problems.append(f"--map {old}={new}: {side.name} has no topic {topic}; {hint}")
+    if problems:
+        raise InputError(INVALID, f"\n{INVALID} ".join(problems))
+
+
+def _nothing_in_common(a: SignalRecording, b: SignalRecording, played: frozenset[str]) -> InputError:
+    """Return the error for recordings without a common topic besides the commands."""
+    names = [", ".join(sorted(set(side.streams) - played)) or "none" for side in (a, b)]
+    besides = f" besides the commands {', '.join(sorted(played))}" if played else ""
+    text = f"{a.name} and {b.name} have no topic in common{besides}; a has {names[0]}; b has {names[1]}"
+    return InputError(_NOTHING_IN_COMMON, text, help="name topics that correspond: --map /scan=/lidar/scan")
+
+
+def _start(recording: SignalRecording) -> float:
     """Return the time of the first message on any topic that is not latched [s]."""
     return min((float(s.received[0]) for s in recording.streams.values() if s.count > 1), default=0.0)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from simkit.writers.atomic_output import write_atomically
 from simkit_identification.comparison.row import Row, html_table
+from simkit_identification.result_texts import write_html
 
 _TEMPLATE: Final = Path(__file__).with_name("page.html.j2")
 
@@ -44,18 +44,13 @@ def write_page(contents: PageContents, target: Path) -> Path:
     Raises:
         InputError: SK-CLI-016 the page cannot be written.
     """
-    from jinja2 import Environment, StrictUndefined
-
-    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    template = environment.from_string(_TEMPLATE.read_text("utf-8"))
     tables = [
         html_table(rows, has_b=bool(contents.b), confidence=contents.confidence) if rows else ""
         for rows in (contents.differing, contents.rows)
     ]
-    page = template.render(
-        a=contents.a, b=contents.b, notes=contents.notes, confidence=f"{contents.confidence:.0%}",
-        charts=contents.charts, summary=contents.summary, differing=len(contents.differing),
-        worst=tables[0], rows=tables[1],
-    )  # fmt: skip
-    write_atomically(target, page.encode("utf-8"))
-    return target
+    values = {
+        "a": contents.a, "b": contents.b, "notes": contents.notes, "confidence": f"{contents.confidence:.0%}",
+        "charts": contents.charts, "summary": contents.summary, "differing": len(contents.differing),
+        "worst": tables[0], "rows": tables[1],
+    }  # fmt: skip
+    return write_html(_TEMPLATE, values, target)

@@ -15,7 +15,7 @@ import numpy as np
 
 from simkit.errors import InputError
 from simkit.input_file import read_failure, read_input_text
-from simkit.recording.bags.bag_contents import matches_topic
+from simkit.recording import matches_topic
 from simkit_identification.comparison.row import Row
 from simkit_identification.comparison.rows import with_verdicts
 from simkit_identification.comparison.sources import ASIDE, is_bag, read_bag

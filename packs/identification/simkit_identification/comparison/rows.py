@@ -13,7 +13,7 @@ from simkit_identification.comparison.row import Row, Verdict
 from simkit_identification.comparison.tolerances import Tolerance, tolerance_of
 from simkit_identification.measures.context import Context
 from simkit_identification.measures.measure import Measure, Outcome, compare_measures, estimate
-from simkit_identification.measures.recording import Recording, Stream
+from simkit_identification.measures.recording import SignalRecording, Stream
 from simkit_identification.measures.registry import measures_of
 
 _UNKNOWN: Final = (math.nan, math.nan)
@@ -22,7 +22,7 @@ _FEW: Final = "too few samples"
 _NO_TEST: Final = "chance is unknown"
 
 
-def rows_of_one(a: Recording, topics: Sequence[str], confidence: float) -> list[Row]:
+def rows_of_one(a: SignalRecording, topics: Sequence[str], confidence: float) -> list[Row]:
     """Return the rows of one recording alone."""
     context = Context(a, a.duration, a.still_intervals())
     rows: list[Row] = []
@@ -56,7 +56,7 @@ def rows_of_one(a: Recording, topics: Sequence[str], confidence: float) -> list[
 
 
 def rows_of_two(
-    a: Recording, b: Recording, topics: Sequence[str], confidence: float, tolerances: list[Tolerance]
+    a: SignalRecording, b: SignalRecording, topics: Sequence[str], confidence: float, tolerances: list[Tolerance]
 ) -> list[Row]:
     """Return the rows of two recordings, with verdicts."""
     duration = min(a.duration, b.duration)

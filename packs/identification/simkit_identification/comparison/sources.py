@@ -10,17 +10,16 @@ from typing import TYPE_CHECKING, Final
 
 from simkit import RunSpec, progress
 from simkit.errors import InputError
-from simkit.recording import Recorder
-from simkit.recording.bags.bag_contents import matches_topic
-from simkit.recording.bags.reader import LATEST_SIMULATED_TIME, open_bag_to_read
-from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
+from simkit.recording import Recorder, matches_topic, open_bag_to_read
+from simkit.recording.bags.reader import LATEST_SIMULATED_TIME
+from simkit.testing import open_scenario, run_scenario
 from simkit_identification.command_replay import command_topics, repeated_run
 from simkit_identification.comparison.stream_reader import StreamReader
-from simkit_identification.measures.recording import Recording
+from simkit_identification.measures.recording import SignalRecording
 
 if TYPE_CHECKING:
     from simkit import Simulation
-    from simkit.recording.bags.reader import BagReader
+    from simkit.recording import BagReader
 
 ASIDE: Final = ("/clock", "/rosout", "/parameter_events", "/stats", "/diagnostics*", "*/transition_event", "/events/*")
 """Topics that are only compared if an option names them."""
@@ -69,7 +68,7 @@ def is_bag(path: Path) -> bool:
     return path.is_dir() and (path / "metadata.yaml").is_file()
 
 
-def read_bag(path: Path, choose: Callable[[str], bool], *, name: str = "") -> Recording:
+def read_bag(path: Path, choose: Callable[[str], bool], *, name: str = "") -> SignalRecording:
     """Read the messages of a bag as numbers.
 
     Args:
@@ -84,7 +83,8 @@ def read_bag(path: Path, choose: Callable[[str], bool], *, name: str = "") -> Re
         recording = _read(bag, choose, name or str(path))
     if not any(stream.count for stream in recording.streams.values()):
         known = ", ".join(sorted(topic.name for topic in bag.topics)) or "none"
-        raise InputError(_EMPTY, f"{path} has no messages to compare; its topics: {known}")
+        cut = f"; {bag.broken}" if bag.broken else ""
+        raise InputError(_EMPTY, f"{path} has no messages to compare; its topics: {known}{cut}")
     return recording
 
 
@@ -94,8 +94,8 @@ def has_simulated_times(path: Path) -> bool:
         return bag.start < LATEST_SIMULATED_TIME
 
 
-def _read(bag: BagReader, choose: Callable[[str], bool], name: str) -> Recording:
-    recording = Recording(name, bag.duration, {})
+def _read(bag: BagReader, choose: Callable[[str], bool], name: str) -> SignalRecording:
+    recording = SignalRecording(name, bag.duration, {})
     if bag.broken:
         recording.notes.append(f"{name}: {bag.broken}")
     readers: dict[tuple[str, str], StreamReader] = {}
@@ -136,8 +136,8 @@ def _read(bag: BagReader, choose: Callable[[str], bool], name: str) -> Recording
 
 
 def repeat_recording(
-    run: RunSpec, bag: Path, a: Recording, choice: TopicChoice, *, allow_code: bool = False
-) -> tuple[Recording, Recording]:
+    run: RunSpec, bag: Path, a: SignalRecording, choice: TopicChoice, *, allow_code: bool = False
+) -> tuple[SignalRecording, SignalRecording]:
     """Run a world with the commands of a recording, and read the run.
 
     Args:
@@ -186,6 +186,6 @@ def world_spec(world: str | Path | RunSpec, seed: int | None = None) -> RunSpec:
     return spec if seed is None else spec.with_values({"seed": seed})
 
 
-def common_topics(a: Recording, b: Recording) -> Sequence[str]:
+def common_topics(a: SignalRecording, b: SignalRecording) -> Sequence[str]:
     """Return the topics of both recordings."""
     return [topic for topic in a.streams if topic in b.streams]

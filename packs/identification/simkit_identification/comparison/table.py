@@ -11,11 +11,12 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
+from simkit.extend import did_you_mean
 from simkit.install_command import install_command
 from simkit_identification.comparison.page import PageContents, write_page
 from simkit_identification.comparison.row import DIFFERING, Row, cells_of, headings, html_table
+from simkit_identification.result_texts import finite_or_none
 
 if TYPE_CHECKING:
     from simkit.msgs.data_frames import DataFrame
@@ -130,12 +131,8 @@ class Comparison:
 
 def _plain(row: Row) -> dict[str, Any]:
     values = asdict(row) | {"text": row.text}
-    values["interval"] = [_finite(v) for v in row.interval]
-    return {key: _finite(value) if isinstance(value, float) else value for key, value in values.items()}
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None
+    values["interval"] = [finite_or_none(v) for v in row.interval]
+    return {key: finite_or_none(value) if isinstance(value, float) else value for key, value in values.items()}
 
 
 def table_lines(comparison: Comparison, *, everything: bool) -> Iterator[str]:

@@ -14,8 +14,8 @@ import numpy.typing as npt
 
 from simkit import RunSpec, progress
 from simkit.argument_checks import shown
-from simkit.diagnostics import NOWHERE, Diagnostics
 from simkit.errors import InputError
+from simkit.extend import Diagnostics
 from simkit.testing import open_scenario
 from simkit_identification.fitting.codes import (
     AT_BOUND,
@@ -34,7 +34,8 @@ from simkit_identification.fitting.fitted_values import ComparedTopic, FitCurve,
 from simkit_identification.fitting.motion import Motion
 from simkit_identification.fitting.noise_level import NoiseLevel, estimate_noise
 from simkit_identification.fitting.parameters import Parameter, Vary, read_parameters_to_vary, without_noise
-from simkit_identification.fitting.problem import Recording, fit_problem
+from simkit_identification.fitting.problem import RepeatedRecording, fit_problem
+from simkit_identification.fitting.readings import check_fields
 from simkit_identification.fitting.recordings import Bag, read_recordings
 from simkit_identification.fitting.residuals import Residuals
 from simkit_identification.fitting.result import FitResult
@@ -95,7 +96,7 @@ class FitOptions:
         for name, value in (("duration", self.duration), ("window", self.window)):
             if value is not None and not value > 0:
                 problems.append(f"{name}: found {shown(value)}; expected seconds above 0")
-        if self.duration is not None and self.duration <= self.skip:
+        if self.duration is not None and 0 < self.duration <= self.skip:
             problems.append(f"duration {self.duration:g} s is not above skip {self.skip:g} s")
         if problems:
             raise InputError(INVALID_OPTION, f"\n{INVALID_OPTION} ".join(problems))
@@ -185,7 +186,7 @@ def _check_deviations(parameters: Sequence[Parameter]) -> None:
             raise InputError(INVALID_PARAMETER, text, help="write a first value above 0: --vary PATH=START")
 
 
-def _describe_task(parameters: Sequence[Parameter], recordings: Sequence[Recording]) -> str:
+def _describe_task(parameters: Sequence[Parameter], recordings: Sequence[RepeatedRecording]) -> str:
     topics = list(dict.fromkeys(readings.channel.topic for r in recordings for readings in r.readings))
     size = sum(recording.size for recording in recordings)
     names = ", ".join(topics[:6]) + (f" and {len(topics) - 6} more" if len(topics) > 6 else "")
@@ -204,7 +205,7 @@ class _Fitter:
         run: RunSpec,
         quiet: RunSpec,
         parameters: Sequence[Parameter],
-        recordings: Sequence[Recording],
+        recordings: Sequence[RepeatedRecording],
         options: FitOptions,
         on_stage: Callable[[str], None],
     ) -> None:
@@ -232,6 +233,7 @@ class _Fitter:
             Evaluator(problem, self._searched, self._options.jobs, task) as evaluate,
         ):
             residuals = Residuals(recordings, self._options.skip, () if self._is_free else self._options.compare)
+            self._check_compared(residuals)
             start = np.zeros(len(self._searched))
             before = self._first_readings(evaluate, start)
             self._compare_only_known(residuals, before, notes)
@@ -277,6 +279,15 @@ class _Fitter:
             text = f"the run with the first values fails: {evaluate.failures[0]}"
             raise InputError(RUNS_FAILED, text, help="give other first values: --vary PATH=START")
         return before
+
+    def _check_compared(self, residuals: Residuals) -> None:
+        """Raise InputError if the options leave no recorded reading to compare."""
+        last = float(np.max(residuals.times, initial=0.0))
+        if last < self._options.skip:
+            text = f"skip: found {self._options.skip:g} s, and the last reading is at {last:g} s"
+            raise InputError(INVALID_OPTION, text)
+        if not self._is_free:
+            check_fields(self._options.compare, [(name.channel.topic, name.column) for name in residuals.columns])
 
     def _compare_only_known(self, residuals: Residuals, before: Floats, notes: Mapping[str, str]) -> None:
         if not np.any(np.isfinite(before) & np.isfinite(residuals.recorded)):
@@ -358,7 +369,7 @@ class _Fitter:
         if len(self._searched) > 1 and not has_cma():
             text = f"the readings do not depend smoothly on {', '.join(names)}"
             help_ = "install the extra fit, so that CMA-ES searches"
-            self.diagnostics.warning(NOT_SMOOTH, text, NOWHERE, help_)
+            self.diagnostics.warning(NOT_SMOOTH, text, hint=help_)
             return "least-squares"
         return "cma"
 
@@ -410,19 +421,19 @@ class _Fitter:
         warn = self.diagnostics.warning
         if not found.has_converged:
             text = f"the search ended before it converged: {found.message}"
-            warn(NOT_CONVERGED, text, NOWHERE, "give narrower bounds or other first values, or --method cma")
+            warn(NOT_CONVERGED, text, hint="give narrower bounds or other first values, or --method cma")
         for p, u in zip(self._searched, found.point, strict=True):
             low, high = p.limits()
             if (u - low) < 1e-3 * (high - low) or (high - u) < 1e-3 * (high - low):
                 text = f"{p.path} = {p.value(float(u)):.6g} is at a bound of its range"
-                warn(AT_BOUND, text, NOWHERE, "widen the bounds, or vary what the value stands in for")
+                warn(AT_BOUND, text, hint="widen the bounds, or vary what the value stands in for")
         if evaluate.failed:
             listed = "; ".join(evaluate.failures[:3])
             text = f"{evaluate.failed} of {evaluate.runs} runs failed and counted as a large cost: {listed}"
-            warn(RUNS_FAILED, text, NOWHERE, "bounds that exclude such values make the search faster")
+            warn(RUNS_FAILED, text, hint="bounds that exclude such values make the search faster")
         if uncertainty is not None:
             for sentence in describe_confusion(self._searched, uncertainty):
-                warn(NOT_TOLD_APART, sentence, NOWHERE, "fix one of them, or record a motion in which they act apart")
+                warn(NOT_TOLD_APART, sentence, hint="fix one of them, or record a motion in which they act apart")
 
 
 def _rounded(value: float) -> float:
@@ -446,7 +457,9 @@ def _compared_topics(
     return (*topics, *(ComparedTopic(topic, note=note) for topic, note in notes.items()))
 
 
-def _curves(recordings: Sequence[Recording], residuals: Residuals, before: Floats, after: Floats) -> list[FitCurve]:
+def _curves(
+    recordings: Sequence[RepeatedRecording], residuals: Residuals, before: Floats, after: Floats
+) -> list[FitCurve]:
     """Return the compared columns, those that improve most first."""
     curves: list[tuple[float, FitCurve]] = []
     at = 0

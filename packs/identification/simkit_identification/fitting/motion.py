@@ -15,7 +15,7 @@ from simkit.elementary_functions import arctan2
 from simkit.errors import InputError
 from simkit.linear_algebra import dot, norm
 from simkit.pose import Pose, quat_rotate
-from simkit.recording.bags.reader import open_bag_to_read
+from simkit.recording import open_bag_to_read
 from simkit_identification.fitting.codes import INVALID_MOTION
 from simkit_identification.fitting.readings import Channel, Readings
 

@@ -26,7 +26,7 @@ Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Recording:
+class RepeatedRecording:
     """Recording that runs repeat.
 
     Attributes:
@@ -53,7 +53,7 @@ class Recording:
         """Number of compared numbers."""
         return sum(reading.values.size for reading in self.readings)
 
-    def with_channels(self, chosen: Sequence[bool]) -> Recording:
+    def with_channels(self, chosen: Sequence[bool]) -> RepeatedRecording:
         """Return the recording with some of its channels."""
         return replace(self, readings=tuple(r for r, is_chosen in zip(self.readings, chosen, strict=True) if is_chosen))
 
@@ -66,10 +66,10 @@ class FitProblem(SweepSpec):
         recordings: recordings.
     """
 
-    recordings: tuple[Recording, ...] = ()
+    recordings: tuple[RepeatedRecording, ...] = ()
 
 
-def fit_problem(run: RunSpec, recordings: Sequence[Recording]) -> FitProblem:
+def fit_problem(run: RunSpec, recordings: Sequence[RepeatedRecording]) -> FitProblem:
     """Return the problem of a run and its recordings."""
     return FitProblem(run, Design(()), recordings=tuple(recordings))
 
@@ -122,7 +122,7 @@ class ReplayRunner(RowRunner):
         result.wall_time = time.perf_counter() - begun
         return result
 
-    def replay(self, recording: Recording, row: SweepRow) -> Floats:
+    def replay(self, recording: RepeatedRecording, row: SweepRow) -> Floats:
         """Return the simulated readings of a recording, shape (size,).
 
         Raises:
@@ -136,7 +136,7 @@ class ReplayRunner(RowRunner):
         return np.concatenate([values.ravel() for values in _run_bag(sim, spec, recording)])
 
 
-def _run_bag(sim: Simulation, spec: RunSpec, recording: Recording) -> list[Floats]:
+def _run_bag(sim: Simulation, spec: RunSpec, recording: RepeatedRecording) -> list[Floats]:
     """Run a world with the commands of a bag and return its readings at the recorded times."""
     with RunReadings(sim, recording.topics) as collector:
         run_scenario(spec, sim, judged=False)

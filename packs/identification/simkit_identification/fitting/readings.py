@@ -14,13 +14,13 @@ from simkit import msgs
 from simkit.errors import InputError
 from simkit.extend import did_you_mean
 from simkit.msgs.message_columns import TEXT, Column, columns_of
-from simkit.recording.bags.bag_contents import matches_topic
+from simkit.recording import matches_topic
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
     from simkit import Simulation
-    from simkit.recording.bags.reader import BagReader
+    from simkit.recording import BagReader
 
 Floats = npt.NDArray[np.float64]
 
@@ -299,6 +299,24 @@ def is_compared(topic: str, column: str, compare: Sequence[str]) -> bool:
         ):
             return True
     return False
+
+
+def check_fields(chosen: Sequence[str], columns: Sequence[tuple[str, str]]) -> None:
+    """Check that each text of `--compare` selects a column.
+
+    Args:
+        chosen: texts `TOPIC` or `TOPIC.FIELD`.
+        columns: topic and name of each column.
+
+    Raises:
+        InputError: SK-CLI-030 a text selects no column.
+    """
+    for text in chosen:
+        if not any(is_compared(topic, column, [text]) for topic, column in columns):
+            topic, _, field = text.partition(".")
+            known = list(dict.fromkeys(column for name, column in columns if matches_topic(name, [topic])))
+            hint = did_you_mean(field, known) or f"fields: {', '.join(known[:20]) or 'none'}"
+            raise InputError("SK-CLI-030", f"--compare {text}: the readings have no such field; {hint}")
 
 
 def check_topics(chosen: Sequence[str], available: Sequence[str]) -> None:

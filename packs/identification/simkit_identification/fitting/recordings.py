@@ -12,14 +12,13 @@ import numpy as np
 
 from simkit import RunSpec, Simulation
 from simkit.errors import InputError
-from simkit.recording.bags.bag_contents import matches_topic
-from simkit.recording.bags.reader import open_bag_to_read
+from simkit.recording import matches_topic, open_bag_to_read
 from simkit.recording.message_taps import is_available
 from simkit_identification.command_replay import command_topics, repeated_run
 from simkit_identification.fitting.codes import INVALID_MOTION, INVALID_OPTION, NO_COMMANDS, NOTHING_COMMON
 from simkit_identification.fitting.inputs import world_inputs
 from simkit_identification.fitting.motion import Motion, motion_of_bag
-from simkit_identification.fitting.problem import Recording
+from simkit_identification.fitting.problem import RepeatedRecording
 from simkit_identification.fitting.readings import (
     Readings,
     bag_readings,
@@ -53,7 +52,7 @@ class RecordingOptions(Protocol):
 
 def read_recordings(
     sim: Simulation, run: RunSpec, bags: Sequence[Bag], options: RecordingOptions
-) -> tuple[list[Recording], dict[str, str]]:
+) -> tuple[list[RepeatedRecording], dict[str, str]]:
     """Return the recordings, and the topics that are not compared with the reason.
 
     Args:
@@ -66,7 +65,7 @@ def read_recordings(
         InputError: SK-FIT-003 a bag has no commands for the world; SK-FIT-004 nothing to compare; SK-FIT-010 an
             invalid option; SK-FIT-011 an invalid motion; or a bag cannot be read.
     """
-    recordings: list[Recording] = []
+    recordings: list[RepeatedRecording] = []
     notes: dict[str, str] = {}
     for bag in bags:
         if isinstance(bag, Motion):
@@ -83,7 +82,7 @@ def read_recordings(
     return recordings, notes
 
 
-def _motion_recording(sim: Simulation, run: RunSpec, motion: Motion, options: RecordingOptions) -> Recording:
+def _motion_recording(sim: Simulation, run: RunSpec, motion: Motion, options: RecordingOptions) -> RepeatedRecording:
     model_names = [model.name for model in sim.loaded.world.models]
     if motion.model not in model_names:
         text = f"{motion.name}: the world has no model {motion.model!r}; its models: {', '.join(model_names) or 'none'}"
@@ -92,7 +91,7 @@ def _motion_recording(sim: Simulation, run: RunSpec, motion: Motion, options: Re
         raise InputError(INVALID_MOTION, f"the model {motion.model!r} is static, so it has no motion to fit")
     if options.duration is not None:
         motion = _shortened(motion, options.duration)
-    return Recording(motion.name, run, (motion.recorded(),), motion, tuple(motion.windows(options.window)))
+    return RepeatedRecording(motion.name, run, (motion.recorded(),), motion, tuple(motion.windows(options.window)))
 
 
 def _shortened(motion: Motion, duration: float) -> Motion:
@@ -105,15 +104,17 @@ def _shortened(motion: Motion, duration: float) -> Motion:
 
 def _bag_recording(
     sim: Simulation, run: RunSpec, path: Path, options: RecordingOptions, notes: dict[str, str]
-) -> Recording:
+) -> RepeatedRecording:
     repeated = repeated_run(run, path, options.play_topics, options.duration)
     commands = command_topics(sim, path, options.play_topics)
     if not commands:
         inputs = ", ".join(world_inputs(sim)) or "none"
-        text = f"{path}: the world hears no topic of this bag; its inputs: {inputs}"
+        text = f"{path}: the world hears no topic of this bag{_cut(path)}; its inputs: {inputs}"
         help_ = "rename topics with --play-topic OLD:=NEW; for a body that moves freely, use --motion MODEL=TOPIC"
         raise InputError(NO_COMMANDS, text, help=help_)
     with open_bag_to_read(path) as bag:
+        if bag.broken:
+            notes[f"the rest of {path}"] = bag.broken
         available = {t: kind for t, kind in common_topics(sim, bag) if t not in commands and t not in commands.values()}
         numeric = [topic for topic, kind in available.items() if has_numbers(kind)]
         check_topics(options.compare, numeric)
@@ -137,7 +138,13 @@ def _bag_recording(
         text = f"{path}: the bag and the world share no topic with numbers to compare"
         listed = ", ".join(sorted(available)) or "none"
         raise InputError(NOTHING_COMMON, f"{text}; topics of both: {listed}", help="record the topics of the sensors")
-    return Recording(str(path), repeated, tuple(kept))
+    return RepeatedRecording(str(path), repeated, tuple(kept))
+
+
+def _cut(path: Path) -> str:
+    """Return the reason why a bag is truncated, in brackets; empty for a complete bag."""
+    with open_bag_to_read(path) as bag:
+        return f" ({bag.broken})" if bag.broken else ""
 
 
 def _has_two(readings: Readings) -> bool:

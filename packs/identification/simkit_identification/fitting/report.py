@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -12,6 +12,7 @@ from simkit.recording.charts.series import Series
 from simkit.writers.atomic_output import write_atomically
 from simkit_identification.fitting.fitted_values import FitCurve, interval_text
 from simkit_identification.fitting.validation import Fold
+from simkit_identification.result_texts import percent, write_html
 
 _TEMPLATE: Final = Path(__file__).with_name("report.html.j2")
 _MOST_PANELS: Final = 3
@@ -30,24 +31,20 @@ def write_page(title: str, contents: Mapping[str, Any], overrides: Sequence[str]
     Raises:
         InputError: SK-CLI-016 the page cannot be written.
     """
-    from jinja2 import Environment, StrictUndefined
-
-    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    environment.filters.update(number=lambda value: f"{value:.6g}", percent=_percent, interval=interval_text)
     curves: Sequence[FitCurve] = contents["curves"]
     folds: Sequence[Fold] = contents["folds"]
-    page = environment.from_string(_TEMPLATE.read_text("utf-8")).render(
-        title=title, result=contents, overrides=overrides, hidden=max(0, len(curves) - _MOST_CHARTS),
-        charts=[page_chart_svg(chart) for curve in curves[:_MOST_CHARTS] for chart in _page_charts(curve)],
-        folds=[(f.name, list(f.values.values()), f.error / max(f.own_error, 1e-300)) for f in folds],
-        searched=list(folds[0].values) if folds else [],
-    )  # fmt: skip
-    write_atomically(target, page.encode("utf-8"))
-    return target
-
-
-def _percent(share: float) -> str:
-    return "–" if share != share else f"{100.0 * share:.3g} %"
+    values = {
+        "title": title, "result": contents, "overrides": overrides, "hidden": max(0, len(curves) - _MOST_CHARTS),
+        "charts": [page_chart_svg(chart) for curve in curves[:_MOST_CHARTS] for chart in _page_charts(curve)],
+        "folds": [(f.name, list(f.values.values()), f.error / max(f.own_error, 1e-300)) for f in folds],
+        "searched": list(folds[0].values) if folds else [],
+    }  # fmt: skip
+    filters: dict[str, Callable[..., str]] = {
+        "number": lambda value: f"{value:.6g}",
+        "percent": percent,
+        "interval": interval_text,
+    }
+    return write_html(_TEMPLATE, values, target, filters)
 
 
 def _page_charts(curve: FitCurve) -> list[PageChart]:

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from simkit_identification.fitting.problem import Recording
+from simkit_identification.fitting.problem import RepeatedRecording
 from simkit_identification.fitting.readings import Channel, is_compared
 
 Floats = npt.NDArray[np.float64]
@@ -43,11 +43,11 @@ class Residuals:
         sample: index of the sample of each reading; readings of one time of one recording have the same.
         times: time of each reading [s].
         recording: index of the recording of each reading.
-        weights: inverse of the standard deviation of each reading; 0 for those that are not compared.
+        weights: inverse of the standard deviation of each reading; 0 for those that are not compared or have no number.
         deviations: standard deviation of each column.
     """
 
-    def __init__(self, recordings: Sequence[Recording], skip: float = 0.0, compare: Sequence[str] = ()) -> None:
+    def __init__(self, recordings: Sequence[RepeatedRecording], skip: float = 0.0, compare: Sequence[str] = ()) -> None:
         names: dict[ColumnName, int] = {}
         recorded, column, times, recording_of = [], [], [], []
         for number, recording in enumerate(recordings):
@@ -71,7 +71,7 @@ class Residuals:
         keys = np.stack((self.recording.astype(np.float64), np.round(self.times, 9)), axis=1)
         _, sample = np.unique(keys, axis=0, return_inverse=True)
         self.sample: Integers = sample.ravel().astype(np.intp)
-        self._skipped = self.times < skip - 1e-9
+        self._skipped = (self.times < skip - 1e-9) | ~np.isfinite(self.recorded)
         self._is_used = np.array([is_compared(name.channel.topic, name.column, compare) for name in self.columns], bool)
         self._means = np.array([self._mean(i) for i in range(len(self.columns))])
         self._ranges = np.array([self._variation(i) for i in range(len(self.columns))])

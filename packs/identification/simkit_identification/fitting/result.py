@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from simkit import RunSpec
-from simkit.diagnostics import Diagnostic
+from simkit import Diagnostic, RunSpec
 from simkit.scene.overrides import override_texts
 from simkit.writers.atomic_output import write_atomically
 from simkit_identification.fitting.fitted_values import ComparedTopic, FitCurve, FittedParameter, interval_text
-from simkit_identification.fitting.problem import Recording
+from simkit_identification.fitting.problem import RepeatedRecording
 from simkit_identification.fitting.report import write_chart, write_page
 from simkit_identification.fitting.validation import Fold
+from simkit_identification.result_texts import finite_or_none, percent
 
 Floats = npt.NDArray[np.float64]
 
@@ -61,7 +61,7 @@ class FitResult:
     failed: int
     seconds: float
     run: RunSpec
-    recordings: tuple[Recording, ...]
+    recordings: tuple[RepeatedRecording, ...]
     curves: tuple[FitCurve, ...] = ()
     diagnostics: tuple[Diagnostic, ...] = field(default=())
 
@@ -145,8 +145,8 @@ class FitResult:
             "not_told_apart": list(self.confusions),
             "topics": [
                 {
-                    "topic": t.topic, "readings": t.readings, "before": _finite(t.before), "after": _finite(t.after),
-                    "note": t.note,
+                    "topic": t.topic, "readings": t.readings, "note": t.note,
+                    "before": finite_or_none(t.before), "after": finite_or_none(t.after),
                 }
                 for t in self.topics
             ],
@@ -165,10 +165,10 @@ class FitResult:
 
     def _quality_lines(self) -> list[str]:
         lines = [
-            f"error: {_percent(self.error_before)} of the variation of the readings before, "
-            f"{_percent(self.error_after)} after ({self.method}, {self.runs} runs, {self.seconds:.1f} s)"
+            f"error: {percent(self.error_before)} of the variation of the readings before, "
+            f"{percent(self.error_after)} after ({self.method}, {self.runs} runs, {self.seconds:.1f} s)"
         ]
-        used = [f"{t.topic} {_percent(t.before)} → {_percent(t.after)}" for t in self.topics if not t.note]
+        used = [f"{t.topic} {percent(t.before)} → {percent(t.after)}" for t in self.topics if not t.note]
         lines.append(f"compared: {', '.join(used)}" if used else "compared: nothing")
         lines += [f"not compared: {t.topic}: {t.note}" for t in self.topics if t.note]
         lines += self._fold_lines()
@@ -198,14 +198,6 @@ def _yaml_text(text: str) -> str:
 
 def _relative(path: Path, folder: Path) -> str:
     return Path(os.path.relpath(path.absolute(), folder)).as_posix()
-
-
-def _finite(value: float) -> float | None:
-    return value if np.isfinite(value) else None
-
-
-def _percent(share: float) -> str:
-    return f"{100.0 * share:.3g} %" if share >= 1e-5 else "0 %"
 
 
 def _parameter_lines(parameters: Sequence[FittedParameter]) -> list[str]:

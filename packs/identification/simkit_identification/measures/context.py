@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from simkit_identification.measures.recording import Recording
+from simkit_identification.measures.recording import SignalRecording
 
 
 @dataclass(frozen=True)
@@ -17,6 +17,6 @@ class Context:
         still: intervals in which the robot is still [s]; None if unknown.
     """
 
-    recording: Recording
+    recording: SignalRecording
     duration: float
     still: list[tuple[float, float]] | None

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from simkit_identification.measures.context import Context
 from simkit_identification.measures.measure import Measure
-from simkit_identification.measures.recording import Floats, Recording, Signal, Stream
+from simkit_identification.measures.recording import Floats, Signal, SignalRecording, Stream
 from simkit_identification.measures.signals import is_constant
 
 _STEP: Final = 1.0  # [s] time over which the motion of a pose is measured
@@ -91,7 +91,7 @@ class Command:
     values: Floats
 
 
-def commands_of(recording: Recording) -> Iterator[Command]:
+def commands_of(recording: SignalRecording) -> Iterator[Command]:
     """Yield the commanded speeds of a recording that change or are not zero."""
     for topic in recording.commands:
         stream = recording.streams.get(topic)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
@@ -112,7 +112,7 @@ def measurement_times(received: Floats, stamps: Floats) -> Floats:
 
 
 @dataclass
-class Recording:
+class SignalRecording:
     """Recorded messages as numbers.
 
     Attributes:
@@ -131,7 +131,7 @@ class Recording:
     notes: list[str] = field(default_factory=list)
     offset: float = 0.0
 
-    def shifted(self, offset: float) -> Recording:
+    def shifted(self, offset: float) -> SignalRecording:
         """Return the recording with later times.
 
         Args:
@@ -140,16 +140,16 @@ class Recording:
         if not offset:
             return self
         streams = {name: _shifted_stream(stream, offset) for name, stream in self.streams.items()}
-        return Recording(
+        return SignalRecording(
             self.name, self.duration + offset, streams, self.commands, list(self.notes), self.offset + offset
         )
 
-    def between(self, start: float, end: float) -> Recording:
+    def between(self, start: float, end: float) -> SignalRecording:
         """Return the part between two times [s]."""
         streams = {name: _cut_stream(stream, start, end) for name, stream in self.streams.items()}
-        return Recording(self.name, min(self.duration, end), streams, self.commands, list(self.notes), self.offset)
+        return replace(self, duration=min(self.duration, end), streams=streams, notes=list(self.notes))
 
-    def renamed(self, names: Mapping[str, str]) -> Recording:
+    def renamed(self, names: Mapping[str, str]) -> SignalRecording:
         """Return the recording with other names of topics."""
         streams = {}
         for name, stream in self.streams.items():
@@ -158,7 +158,7 @@ class Recording:
                 new, stream.type_name, stream.received, stream.stamps, stream.signals, stream.arrays, stream.notes
             )
         commands = tuple(names.get(name, name) for name in self.commands)
-        return Recording(self.name, self.duration, streams, commands, self.notes, self.offset)
+        return SignalRecording(self.name, self.duration, streams, commands, self.notes, self.offset)
 
     def still_intervals(self) -> list[tuple[float, float]] | None:
         """Return the intervals [s] in which the robot is still; None if no topic tells its motion."""

@@ -10,14 +10,14 @@ import pytest
 from simkit_identification.measures import signals
 from simkit_identification.measures.context import Context
 from simkit_identification.measures.measure import Measure, compare_measures
-from simkit_identification.measures.recording import Recording, Signal, Stream
+from simkit_identification.measures.recording import Signal, SignalRecording, Stream
 
 
 def measured(values: np.ndarray, rate: float) -> dict[str, Measure]:
     at = np.arange(len(values)) / rate
     stream = Stream("/x", "std_msgs/msg/Float64", at, np.full(len(at), np.nan))
     stream.signals["data"] = Signal("data", "", at, values)
-    context = Context(Recording("bag", len(at) / rate, {}), len(at) / rate, None)
+    context = Context(SignalRecording("bag", len(at) / rate, {}), len(at) / rate, None)
     return {measure.quantity: measure for measure in signals.values(stream, context)}
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Final
 
 import mujoco
@@ -13,7 +12,7 @@ from mujoco.batch import Batch
 
 from simkit import Simulation
 from simkit.linear_algebra import matmul, norm
-from simkit.runtime.state_arrays import StateArrays
+from simkit.runtime.state_arrays import ReadState, StateArrays
 from simkit.testing.conditions.contact_query import ContactQuery
 
 if TYPE_CHECKING:
@@ -21,9 +20,6 @@ if TYPE_CHECKING:
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
-ReadState = Callable[[int], tuple[mujoco.MjModel, mujoco.MjData]]
-"""Function that returns model and data of one environment; the data have its state, but no forward pass."""
-
 _GROUND: Final = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD))
 
 
@@ -48,8 +44,7 @@ class ArrayView(StateArrays):
     """
 
     def __init__(self, sim: Simulation, batch: Batch, read_state: ReadState) -> None:
-        super().__init__(sim, batch)
-        self._read_state = read_state
+        super().__init__(sim, batch, read_state)
         self.varies_model = False
         self.memory: dict[str, Any] = {}
         self.action: Floats = np.zeros((self.count, 0))
@@ -74,7 +69,7 @@ class ArrayView(StateArrays):
         if not self.varies_model:
             rows = np.flatnonzero(search.may_touch(self.field("geom_xpos"), self.field("geom_xmat")))
         for row in rows.tolist():
-            model, data = self._read_state(row)
+            model, data = self.state_of(row)
             mujoco.mj_fwdPosition(model, data)
             touches[row] = bool(search.query.among(data))
         return touches

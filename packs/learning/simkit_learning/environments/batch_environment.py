@@ -200,8 +200,11 @@ class BatchVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
         physics.take(row)
         if view.varies_model:
             physics.take_model(row)
-        for sensor in self._sources.sensors:
-            sensor.take(row)
+        try:
+            for sensor in self._sources.sensors:
+                sensor.take(row)
+        except CannotBatchError as error:
+            raise invalid(str(error), "pass batch=False to make_vec") from None
         for message in self._sources.sampled:
             message.take(row)
         for name, value in env.memory.items():

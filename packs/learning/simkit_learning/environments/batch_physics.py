@@ -23,6 +23,7 @@ from simkit_learning.environments.sampled_rows import SampledRows
 Ids = npt.NDArray[np.intp]
 _STATE: Final = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 _BAD: Final = [BAD_POSITION, BAD_VELOCITY, BAD_ACCELERATION]
+_SLEEP: Final = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
 _VELOCITIES, _ACCELERATIONS = int(mujoco.mjtStage.mjSTAGE_VEL), int(mujoco.mjtStage.mjSTAGE_ACC)
 
 
@@ -44,10 +45,10 @@ class BatchPhysics:
     """
 
     def __init__(self, sim: Simulation, count: int, threads: int, rules: Sequence[PluginRule]) -> None:
-        self._sim, self._models = sim, [copy.copy(sim.mj_model)] * count
+        self._sim = sim
+        self._models = [self._copied_model()] * count
         self.names: bytes = sim.mj_model.names
-        # bodies that may sleep need engine data of their own
-        self.batch = Batch(sim.mj_model, count, threads, persistent=True)
+        self.batch = Batch(self._models[0], count, threads)
         self.view = ArrayView(sim, self.batch, self.state_of)
         self.applied = self.batch.bind("qfrc_applied")
         self.tick = np.zeros(count, np.int64)
@@ -80,7 +81,17 @@ class BatchPhysics:
 
     def take_model(self, row: int) -> None:
         """Copy the numbers of the simulation's model to one environment."""
-        self._models[row] = copy.copy(self._sim.mj_model)
+        self._models[row] = self._copied_model()
+
+    def _copied_model(self) -> mujoco.MjModel:
+        """Return a copy of the simulation's model without sleeping bodies.
+
+        No body of a batch sleeps. With the flag, MuJoCo would need engine data of its own for each environment, which
+        take 0.3 MB; without it, there are as many as threads.
+        """
+        model = copy.copy(self._sim.mj_model)
+        model.opt.enableflags &= ~_SLEEP
+        return model
 
     def use_models(self) -> None:
         """Use the copied models from now on."""
@@ -88,7 +99,8 @@ class BatchPhysics:
 
     def state_of(self, row: int) -> tuple[mujoco.MjModel, mujoco.MjData]:
         """Return model and data of one environment; the data have its state, but no forward pass."""
-        model = self._models[row]
+        # the images of a model that does not vary are drawn with the meshes of the simulation
+        model = self._models[row] if self.view.varies_model else self._sim.mj_model
         if self._scratch is None:
             self._scratch = mujoco.MjData(model)
         mujoco.mj_setState(model, self._scratch, np.ascontiguousarray(self.batch.state[row]), _STATE)
@@ -99,7 +111,8 @@ class BatchPhysics:
         message = self.batch.error(row)
         if message:
             return str(message)
-        data = self.batch.get_data(row)
+        _, data = self.state_of(row)
+        data.warning.lastinfo[:], data.warning.number[:] = self.batch.warning[row].T
         return str(divergence(self._models[row], data, self._sim.engine.clock, int(self.tick[row])))
 
     @property
@@ -133,6 +146,7 @@ class BatchPhysics:
                     self.batch.step(rows, stop - tick, stage)
                 except SimulationError as error:
                     self.failed[error.ids] = True
+                self.view.has_moved = True
                 tick = stop
                 ticks = self.tick[group] + (tick - first)
                 self._after(group, ticks)

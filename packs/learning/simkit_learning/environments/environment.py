@@ -6,7 +6,7 @@ import copy
 import pickle
 from array import array
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final, NoReturn, SupportsFloat, cast
 
 import gymnasium
@@ -51,6 +51,32 @@ if TYPE_CHECKING:
 IMAGE_SIZE: Final = (480, 360)
 """Width and height of the images of `render` [px]."""
 _LONGEST_WAIT: Final = 1.0  # [s] of simulated time for the first message of an observed topic
+
+
+_OF_EPISODE: Final = (
+    *("values", "memory", "action", "observation", "first_tick", "last_tick", "np_random"),
+    *("_has_ended", "_begun", "_sent", "_is_seeded"),
+)
+"""Attributes of an episode; a new episode has new objects."""
+
+
+@dataclass(frozen=True, slots=True)
+class EpisodeState:
+    """State of an environment that `SimulationEnv.restore_episode` brings back.
+
+    Attributes:
+        snapshot: state of the simulation.
+        attributes: attributes of the environment.
+        variables: values that occur in expressions.
+        positions: integrated positions of commanded velocities.
+        messages: newest messages of the observed topics.
+    """
+
+    snapshot: Any
+    attributes: tuple[Any, ...]
+    variables: Values
+    positions: tuple[npt.NDArray[np.float64] | None, ...]
+    messages: Mapping[str, object]
 
 
 class SimulationEnv(gymnasium.Env[Any, Any]):
@@ -203,6 +229,26 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
             self._repeat(other)
         other.np_random.bit_generator.state = self.np_random.bit_generator.state
         return other
+
+    def episode_state(self) -> EpisodeState:
+        """Return the present state, for `restore_episode` of this environment."""
+        snapshot = self.sim.snapshot(compact=True)
+        attributes = tuple(getattr(self, name) for name in _OF_EPISODE)
+        positions = tuple(None if each.wanted is None else each.wanted.copy() for each in self.actions.integrals)
+        return EpisodeState(snapshot, attributes, self._variables, positions, self._view_of_sim.present_messages())
+
+    def restore_episode(self, state: EpisodeState) -> None:
+        """Return to a state of another episode of this environment."""
+        for name, value in zip(_OF_EPISODE, state.attributes, strict=True):
+            setattr(self, name, value)
+        if state.variables != self._variables:
+            self._variables = state.variables
+            if self._uses_variables:
+                self._bind()
+        self.sim.restore(state.snapshot)
+        self._view_of_sim.restore_messages(state.messages)
+        for integral, wanted in zip(self.actions.integrals, state.positions, strict=True):
+            integral.wanted = None if wanted is None else wanted.copy()
 
     def _copy_state(self, other: SimulationEnv) -> bool:
         """Bring a new environment of this specification into the present state by a snapshot.

@@ -19,8 +19,10 @@ from simkit.extend import did_you_mean
 from simkit.run_spec import FilePath
 from simkit.runtime.array_rules import CannotBatchError
 from simkit.scene.overrides import override_texts
+from simkit.sensors.cameras.rendering.render_thread import usable_cores
 from simkit_learning.environments.batch_environment import BatchVectorEnv
 from simkit_learning.environments.environment import IMAGE_SIZE, SimulationEnv
+from simkit_learning.environments.shared_vector import SharedVectorEnv, turns_in_this_process
 from simkit_learning.environments.specification import Autoreset, EnvironmentOptions, EnvironmentSpec, invalid
 from simkit_learning.environments.tiago_tasks import pick_spec, reach_spec
 from simkit_learning.environments.turtlebot3_tasks import goal_spec, maze_spec
@@ -36,6 +38,7 @@ IDS: Final[Mapping[str, Callable[[], EnvironmentSpec]]] = {
 
 _LOG: Final = logging.getLogger("simkit.gym")
 _OF_RUN_AND_IMAGES: Final = ("overrides", "seed", "render_mode", "size")
+_MOST_PROCESSES: Final = 4  # processes for each processor above which environments share them
 _OPTIONS: Final = (*(field.name for field in fields(EnvironmentSpec) if field.name != "run"), *_OF_RUN_AND_IMAGES)
 
 
@@ -81,7 +84,7 @@ def make_vector_env(
     num_envs: int,
     *,
     batch: bool | None = None,
-    processes: bool | None = None,
+    processes: bool | int | None = None,
     autoreset: Autoreset = "next_step",
     threads: int = 0,
     **options: Unpack[EnvironmentOptions],
@@ -91,9 +94,10 @@ def make_vector_env(
         raise invalid(f"num_envs: found {num_envs!r}; expected a whole number of at least 1")
     if isinstance(threads, bool) or not isinstance(threads, int) or threads < 0:
         raise invalid(f"threads: found {threads!r}; expected a whole number of at least 0")
-    for name, flag in (("batch", batch), ("processes", processes)):
-        if flag not in (None, True, False):
-            raise invalid(f"{name}: found {flag!r}; expected True, False or None")
+    if batch not in (None, True, False):
+        raise invalid(f"batch: found {batch!r}; expected True, False or None")
+    if not (processes in (None, True, False) or (isinstance(processes, int) and processes >= 1)):
+        raise invalid(f"processes: found {processes!r}; expected True, False, None or a whole number of at least 1")
     if batch and processes is not None:
         raise invalid("batch=True and processes exclude each other")
     modes = {mode.name.lower(): mode for mode in gymnasium.vector.AutoresetMode}
@@ -108,7 +112,19 @@ def make_vector_env(
             reason = str(error)
             if batch:
                 raise invalid(f"the environments cannot step as a batch: {reason}", "leave out batch=True") from None
-            _LOG.info("make_vec uses a process for each environment: %s", reason)
+            _LOG.info("make_vec uses processes: %s", reason)
+    shares, cores = 0, usable_cores()
+    if not isinstance(processes, (bool, type(None))):
+        shares = min(processes, num_envs)
+    elif processes is None and num_envs > _MOST_PROCESSES * cores:
+        shares = cores
+    if shares:
+        try:
+            return _sharing(spec, num_envs, shares, modes[autoreset], render_mode, size, reason)
+        except CannotBatchError as error:
+            if processes is not None:
+                raise invalid(f"the environments cannot take turns: {error}", "pass processes=True") from None
+            reason = f"{reason}; the environments cannot take turns: {error}"
     makers = [
         partial(SimulationEnv, replace(spec, run=replace(spec.run, seed=spec.run.seed + number)), render_mode, size)
         for number in range(num_envs)
@@ -120,6 +136,26 @@ def make_vector_env(
         )
     else:
         vector = gymnasium.vector.SyncVectorEnv(makers, autoreset_mode=modes[autoreset])
+    vars(vector)["not_batched"] = reason
+    return vector
+
+
+def _sharing(
+    spec: EnvironmentSpec,
+    count: int,
+    processes: int,
+    mode: gymnasium.vector.AutoresetMode,
+    render_mode: str | None,
+    size: tuple[int, int],
+    reason: str,
+) -> gymnasium.vector.VectorEnv[Any, Any, Any]:
+    """Return environments that take turns in the simulations of some processes; one is the present process."""
+    vector: gymnasium.vector.VectorEnv[Any, Any, Any]
+    if processes == 1:
+        vector = turns_in_this_process(spec, count, mode, render_mode, size)
+    else:
+        context = multiprocessing.get_context(_start_method())
+        vector = SharedVectorEnv(spec, count, processes, mode, render_mode, size, context)
     vars(vector)["not_batched"] = reason
     return vector
 

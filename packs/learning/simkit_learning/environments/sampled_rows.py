@@ -8,9 +8,11 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.extend import Sensor
+from simkit.msgs import Message
 from simkit.runtime.array_rules import Grid, Ids, SensorRule, Ticks, TopicRule
 from simkit.runtime.engine.scheduler import Timetable
 from simkit_learning.environments.array_view import ArrayView
+from simkit_learning.environments.message_arrays import Array, conversion_of
 
 Floats = npt.NDArray[np.float64]
 
@@ -54,6 +56,11 @@ class SampledRows:
         self._rule.note(ids, ticks)
 
 
+def _convert(message: Message) -> Array:
+    """Return the numbers of a message, as observations have them."""
+    return conversion_of(message)[0](message)
+
+
 class SampledSensor:
     """Samples of one sensor in all environments.
 
@@ -66,6 +73,7 @@ class SampledSensor:
 
     def __init__(self, sensor: Sensor, rule: SensorRule, view: ArrayView, is_truth: bool) -> None:
         rule.bind(view, is_truth=is_truth)
+        rule.convert = _convert
         self._sensor, self._rule = sensor, rule
         self._index: Ticks = np.zeros(view.count, np.int64)  # number of the newest sample
         self._grid: Timetable | None = None if sensor.is_manual else sensor.timetable()

@@ -6,7 +6,7 @@ import numpy as np
 
 from simkit import Params
 from simkit.elementary_functions import power
-from simkit.sensors.base import Sensor
+from simkit.extend import Sensor
 from simkit_realism.depth_images.depth_artefact import DepthArtefact, Depths, Exposure, PerModel
 from simkit_realism.depth_images.depth_laws import LawTable, law_of_points, power_law
 from simkit_realism.depth_images.image_buffers import new_image, strips

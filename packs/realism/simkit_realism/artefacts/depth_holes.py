@@ -10,8 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit import Params
-from simkit.compiler import Compiled
-from simkit.sensors.base import Sensor
+from simkit.extend import Compiled, Sensor
 from simkit.sensors.surface_optics import surface_optics
 from simkit_realism.depth_images.depth_artefact import NO_RETURN, DepthArtefact, Depths, Exposure, PerModel
 from simkit_realism.depth_images.image_buffers import new_image, strips

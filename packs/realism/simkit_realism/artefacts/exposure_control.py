@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from simkit import Params
 from simkit.elementary_functions import exp, log2, power
-from simkit.sensors.artefacts import Artefact, Reading
-from simkit.sensors.base import Sensor
+from simkit.extend import Artefact, Sensor
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
 from simkit.sensors.cameras.tone_curve import WHITE, light_table
-from simkit.sensors.sample import Memory
 from simkit_realism.camera_light import Light, LightReading
 
 _MODES = ("fixed", "auto")
@@ -53,7 +51,7 @@ class ExposureControl(Artefact):
             params.error("SK-SENSOR-236", message, "a <max_exposure_value> of at least the <min_exposure_value>")
             self.highest = self.lowest
         self._gain = 1.0 - exp(-1.0 / self.time_constant) if self.time_constant > 0 else 1.0
-        self.state: Memory = self.start
+        self.state: Any = self.start
 
     def prepare(self) -> None:
         if self.mode == "auto":
@@ -85,7 +83,7 @@ class ExposureControl(Artefact):
     def set_interval(self, interval: float) -> None:
         """Accept the time between samples [s], which has no effect."""
 
-    def apply(self, reading: Reading, truth: Reading, index: int) -> Reading:
+    def apply(self, reading: Any, truth: Any, index: int) -> Any:
         # the factor is that of this sample, because the colours may be computed after later samples
         factor = np.float32(power(2.0, self.state))
         if isinstance(reading, tuple):

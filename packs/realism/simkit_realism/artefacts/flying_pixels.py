@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from simkit import Params
-from simkit.sensors.base import Sensor
+from simkit.extend import Sensor
 from simkit_realism.depth_images.depth_artefact import DepthArtefact, Depths, Exposure
 from simkit_realism.depth_images.random_images import random_words
 

@@ -11,13 +11,12 @@ import numpy as np
 
 from simkit import Params
 from simkit.elementary_functions import exp
-from simkit.sensors.artefacts import Artefact
-from simkit.sensors.base import Sensor
-from simkit.sensors.environment.navsat import NO_FIX, NavSat, NavSatReading
+from simkit.extend import Artefact, NavSat, NavSatReading, Sensor
 from simkit_realism.areas import Area, Place, read_areas
 
 _LONGEST = 1e9  # [s] or [m]
 _MOST = 1e6  # [m] largest standard deviation
+NO_FIX: Final = -1  # as `STATUS_NO_FIX` of `NavSatStatus`
 STATUSES: Final = {"no_fix": NO_FIX, "fix": 0, "sbas": 1, "gbas": 2}
 """Names of the values of `NavSatStatus`."""
 
@@ -188,14 +187,14 @@ def without_fix(reading: NavSatReading) -> NavSatReading:
 
 
 class MultipathState(NamedTuple):
-    """State of `Multipath`: error in standard deviations, place, and the standard deviations at this place [m]."""
+    """State of `GnssMultipath`: error in standard deviations, place, and the standard deviations at this place [m]."""
 
     errors: Numbers
     place: Place
     stddevs: tuple[float, float]
 
 
-class Multipath(ReceiverArtefact):
+class GnssMultipath(ReceiverArtefact):
     """`<simkit:multipath>` of a satellite receiver: reflections shift the position in some areas.
 
     The shift is a Gauss-Markov process in time and place: after the time t and the distance d its correlation is

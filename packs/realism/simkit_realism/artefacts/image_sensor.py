@@ -9,10 +9,9 @@ import numpy.typing as npt
 
 from simkit import Params
 from simkit.elementary_functions import power
-from simkit.runtime.engine.random_streams import RandomStream
-from simkit.sensors.base import Sensor
+from simkit.extend import RandomStream, Sensor
 from simkit.sensors.cameras.random_pixels import look_up, normal_table, word_source
-from simkit_realism.camera_light import Light, LightArtefact, quantise
+from simkit_realism.camera_light import Light, LightArtefact, light_levels
 
 _FIXED = 0  # index of the pattern that all images share
 _HOT_SHARE = 65536  # a random word selects the hot pixels
@@ -83,7 +82,7 @@ class ImageSensor(LightArtefact):
         if self.black_level > 0:
             electrons += np.float32(self.black_level)
         levels = 2**self.bit_depth - 1
-        numbers = quantise(electrons, levels)
+        numbers = light_levels(electrons, levels)
         numbers *= np.float32(1.0 / levels)
         if self.hot_pixels > 0:
             words = word_source(self._streams[camera]["hot"], _FIXED)(numbers.size).reshape(light.shape)

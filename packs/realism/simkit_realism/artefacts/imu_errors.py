@@ -7,9 +7,7 @@ from collections.abc import Sequence
 
 from simkit import Params
 from simkit.elementary_functions import tan
-from simkit.sensors.artefacts import Artefact
-from simkit.sensors.base import Sensor
-from simkit.sensors.inertial.imu_measurement import ImuMeasurement, ImuReading
+from simkit.extend import Artefact, ImuMeasurement, ImuReading, Sensor
 
 QUANTITIES = ("angular_velocity", "linear_acceleration")
 _DIAGONAL, _OTHERS = (0, 4, 8), (1, 2, 3, 5, 6, 7)  # places in a row-major 3×3 matrix

@@ -7,10 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from simkit import Params
-from simkit.pose import Vector
-from simkit.sensors.artefacts import Artefact
-from simkit.sensors.base import Sensor
-from simkit.sensors.rays.lidar_measurement import LidarMeasurement, LidarReading
+from simkit.extend import Artefact, LidarMeasurement, LidarReading, Sensor, Vector
 from simkit.sensors.rays.ray_probes import RayCast
 from simkit_realism.artefacts.lidar_glass import LidarGlass
 from simkit_realism.beam_echoes import EchoList, beam_directions

@@ -9,9 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from simkit import Params
-from simkit.sensors.artefacts import Artefact
-from simkit.sensors.base import Sensor
-from simkit.sensors.rays.lidar_measurement import LidarMeasurement, LidarReading
+from simkit.extend import Artefact, LidarMeasurement, LidarReading, Sensor
 from simkit_realism.lidar_returns import Mask, change_returns, lose_returns
 
 _TURN = 2.0 * math.pi

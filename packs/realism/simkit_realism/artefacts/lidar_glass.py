@@ -5,9 +5,7 @@ from __future__ import annotations
 import math
 
 from simkit import Params
-from simkit.sensors.artefacts import Artefact
-from simkit.sensors.base import Sensor
-from simkit.sensors.rays.lidar_measurement import LidarMeasurement, LidarReading
+from simkit.extend import Artefact, LidarMeasurement, LidarReading, Sensor
 from simkit.sensors.rays.ray_fan import RayFan
 from simkit.sensors.rays.ray_probes import Spread
 from simkit_realism.lidar_returns import reading_of

@@ -7,9 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from simkit import Params
-from simkit.sensors.artefacts import Artefact
-from simkit.sensors.base import Sensor
-from simkit.sensors.rays.lidar_measurement import LidarMeasurement, LidarReading
+from simkit.extend import Artefact, LidarMeasurement, LidarReading, Sensor
 
 
 class LidarNoReturn(Artefact):

@@ -5,11 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from simkit import Params
-from simkit.pose import Vector
-from simkit.sensors.artefacts import Artefact
-from simkit.sensors.base import Sensor
-from simkit.sensors.noise import quantise
-from simkit.sensors.rays.lidar_measurement import LidarMeasurement, LidarReading
+from simkit.extend import Artefact, LidarMeasurement, LidarReading, Sensor, Vector, quantise
 from simkit_realism.laws import Law, read_law
 from simkit_realism.lidar_returns import change_ranges, change_returns
 

@@ -6,9 +6,7 @@ import numpy as np
 
 from simkit import Params
 from simkit.elementary_functions import power
-from simkit.sensors.artefacts import Artefact
-from simkit.sensors.base import Sensor
-from simkit.sensors.rays.lidar_measurement import LidarMeasurement, LidarReading
+from simkit.extend import Artefact, LidarMeasurement, LidarReading, Sensor
 from simkit_realism.lidar_returns import Mask, lose_returns, surfaces_of
 
 

@@ -9,12 +9,9 @@ import mujoco
 import numpy as np
 
 from simkit import Params
+from simkit.extend import Artefact, LidarMeasurement, LidarReading, Sensor, Vector
 from simkit.linear_algebra import matmul
-from simkit.pose import Vector
-from simkit.sensors.artefacts import Artefact
-from simkit.sensors.base import Sensor
 from simkit.sensors.rays.hit_normals import dots
-from simkit.sensors.rays.lidar_measurement import LidarMeasurement, LidarReading
 from simkit.sensors.rays.ray_probes import RayCast
 from simkit_realism.lidar_returns import Mask, lose_returns, surfaces_of
 

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from simkit import Params
-from simkit.sensors.base import Sensor
+from simkit.extend import Sensor
 from simkit_realism.depth_images.depth_artefact import DepthArtefact, Depths, Exposure
 
 _VALUES: Final = MappingProxyType({"nan": np.float32(np.nan), "zero": np.float32(0.0), "inf": np.float32(np.inf)})

@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 
 from simkit import Params
-from simkit.compiler import SpecBuilder
 from simkit.elementary_functions import log
-from simkit.sensors.artefacts import MessageArtefact
-from simkit.sensors.base import Sensor
+from simkit.extend import MessageArtefact, Sensor, SpecBuilder
 from simkit.sensors.sample_times import MAX_LATENCY
 from simkit_realism.histogram import HistogramReader
 

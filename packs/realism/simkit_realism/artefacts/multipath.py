@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit import Params
-from simkit.sensors.base import Sensor
+from simkit.extend import Sensor
 from simkit_realism.depth_images.depth_artefact import DepthArtefact, Depths, Exposure
 
 # number that stands for a reciprocal depth of 1/m: 32-bit floats hold integers up to 2^24 without rounding, so the
@@ -15,7 +15,7 @@ from simkit_realism.depth_images.depth_artefact import DepthArtefact, Depths, Ex
 _UNIT, _LARGEST = np.float32(2.0**20), np.float32(2.0**24)
 
 
-class Multipath(DepthArtefact):
+class DepthMultipath(DepthArtefact):
     """`<simkit:multipath>` of a time-of-flight camera: z' = z + strength·z²·max(0, m - 1/z).
 
     m is the mean of the reciprocal depths in a square of 2·radius + 1 pixels. On a plane, m is 1/z, so planes and

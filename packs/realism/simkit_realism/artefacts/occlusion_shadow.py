@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from simkit import Params
-from simkit.sensors.base import Sensor
+from simkit.extend import Sensor
 from simkit_realism.depth_images.depth_artefact import NO_RETURN, DepthArtefact, Depths, Exposure
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit import Params
-from simkit.sensors.base import Sensor
+from simkit.extend import Sensor
 from simkit.sensors.cameras.camera_model import CameraModel
 from simkit_realism.depth_images.depth_artefact import DepthArtefact, Depths, Exposure, PerModel
 

@@ -11,12 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit import Params, msgs
-from simkit.pose import Vector
-from simkit.sensors.artefacts import Artefact
-from simkit.sensors.base import Product, Sensor
+from simkit.extend import Artefact, LidarReading, Product, Sensor, Vector
 from simkit.sensors.point_cloud_messages import point_cloud
 from simkit.sensors.rays.lidar import CLOUD, Lidar
-from simkit.sensors.rays.lidar_measurement import LidarReading
 
 LIVOX_TYPE: Final = "livox_ros_driver2/msg/CustomMsg"
 _XYZI: Final = [("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("intensity", "<f4")]

@@ -9,11 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from simkit import InputError, Params
-from simkit.compiler import SpecBuilder
-from simkit.pose import Vector
-from simkit.sensors.artefacts import Artefact
+from simkit.extend import Artefact, LidarReading, SpecBuilder, Vector
 from simkit.sensors.rays.lidar import Lidar
-from simkit.sensors.rays.lidar_measurement import LidarReading, Sweep
+from simkit.sensors.rays.lidar_measurement import AngleRange
 from simkit.sensors.rays.sweep import RayPattern, SweepOptions
 from simkit_realism.scan_patterns import RosettePattern, ScanPattern, SpiralPattern, TablePattern, read_table
 
@@ -58,7 +56,7 @@ class ScanPatternOfLidar(Artefact):
             rate = 1.0
         count = self._samples
         duration = 1e-12 if self._is_instantaneous else (count - 1) / count / rate
-        one_layer = Sweep(count, -math.pi, math.pi), Sweep(1, 0.0, 0.0)
+        one_layer = AngleRange(count, -math.pi, math.pi), AngleRange(1, 0.0, 0.0)
         sensor.options = replace(
             sensor.options, horizontal=one_layer[0], vertical=one_layer[1], sweep=SweepOptions(duration)
         )

@@ -8,9 +8,9 @@ import numpy as np
 
 from simkit import Params
 from simkit.elementary_functions import power
-from simkit.sensors.base import Sensor
+from simkit.extend import Sensor
 from simkit.sensors.cameras.tone_curve import WHITE
-from simkit_realism.camera_light import Bytes, Light, LightArtefact, encode, quantise
+from simkit_realism.camera_light import Bytes, Light, LightArtefact, encode, light_levels
 
 _TYPES = ("srgb", "linear", "gamma")
 
@@ -39,7 +39,7 @@ class ToneCurve(LightArtefact):
         self.encoder = self._encode
 
     def _encode(self, light: Light) -> Bytes:
-        return encode(light) if self._table is None else self._table.take(quantise(light, WHITE).astype(np.uint16))
+        return encode(light) if self._table is None else self._table.take(light_levels(light, WHITE).astype(np.uint16))
 
     def change(self, light: Light, index: int, camera: int) -> Light:
         return light

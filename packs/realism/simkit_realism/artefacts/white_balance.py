@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from simkit import Params
-from simkit.sensors.base import Sensor
+from simkit.extend import Sensor
 from simkit_realism.camera_light import Light, LightArtefact
 
 

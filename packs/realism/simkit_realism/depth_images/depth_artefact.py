@@ -12,10 +12,9 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from simkit.sensors.artefacts import Artefact
+from simkit.extend import Artefact, CameraReading, ChangedReading
 from simkit.sensors.cameras.camera_model import CameraModel
 from simkit.sensors.cameras.image_messages import grey
-from simkit.sensors.cameras.image_noise import CameraReading, ChangedReading
 from simkit.sensors.cameras.rgbd_camera import RgbdCamera
 
 Depths = npt.NDArray[np.float32]

@@ -12,7 +12,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from simkit.runtime.engine.random_streams import RandomStream
+from simkit.extend import RandomStream
 from simkit.sensors.cameras.random_pixels import look_up, normal_table, word_source
 from simkit_realism.depth_images.image_buffers import new_image, strips
 

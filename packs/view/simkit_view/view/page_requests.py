@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 
 import numpy as np
 
-from simkit import Pose
+from simkit import Pose, msgs
 from simkit.bridges.live.request_fields import RequestRefused, checked_value, find_handler, read_field
 from simkit.bridges.live.requests import make_steps, set_pace, set_parameter
 from simkit.compiler.standing_models import TOLERANCE, standing_lift
@@ -19,7 +19,8 @@ from simkit_view.view.message_form import describe_form
 from simkit_view.view.page_calls import shown_message
 from simkit_view.view.topic_display import TopicDisplay
 from simkit_view.view.topic_streams import LogEntries
-from simkit_view.web.json_messages import message_from_json, message_to_json
+from simkit_view.web.cdr_values import read_values
+from simkit_view.web.json_messages import message_from_json
 
 if TYPE_CHECKING:
     from simkit import Simulation
@@ -257,7 +258,7 @@ def _call(call: Call) -> object:
         _check_room(call)
         return {"id": call.view.calls.add(services.begin(service.name, request))}
     response = call.sim.call(service.name, request)
-    values = message_to_json(response)
+    values = read_values(msgs.serialize(response), msgs.type_name(response))
     return {"text": shown_message(response), "values": values if len(str(values)) <= _LARGEST_VALUES else None}
 
 

@@ -26,8 +26,9 @@ from simkit.bridges.live.request_fields import (
 from simkit.bridges.simulation_link import robot_descriptions, text_message
 from simkit.errors import SimkitError
 from simkit.input_file import read_failure, read_input
-from simkit_view.web.json_messages import message_from_json, message_to_json
-from simkit_view.web.web_server import WebClient, WebLink, WebServer, run_server
+from simkit_view.web.cdr_values import read_values
+from simkit_view.web.json_messages import message_from_json
+from simkit_view.web.web_server import WebClient, WebLink, WebServer, binary_frame, run_server, text_frame
 
 if TYPE_CHECKING:
     from websockets.asyncio.server import ServerConnection
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 SUBPROTOCOLS: Final = ("foxglove.sdk.v1", "foxglove.websocket.v1")
 _CAPABILITIES: Final = ("clientPublish", "time", "parameters", "parametersSubscribe", "services", "assets")
 _MESSAGE, _TIME, _CALL, _ASSET = 1, 2, 3, 4  # binary data for the client
+_MESSAGE_HEAD: Final = struct.Struct("<BIQ")
 _CLIENT_MESSAGE, _CLIENT_CALL = 1, 2  # binary data from the client
 _DEPTH: Final = 100  # queued messages of a topic in the simulation
 _TIME_PERIOD: Final = 0.02  # [s] between two times for the client
@@ -62,7 +64,7 @@ class FoxgloveClient(WebClient):
 
     def tell(self, op: str, **words: object) -> None:
         """Send a message of the protocol in JSON."""
-        self.send(json.dumps({"op": op, **words}))
+        self.send(text_frame(json.dumps({"op": op, **words})))
 
     def report_error(self, text: str) -> None:
         """Send a status with an error."""
@@ -106,7 +108,7 @@ class FoxgloveClient(WebClient):
         now = time.monotonic()
         if now >= self._next_time:
             self._next_time = now + _TIME_PERIOD
-            self.send(struct.pack("<BQ", _TIME, time_ns))
+            self.send(binary_frame(struct.pack("<BQ", _TIME, time_ns)))
         if now >= self._next_look and self._watched:
             self._next_look = now + _PARAMETER_PERIOD
             self._ask_parameters(self._send_changed)
@@ -162,10 +164,12 @@ class FoxgloveClient(WebClient):
                 self._send_description(number, robot)
 
     def _subscribe(self, number: int, topic: str, type_name: str) -> int:
+        pack = _MESSAGE_HEAD.pack
+
         def take(time_ns: int, found_type: str, data: bytes, _: int) -> None:
             self.apply_time(time_ns)
             if found_type == type_name:
-                self.send(struct.pack("<BIQ", _MESSAGE, number, time_ns) + data)
+                self.send(binary_frame(pack(_MESSAGE, number, time_ns), data))
 
         def fail(error: LiveError) -> None:
             self._subscriptions.pop(number, None)
@@ -174,8 +178,12 @@ class FoxgloveClient(WebClient):
         return self.link.subscribe(topic, take, fail, _DEPTH)
 
     def _send_description(self, number: int, robot: str) -> None:
-        head = struct.pack("<BIQ", _MESSAGE, number, int(self.server.graph["time_ns"]))
-        self.link.ask("robot_description", {"name": robot}, then=lambda text, _: self.send(head + text_message(text)))
+        head = _MESSAGE_HEAD.pack(_MESSAGE, number, int(self.server.graph["time_ns"]))
+
+        def send(text: str, _: bytes) -> None:
+            self.send(binary_frame(head, text_message(text)))
+
+        self.link.ask("robot_description", {"name": robot}, then=send)
 
     def unsubscribe(self, words: JsonObject) -> None:
         """End subscriptions."""
@@ -223,8 +231,9 @@ class FoxgloveClient(WebClient):
 
         def respond(_: object, answer: bytes) -> None:
             if encoding == "json":
-                answer = json.dumps(message_to_json(msgs.deserialize(answer, f"{type_name}_Response"))).encode()
-            self.send(struct.pack("<BIII", _CALL, service, call, length) + encoding.encode() + answer)
+                answer = json.dumps(read_values(answer, f"{type_name}_Response")).encode()
+            head = struct.pack("<BIII", _CALL, service, call, length)
+            self.send(binary_frame(head, encoding.encode(), answer))
 
         try:
             if service not in self._services:
@@ -305,7 +314,8 @@ class FoxgloveClient(WebClient):
 
         def send(error: object, data: bytes = b"") -> None:
             text = with_code(str(error)).encode(errors="replace") if error else b""
-            self.send(struct.pack("<BIBI", _ASSET, number, 1 if text else 0, len(text)) + text + data)
+            head = struct.pack("<BIBI", _ASSET, number, 1 if text else 0, len(text))
+            self.send(binary_frame(head, text, data))
 
         def read(path: str, _: bytes) -> None:
             try:

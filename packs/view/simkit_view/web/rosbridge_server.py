@@ -20,10 +20,17 @@ from simkit.bridges.live.request_fields import (
 from simkit.errors import MessageError
 from simkit.msgs.goal_status import GoalStatus
 from simkit.msgs.message_text import field_nodes
-from simkit_view.web.json_messages import message_from_json, message_to_json
+from simkit_view.web.cdr_values import read_values
+from simkit_view.web.json_messages import message_from_json
 from simkit_view.web.rosapi import ROSAPI, RosapiCall
-from simkit_view.web.rosbridge_topics import MOST_WAITING, SubscriptionOptions, TopicPublisher, TopicSubscription
-from simkit_view.web.web_server import WebClient, WebLink, WebServer, run_server
+from simkit_view.web.rosbridge_topics import (
+    MOST_WAITING,
+    SharedFrames,
+    SubscriptionOptions,
+    TopicPublisher,
+    TopicSubscription,
+)
+from simkit_view.web.web_server import WebClient, WebLink, WebServer, run_server, text_frame
 
 if TYPE_CHECKING:
     from websockets.asyncio.server import ServerConnection
@@ -37,9 +44,11 @@ class RosbridgeClient(WebClient):
 
     Attributes:
         publishers: publishers by topic.
+        frames: frames of messages for all clients of this process.
     """
 
     can_authenticate_later = True
+    frames: Final = SharedFrames()
 
     def __init__(self, server: WebServer, socket: ServerConnection, link: WebLink, *, is_allowed: bool) -> None:
         super().__init__(server, socket, link, is_allowed=is_allowed)
@@ -81,7 +90,8 @@ class RosbridgeClient(WebClient):
 
     def tell(self, op: str, **words: object) -> None:
         """Send a message of the protocol; fields that are None are left out."""
-        self.send(json.dumps({"op": op, **{name: value for name, value in words.items() if value is not None}}))
+        given = {name: value for name, value in words.items() if value is not None}
+        self.send(text_frame(json.dumps({"op": op, **given})))
 
     def report_error(self, text: str, identifier: object = None) -> None:
         """Send a status with an error."""
@@ -161,7 +171,7 @@ class RosbridgeClient(WebClient):
 
         def send(kind: str, data: bytes) -> None:
             def respond(_: object, answer: bytes) -> None:
-                end(message_to_json(msgs.deserialize(answer, f"{kind}_Response")))
+                end(read_values(answer, f"{kind}_Response"))
 
             self.link.ask("call", {"name": name, "type": f"{kind}_Request"}, data, respond, fail)
 
@@ -196,7 +206,7 @@ class RosbridgeClient(WebClient):
         def ask_client(result: JsonObject, data: bytes) -> None:
             identifier = f"call_service:{name}:{result['call']}"
             self._calls[identifier] = {"number": number, "call": result["call"], "type": f"{kind}_Response"}
-            values = message_to_json(msgs.deserialize(data, f"{kind}_Request"))
+            values = read_values(data, f"{kind}_Request")
             self.tell("call_service", id=identifier, service=name, args=values)
 
         def fail(error: LiveError) -> None:
@@ -245,7 +255,7 @@ class RosbridgeClient(WebClient):
 
         def send(kind: str, data: bytes) -> None:
             def update(answer: JsonObject, data: bytes) -> None:
-                values = message_to_json(msgs.deserialize(data, answer["type"])) if data else {}
+                values = read_values(data, answer["type"]) if data else {}
                 if "status" not in answer:
                     if words.get("feedback"):
                         self.tell("action_feedback", id=identifier, action=action, values=values)

@@ -12,10 +12,12 @@ from typing import Final, NamedTuple, Protocol
 from simkit import msgs
 from simkit.bridges.live.protocol import JsonObject, LiveError
 from simkit.bridges.live.request_fields import read_field
-from simkit_view.web.json_messages import message_from_json, message_to_json
-from simkit_view.web.web_server import WebLink
+from simkit_view.web.cdr_values import read_values
+from simkit_view.web.json_messages import message_from_json
+from simkit_view.web.web_server import WebLink, WebServer, binary_frame, text_frame
 
 _DEPTH: Final = 100  # queued messages of a topic in the simulation, unless the client requests more
+_MOST_SHARED: Final = 16 << 20  # [bytes] of frames and messages for several clients
 MOST_WAITING: Final = 1000
 """Messages that wait: for a topic that the simulation has not opened yet, or for a client."""
 
@@ -26,13 +28,20 @@ class TopicClient(Protocol):
     Attributes:
         link: connection to the simulation.
         publishers: publishers by topic.
+        server: server with the other clients.
     """
 
     link: WebLink
     publishers: dict[str, TopicPublisher]
+    server: WebServer
 
-    def send(self, data: str | bytes) -> None:
-        """Queue a message for the client."""
+    @property
+    def frames(self) -> SharedFrames:
+        """Frames of messages for all clients."""
+        ...
+
+    def send(self, frame: bytes) -> None:
+        """Queue a frame for the client."""
 
     def report_error(self, text: str, identifier: object = None) -> None:
         """Send a status with an error."""
@@ -63,7 +72,7 @@ class TopicSubscription:
     def __init__(self, client: TopicClient, topic: str, depth: int) -> None:
         self._client, self._topic = client, topic
         self.options: dict[object, SubscriptionOptions] = {}
-        self._waiting: deque[str | bytes] = deque()
+        self._waiting: deque[bytes] = deque()  # frames
         self._next = 0.0
         self.number = client.link.subscribe(topic, self._take, self._fail, max(depth, _DEPTH))
 
@@ -95,17 +104,47 @@ class TopicSubscription:
             if self._waiting:
                 asyncio.get_running_loop().call_later(period, self._send_next)
 
-    def _encoded(self, time_ns: int, type_name: str, data: bytes) -> str | bytes:
-        compression = next(reversed(self.options.values())).compression
-        envelope: JsonObject = {"op": "publish", "topic": self._topic}
-        if compression == "none":
-            return json.dumps({**envelope, "msg": message_to_json(msgs.deserialize(data, type_name))})
-        import cbor2
+    def _encoded(self, time_ns: int, type_name: str, data: bytes) -> bytes:
+        """Return the frame of a message."""
+        key = next(reversed(self.options.values())).compression, self._topic, type_name, time_ns, data
+        return self._client.frames.find(key) if self._client.server.has_many_clients else _encode(*key)
 
-        if compression == "cbor-raw":
-            seconds, nanoseconds = divmod(time_ns, 10**9)
-            return cbor2.dumps({**envelope, "msg": {"secs": seconds, "nsecs": nanoseconds, "bytes": data}})
-        return cbor2.dumps({**envelope, "msg": message_to_json(msgs.deserialize(data, type_name), is_binary=True)})
+
+_Key = tuple[str, str, str, int, bytes]  # arguments of `_encode`
+
+
+class SharedFrames:
+    """Frames of the newest messages, so that a message is encoded once for all clients that want the same form."""
+
+    def __init__(self) -> None:
+        self._frames: dict[_Key, bytes] = {}
+        self._size = 0
+
+    def find(self, key: _Key) -> bytes:
+        """Return the frame of a message, which is encoded unless another client has had it."""
+        frame = self._frames.get(key)
+        if frame is None:
+            frame = self._frames[key] = _encode(*key)
+            self._size += len(frame) + len(key[-1])
+            while self._size > _MOST_SHARED and len(self._frames) > 1:
+                oldest = next(iter(self._frames))
+                self._size -= len(self._frames.pop(oldest)) + len(oldest[-1])
+        return frame
+
+
+def _encode(compression: str, topic: str, type_name: str, time_ns: int, data: bytes) -> bytes:
+    """Return the frame of a message in the form that a client requests."""
+    envelope: JsonObject = {"op": "publish", "topic": topic}
+    if compression == "none":
+        return text_frame(json.dumps({**envelope, "msg": read_values(data, type_name)}))
+    import cbor2
+
+    if compression == "cbor-raw":
+        seconds, nanoseconds = divmod(time_ns, 10**9)
+        values: JsonObject = {"secs": seconds, "nsecs": nanoseconds, "bytes": data}
+    else:
+        values = read_values(data, type_name, is_binary=True)
+    return binary_frame(cbor2.dumps({**envelope, "msg": values}))
 
 
 class TopicPublisher:

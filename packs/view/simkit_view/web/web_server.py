@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import os
+import struct
 import sys
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
@@ -28,7 +29,30 @@ _CLOGGED_WAIT: Final = 0.01  # [s] between two looks at a connection that takes 
 _MOST_BYTES: Final = 1 << 20  # [bytes] for the simulation above which nothing is read from the client
 _MOST_ANSWERS: Final = 1000  # unsent data for the client above which nothing is read from it
 _LAST_WAIT: Final = 1.0  # [s] for sending the last messages
+_BATCH: Final = 1 << 16  # [bytes] of frames that are sent in one call of the system
+_TEXT, _BINARY = 0x81, 0x82  # first byte of a whole frame
 _LONGEST_REASON: Final = 100  # characters; a WebSocket has room for 123 bytes
+
+
+def text_frame(text: str) -> bytes:
+    """Return the WebSocket frame of a text for a client."""
+    return _frame(_TEXT, text.encode())
+
+
+def binary_frame(*parts: bytes) -> bytes:
+    """Return the WebSocket frame of binary data for a client, given in parts."""
+    return _frame(_BINARY, *parts)
+
+
+def _frame(kind: int, *parts: bytes) -> bytes:
+    size = sum(map(len, parts))
+    if size < 126:
+        head = bytes((kind, size))
+    elif size < 1 << 16:
+        head = struct.pack(">BBH", kind, 126, size)
+    else:
+        head = struct.pack(">BBQ", kind, 127, size)
+    return b"".join((head, *parts))
 
 
 class WebLink(SimulationLink):
@@ -167,7 +191,7 @@ class WebClient:
 
     def __init__(self, server: WebServer, socket: ServerConnection, link: WebLink, *, is_allowed: bool) -> None:
         self.server, self.socket, self.link, self.is_allowed = server, socket, link, is_allowed
-        self._waiting: deque[str | bytes] = deque()
+        self._waiting: deque[bytes] = deque()  # frames
         link.report_failure = self.report_error
 
     def report_error(self, text: str) -> None:
@@ -184,9 +208,9 @@ class WebClient:
     def apply_time(self, time_ns: int) -> None:
         """Process the simulated time [ns], which the server asks for regularly."""
 
-    def send(self, data: str | bytes) -> None:
-        """Queue a message for the client."""
-        self._waiting.append(data)
+    def send(self, frame: bytes) -> None:
+        """Queue a frame for the client, which `text_frame` or `binary_frame` has made."""
+        self._waiting.append(frame)
         self.link.is_due.set()
 
     async def run(self) -> None:
@@ -222,11 +246,20 @@ class WebClient:
                 closed = error
             # the simulation drops messages of each subscription while the client does not read these
             while self._waiting:
-                await self.socket.send(self._waiting.popleft())
+                await self._send_batch()
             if closed is None:
                 await self.link.is_due.wait()
                 self.link.is_due.clear()
         raise closed
+
+    async def _send_batch(self) -> None:
+        """Send the first waiting frames. `socket.send` would call the system for each, which also wakes the client."""
+        waiting, frames, size = self._waiting, list[bytes](), 0
+        while waiting and size < _BATCH:
+            frames.append(waiting.popleft())
+            size += len(frames[-1])
+        async with self.socket.send_context():
+            self.socket.transport.write(b"".join(frames))
 
 
 class WebServer:
@@ -249,6 +282,11 @@ class WebServer:
         self._link = self._connect()
         self.graph: JsonObject = self._link.request("graph", {})[0]
         self._clients: dict[WebClient, asyncio.Task[None]] = {}
+
+    @property
+    def has_many_clients(self) -> bool:
+        """True if more than one client is connected."""
+        return len(self._clients) > 1
 
     @property
     def simulation(self) -> JsonObject:

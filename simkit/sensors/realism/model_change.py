@@ -14,7 +14,7 @@ ChangePlugin = Callable[[ScenePlugin], ScenePlugin]
 _Owner = TypeVar("_Owner", SceneLink, SceneJoint)
 
 
-def with_parts(model: SceneModel, change_sensor: ChangeSensor, change_plugin: ChangePlugin) -> SceneModel:
+def change_model(model: SceneModel, change_sensor: ChangeSensor, change_plugin: ChangePlugin) -> SceneModel:
     """Return a model with changed sensors and plugins, also those of its nested models.
 
     The model itself is returned if nothing changes.
@@ -32,7 +32,7 @@ def with_parts(model: SceneModel, change_sensor: ChangeSensor, change_plugin: Ch
         return replace(owner, sensors=sensors, plugins=plugins)
 
     links, joints = tuple(map(of_owner, model.links)), tuple(map(of_owner, model.joints))
-    models = tuple(with_parts(nested, change_sensor, change_plugin) for nested in model.models)
+    models = tuple(change_model(nested, change_sensor, change_plugin) for nested in model.models)
     plugins = tuple(map(change_plugin, model.plugins))
     pairs = (links, model.links), (joints, model.joints), (models, model.models), (plugins, model.plugins)
     if all(_is_same(new, old) for new, old in pairs):

@@ -1,0 +1,102 @@
+"""Fans of many rays are cast by several threads, and each ray alone, so that the bits do not depend on the threads."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+from typing import Any
+
+import numpy as np
+import pytest
+import trimesh
+
+import simkit
+from simkit.sensors.rays.embree_rays import has_embree
+from simkit.sensors.rays.ray_fan import RayFan, fan_directions
+from simkit.sensors.rays.ray_threads import RayThreads, ray_threads
+
+GROUPS = (0, 3, 4, 5)
+AZIMUTHS, ELEVATIONS = np.linspace(-3.1, 3.1, 900), np.linspace(-0.6, 0.4, 40)
+INERTIAL = "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial>"
+
+
+def world() -> str:
+    """Return a ground plane, static walls, moving balls of triangles and moving shapes around the origin."""
+    shapes = {
+        "mesh": "<mesh><uri>ball.stl</uri></mesh>",
+        "box": "<box><size>0.7 0.4 0.5</size></box>",
+        "can": "<cylinder><radius>0.3</radius><length>0.6</length></cylinder>",
+        "egg": "<sphere><radius>0.4</radius></sphere>",
+    }
+    parts = []
+    for i in range(16):
+        kind = list(shapes)[i % 4]
+        pose = f"{2.5 * np.cos(i):.3f} {2.5 * np.sin(i):.3f} {0.3 * np.sin(3 * i):.3f} {0.1 * i} 0.3 {0.4 * i}"
+        parts.append(
+            f'<model name="m{i}"><pose>{pose}</pose><link name="l"><gravity>false</gravity>{INERTIAL}'
+            f'<collision name="c"><geometry>{shapes[kind]}</geometry></collision></link></model>'
+        )
+    for i in range(4):
+        parts.append(
+            f'<model name="w{i}"><static>true</static><pose>{4 * np.cos(i):.3f} {4 * np.sin(i):.3f} 0 0 0 {i}</pose>'
+            f'<link name="l"><collision name="c"><geometry><box><size>0.2 3 2</size></box></geometry></collision>'
+            "</link></model>"
+        )
+    plane = "<plane><normal>0 0 1</normal><size>20 20</size></plane>"
+    parts.append(
+        '<model name="g"><static>true</static><pose>0 0 -1 0 0 0</pose><link name="l">'
+        f'<collision name="c"><geometry>{plane}</geometry></collision></link></model>'
+    )
+    return f'<sdf version="1.9"><world name="w">{"".join(parts)}</world></sdf>'
+
+
+def cast(sim: simkit.Simulation, grid: Any, threads: int) -> tuple[bytes, bytes]:
+    fan = RayFan(fan_directions(AZIMUTHS, ELEVATIONS), GROUPS, 30.0, grid=grid)
+    fan.bind(sim.mj_model, sim.engine.names, 0, ())
+    turn = np.array(((0.8, -0.6, 0.0), (0.6, 0.8, 0.0), (0.0, 0.0, 1.0)))
+    with ray_threads.use(threads):
+        fan.cast(sim.mj_model, sim.engine.physics.fresh(), np.array((0.1, 0.2, 0.3)), turn, 0.05)
+    assert np.isfinite(fan.distances).mean() > 0.3
+    assert len(set(fan.geoms.tolist())) > 15
+    return fan.distances.tobytes(), fan.geoms.tobytes()
+
+
+@pytest.mark.parametrize("grid", [None, (ELEVATIONS, AZIMUTHS)], ids=["directions", "grid"])
+def test_the_bits_of_a_scan_do_not_depend_on_the_number_of_threads(grid: Any, tmp_path: pathlib.Path) -> None:
+    trimesh.creation.icosphere(2, 0.4).export(tmp_path / "ball.stl")
+    with simkit.load(world(), resource_paths=[str(tmp_path)]) as sim:
+        alone = cast(sim, grid, 1)
+        assert cast(sim, grid, 2) == alone
+        assert cast(sim, grid, 4) == alone
+
+
+@pytest.mark.skipif(not has_embree(), reason="embreex is not installed")
+def test_a_grid_finds_the_rays_towards_moving_triangles_that_a_test_of_all_rays_finds(tmp_path: pathlib.Path) -> None:
+    trimesh.creation.icosphere(2, 0.4).export(tmp_path / "ball.stl")
+    with simkit.load(world(), resource_paths=[str(tmp_path)]) as sim:
+        assert cast(sim, (ELEVATIONS, AZIMUTHS), 1) == cast(sim, None, 1)
+
+
+def test_the_error_of_a_job_reaches_the_caller() -> None:
+    def fail() -> None:
+        raise ValueError("job")
+
+    done: list[int] = []
+    with pytest.raises(ValueError, match="job"):
+        RayThreads().run([lambda: done.append(1), fail])
+    assert done == [1]
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="the system has no fork")
+def test_a_fork_starts_threads_of_its_own() -> None:
+    threads, done = RayThreads(), [0, 0]
+
+    def jobs() -> list[Any]:
+        return [lambda i=i: done.__setitem__(i, os.getpid()) for i in range(2)]
+
+    threads.run(jobs())
+    child = os.fork()
+    if not child:
+        threads.run(jobs())
+        os._exit(0 if done == [os.getpid()] * 2 else 1)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
