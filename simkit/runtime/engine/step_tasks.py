@@ -138,9 +138,14 @@ class StepTasks:
         self._checked_topics: object = None  # sensors and their topics that were searched for shared topics
         self._limiters: dict[float | None, _Limiter] = {}  # by rate
         self._is_repeatable = False
+        self._limits: list[object] = []
 
-    def basis(self) -> tuple[object, ...] | None:
-        """Return what `fill` reads and a restored state of the same structure may change, except velocity limits.
+    def basis(self, limits: list[object], wanted: list[bool]) -> tuple[object, ...] | None:
+        """Return what the schedule depends on and a restored state of the same structure may change.
+
+        Args:
+            limits: velocity limits of the joints; a change replaces these objects.
+            wanted: which tasks on demand are needed.
 
         Returns:
             None if tasks have a state of their own, so that each restored state needs new ones: timetables of delayed
@@ -151,7 +156,9 @@ class StepTasks:
         engine, structure = self._engine, self._engine.structure
         plugins = [(plugin.before_step_rate, plugin.after_step_rate) for plugin in structure.all_plugins()]
         sensors = [(sensor.update_rate, sensor.is_manual) for sensor in structure.all_sensors()]
-        return engine.physics.sleep.watches, engine.faults.disabled, plugins, sensors
+        identities = list(map(id, limits))
+        self._limits = limits  # they stay alive, so that no other object gets their identity
+        return engine.physics.sleep.watches, engine.faults.disabled, plugins, sensors, identities, wanted
 
     def fill(self, scheduler: Scheduler, exact: list[LimitedDof], coasting: list[LimitedDof]) -> None:
         """Fill an empty scheduler.

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from simkit.argument_checks import check_kind
-from simkit.pose import Vector
 from simkit.runtime.engine.velocity_limits import NO_LIMIT, LimitedDof
 from simkit.runtime.handles.handle import look_up
 from simkit.runtime.handles.joint import Joint
@@ -192,7 +191,7 @@ class EntityHandles:
         others = [j for j in moving if j not in self.exact_limits and j.least_velocity_limit < NO_LIMIT]
         return [dof for joint in exact for dof in joint.limited_dofs()], [d for j in others for d in j.limited_dofs()]
 
-    def velocity_limits(self) -> list[Vector]:
+    def velocity_limits(self) -> list[object]:
         """Return the array of each joint's velocity limits [rad/s or m/s], which a change replaces."""
         return [joint.get_state()[1] for joint in self.tables["joint"].values()]
 
