@@ -158,6 +158,8 @@ class NearbyGeoms:
 
     def reached(self, data: mujoco.MjData, rays: RayBundle) -> npt.NDArray[np.intp]:
         """Return the numbers of the geoms within reach and between the fan's elevations; no such geom is missing."""
+        if not self._which.size:
+            return self._which
         centres = data.geom_xpos.take(self._geoms, 0)
         centres -= rays.origin
         square = np.einsum("ij,ij->i", centres, centres)
