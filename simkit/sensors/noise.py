@@ -37,6 +37,7 @@ _TYPES = ("none", "gaussian", "gaussian_quantized")
 _DATA_SHEET_ELEMENTS = ("noise_density", "random_walk", "bias_instability", "correlation_time")
 _DYNAMIC_BIAS_ELEMENTS = ("dynamic_bias_stddev", "dynamic_bias_correlation_time")
 _MIN_PRECISION = 1e-6  # Gazebo ignores a smaller precision
+_PREPARED = 32  # samples whose white noise is computed at a time
 _MAX_INTERVALS = 64  # size of the cache of intervals, because each interval differs if the sensor has jitter
 
 
@@ -179,6 +180,7 @@ class Noise:
     """
 
     state: NoiseState
+    _prepared: tuple[object, int, list[list[float]]] = (None, 0, [])  # white noise of the next samples, and its first
 
     def __init__(
         self,
@@ -306,11 +308,18 @@ class Noise:
         if self.is_quantised:
             rounded: list[float] = self.apply(np.array(values), index).tolist()
             return rounded
-        constant, stddev = self.state.numbers
-        if self.white is None:
+        state, white = self.state, self.white
+        constant, stddev = state.numbers
+        if white is None:
             return list(map(add, values, constant))
-        white = self.white.normal(index).tolist()
-        return list(map(add, map(add, values, constant), map(mul, stddev, white)))
+        if self.evolves:
+            return list(map(add, map(add, values, constant), map(mul, stddev, white.normal(index).tolist())))
+        made_of, first, rows = self._prepared
+        row = index - first
+        if made_of != (state, white.seed) or not 0 <= row < len(rows):
+            rows, row = (state.interval.stddev * white.normals(index, _PREPARED)).tolist(), 0
+            self._prepared = (state, white.seed), index, rows
+        return list(map(add, map(add, values, constant), rows[row]))
 
     def apply_to_samples(self, values: Vector, first: int) -> Vector:
         """Return the values of consecutive samples, shape (n, width), with the same bits as `apply` for each of them.

@@ -15,6 +15,7 @@ from simkit.runtime import Publisher, Simulation
 from simkit.runtime.communication.subscription import LazyMessage, PendingWork
 from simkit.runtime.engine.physics_state import HeldState
 from simkit.runtime.engine.scheduler import Timetable
+from simkit.runtime.engine.simulated_time import TickGrid
 from simkit.sensors.artefacts import Artefact, MessageArtefact
 from simkit.sensors.lasting_samples import LastingSample, LastingSamples, LastingTimetable
 from simkit.sensors.noise import NoiseKeeper
@@ -134,12 +135,13 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         """
         return ()
 
-    def make_directly(self, raw: Reading, index: int, time_ns: int) -> Message | None:
-        """Return the message of a sample from its captured values; None if only `finish` and the product can make it.
+    @property
+    def makes_directly(self) -> bool:
+        """True if `make_directly` makes the message of the only product with the present noise."""
+        return False
 
-        Overridden by kinds with one product and many samples a second, because a reading takes as long as a message.
-        """
-        return None
+    def make_directly(self, raw: Reading, index: int, time_ns: int) -> Message:
+        """Return the message of a sample from its captured values, because a reading takes as long as a message."""
 
     # a kind whose measurement lasts sets `lasting` before it is attached, and overrides the next four methods and
     # `capture_held`, which makes the reading from the surroundings that `end_measurement` returns
@@ -198,18 +200,14 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
             # measured in the present data, whose forward pass the next step needs anyway
             sample.raw, sample.held = self._capture_now(tick), None
 
-    def _publish_directly(self, tick: int) -> bool:
-        """Publish the message that `make_directly` returns for a new sample; return False if there is none."""
+    def _publish_directly(self, tick: int) -> None:
+        """Publish the message that `make_directly` returns for a new sample."""
         index, time_ns = self._index + 1, self.sim.engine.clock.time_ns(tick)
         raw = self._capture_now(tick)
-        message = self.make_directly(raw, index, time_ns)
-        if message is None:
-            return False
         sample = Sample(index, time_ns)
         sample.raw = raw  # read by `latest` and `truth`
-        sample.messages[next(iter(self._products))] = message
+        message = sample.messages[next(iter(self._products))] = self.make_directly(raw, index, time_ns)
         self.publish_made(sample, message)
-        return True
 
     def publish_made(self, sample: Sample, message: Message) -> None:
         """Take over a sample whose only message a batch has made, and publish it."""
@@ -240,6 +238,23 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         """Return the ticks at which the scenery must have its pose; None is every step."""
         return None if self.lasting is not None else self.timetable()
 
+    @property
+    def is_silent(self) -> bool:
+        """True if a sample calls no code that may read another sensor."""
+        if self._revision != self.sim.communication.bus.revision:
+            self._update_readers()
+        return not self._read_publishers
+
+    @property
+    def keeps_last(self) -> bool:
+        """True if only the last of several samples at due ticks can be read; `skip` counts the others."""
+        is_usual = self.lasting is None and not (self._selects_ticks or self._overrides("sample"))
+        return is_usual and self.is_silent and self._is_unread and isinstance(self.timetable(), TickGrid)
+
+    def skip(self, count: int) -> None:
+        """Count samples that are not taken, because only a later one can be read."""
+        self._skipped += count
+
     def sample(self, tick: int) -> None:
         """Sample at a due tick: measure and publish if the sensor has a reader, else keep the physics state."""
         if self._delayed is not None:
@@ -262,7 +277,8 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         if self._is_served and not self.artefacts:
             if self.batch is not None and self.batch.publish_sample(self, tick):
                 return
-            if self._is_direct and self._publish_directly(tick):
+            if self._is_direct:
+                self._publish_directly(tick)
                 return
         if self._group is not None:  # no reader needs its message at once: many samples become messages together
             packed = self._group.add(tick, self._capture_now(tick))
@@ -411,7 +427,7 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         # a drifting noise advances at every sample, and a delayed sample is delivered later, so neither is skipped
         self._is_unread = not (self._read_publishers or changes or self._delayed or self._needs_each_sample)
         self._patience = max(patience, default=0.0)
-        self._is_direct = is_plain and self._is_read and not changes and self._overrides("make_directly")
+        self._is_direct = is_plain and self._is_read and not changes and self.makes_directly
         products = {product for product, _, _ in self._read_publishers}
         is_packed = is_plain and self.is_deferred and self._is_read and not (changes or self.artefacts)
         is_packed = is_packed and not any(publisher.is_live for publisher in publishers)

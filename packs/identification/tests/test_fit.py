@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 from fit_worlds import pendulum, push, record, servo, slider, swing, turn
 
@@ -12,6 +14,9 @@ import simkit
 from simkit import InputError, RunSpec
 from simkit.testing import open_scenario
 from simkit.testing.scenarios.scenario_file import read_scenario
+from simkit_identification.fitting.problem import RepeatedRecording
+from simkit_identification.fitting.readings import Channel, Readings
+from simkit_identification.fitting.residuals import Residuals
 
 MASS, DAMPING = "cart::car.inertial.mass", "cart::slide.axis.dynamics.damping"
 
@@ -129,6 +134,9 @@ def test_the_file_of_a_result_is_a_scenario_with_the_fitted_values(pushed: Path,
         ("cart::car.pose", "SK-FIT-001", "not one number"),
         (f"{MASS}=3:1", "SK-FIT-001", "not below"),
         (f"{MASS}=heavy", "SK-FIT-001", "expected PATH"),
+        (f"{MASS}=2:2", "SK-FIT-001", "not below"),
+        (f"{MASS}=1:inf", "SK-FIT-001", "expected PATH"),
+        (f"{MASS}=", "SK-FIT-001", "found no value"),
         ([MASS, MASS], "SK-FIT-001", "given twice"),
         ([], "SK-FIT-001", "no parameter"),
         ("cart::slide.axis.limit.upper=5", "SK-FIT-005", "changes no compared reading"),
@@ -145,6 +153,38 @@ def test_a_bag_without_commands_for_the_world_is_an_error(tmp_path: Path) -> Non
     with pytest.raises(InputError, match=r"its inputs: /model/cart/joint/slide/cmd_force") as error:
         simkit.fit(slider(), bag, [MASS])
     assert error.value.code == "SK-FIT-003"
+
+
+@pytest.mark.parametrize(
+    "options, code, text",
+    [
+        ({"compare": "/joint_states.positon"}, "SK-CLI-030", "did you mean 'position"),
+        ({"skip": 100.0}, "SK-FIT-010", "found 100 s, and the last reading is at"),
+        ({"duration": 0.0}, "SK-FIT-010", "expected seconds above 0$"),
+    ],
+)
+def test_options_that_leave_nothing_to_compare_are_named(
+    pushed: Path, options: dict[str, Any], code: str, text: str
+) -> None:
+    with pytest.raises(InputError, match=text) as error:
+        simkit.fit(slider(), pushed, MASS, jobs=1, **{"compare": "/joint_states", **options})
+    assert error.value.code == code
+
+
+def test_a_bag_that_was_cut_off_is_named_as_such(pushed: Path, tmp_path: Path) -> None:
+    data = pushed.read_bytes()
+    (tmp_path / "begun.mcap").write_bytes(data[:2500])
+    with pytest.raises(InputError, match="cut off before the first message"):
+        simkit.fit(slider(), tmp_path / "begun.mcap", MASS)
+
+
+def test_readings_without_a_number_are_neither_compared_nor_counted(pushed: Path) -> None:
+    channel = Channel("/imu", (), ("angular_velocity.x",))
+    values = np.array([[0.0], [np.nan], [2.0]])
+    recording = RepeatedRecording("bag", RunSpec("world"), (Readings(channel, np.arange(3.0), values),))
+    residuals = Residuals([recording])
+    assert residuals.count == 2
+    assert residuals.vector(np.zeros(3)).tolist()[1] == 0.0
 
 
 def test_a_bag_without_common_topics_is_an_error(tmp_path: Path) -> None:

@@ -192,8 +192,9 @@ class ContactLaw:
             True if a contact was corrected.
         """
         if use is LawUse.WHEELS:
-            self._wheels.merge(data)
-        if not (data.ncon and self.is_on) or use is LawUse.WHEELS:
+            self.solve_wheels(data)
+            return False
+        if not (data.ncon and self.is_on):
             mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
             return False
         has_lines = self.lines.correct(data)
@@ -230,6 +231,11 @@ class ContactLaw:
         if motion is not None:
             motion.restore(keeps_references=keeps_references)
         return correction is not None
+
+    def solve_wheels(self, data: mujoco.MjData) -> None:
+        """Solve for accelerations and forces with `LawUse.WHEELS`, as `solve` does."""
+        self._wheels.merge(data)
+        mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
 
     def _needs_correction(self, data: mujoco.MjData) -> bool:
         """Check whether a contact needs a correction."""

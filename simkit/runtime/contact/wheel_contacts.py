@@ -16,6 +16,7 @@ from typing import Any, Final
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
 from simkit.linear_algebra import matmul, norm
 
@@ -28,11 +29,16 @@ _CENTRED: Final = 0.05
 _LEVEL: Final = 0.9999
 """Least cosine between the normals of two contacts on one line."""
 
-WheelPair = tuple[int, int, list[int], bool]
+Floats = npt.NDArray[np.float64]
+
+_ROTATION: Final = 5
+"""Number of the coordinate of a free body that is its rotation about its vertical axis."""
+
+WheelPair = tuple[Floats, Floats, list[int], bool]
 """Wheel and another geom that touch at several points.
 
-- Geom of the wheel.
-- Column of its matrix that is the axis.
+- Axis of the wheel, a view of MuJoCo's data.
+- Centre of the wheel's geom, a view of MuJoCo's data.
 - Numbers of the contacts.
 - True if all contacts have the same normal, because the other geom is a plane.
 """
@@ -52,7 +58,10 @@ class WheelContacts:
         self._is_sparse = bool(mujoco.mj_isSparse(model))
         self._has_islands = not model.opt.disableflags & _NO_ISLANDS
         self._axis_of: dict[int, int] = {}  # geom -> column of its matrix that is the axis
-        self._geoms, self._pairs = b"", list[WheelPair]()  # geoms of all contacts, and what was derived from them
+        # geoms of all contacts, their data, and what was derived from them
+        self._geoms, self._pairs = b"", list[WheelPair]()
+        self._data: mujoco.MjData | None = None
+        self._weight = np.zeros(())  # NumPy multiplies by an array in half the time of a float
         if model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL:  # its rows are edges, not tangents
             return
         for joint in np.flatnonzero(model.jnt_type == mujoco.mjtJoint.mjJNT_HINGE).tolist():
@@ -101,7 +110,7 @@ class WheelContacts:
         lines = self._lines(data) if self._axis_of else []
         if not lines:
             return False
-        jacobian, count = data.efc_J, self._model.nv
+        jacobian, count, factor = data.efc_J, self._model.nv, self._weight
         starts: list[int] | None = data.efc_J_rowadr.tolist() if self._is_sparse else None
         is_changed = False
         for low, high, weight in lines:
@@ -113,8 +122,10 @@ class WheelContacts:
                 row = jacobian[starts[first] : starts[first + 1] + int(data.efc_J_rownnz[first])]
                 other = jacobian[starts[second] : starts[second + 1] + int(data.efc_J_rownnz[second])]
             apart = other - row
-            if np.count_nonzero(apart):  # takes a fifth of the time of `any`
-                apart *= weight
+            # the rotation about the vertical usually tells; counting takes a fifth of the time of `any`
+            if apart.item(_ROTATION % apart.size) or np.count_nonzero(apart):
+                factor[()] = weight
+                apart *= factor
                 row += apart
                 other[:] = row
                 is_changed = True
@@ -130,16 +141,14 @@ class WheelContacts:
         contact = data.contact
         geoms = contact.geom
         content = geoms.tobytes()
-        if content != self._geoms:  # the pairs in contact seldom change from step to step
-            self._geoms, self._pairs = content, self._wheel_pairs(geoms.tolist())
+        if content != self._geoms or data is not self._data:  # the pairs in contact seldom change from step to step
+            self._geoms, self._data, self._pairs = content, data, self._wheel_pairs(data, geoms.tolist())
         lines: list[tuple[int, int, float]] = []
         if not self._pairs:
             return lines
-        rows, points, dims = contact.efc_address.tolist(), contact.pos.tolist(), contact.dim.tolist()
-        axes, centres = data.geom_xmat, data.geom_xpos
-        for wheel, column, numbers, is_level in self._pairs:
-            a, b, c = axes[wheel].tolist()[column::3]
-            u, v, w = centres[wheel].tolist()
+        rows, points = contact.efc_address.tolist(), contact.pos.tolist()
+        for axis, centre, numbers, is_level in self._pairs:
+            (a, b, c), (u, v, w) = axis.tolist(), centre.tolist()
             low = high = 0.0
             lowest = other = -1
             for number in numbers:
@@ -151,14 +160,16 @@ class WheelContacts:
                     low, lowest = place, number
                 elif place > high:
                     high, other = place, number
-            if lowest >= 0 and other >= 0 and dims[lowest] > 1 and (is_level or _are_level(contact, lowest, other)):
+            has_line = lowest >= 0 and other >= 0 and contact.dim.item(lowest) > 1
+            if has_line and (is_level or _are_level(contact, lowest, other)):
                 lines.append((rows[lowest], rows[other], -low / (high - low)))
         return lines
 
-    def _wheel_pairs(self, geoms: list[list[int]]) -> list[WheelPair]:
+    def _wheel_pairs(self, data: mujoco.MjData, geoms: list[list[int]]) -> list[WheelPair]:
         """Return the pairs of geoms with at least two contacts and a wheel.
 
         Args:
+            data: MuJoCo's data.
             geoms: both geoms of each contact.
         """
         axis_of, model = self._axis_of, self._model
@@ -171,7 +182,8 @@ class WheelContacts:
             if len(numbers) > 1:
                 wheel = second if second in axis_of else first
                 is_level = bool((model.geom_type[[first, second]] == mujoco.mjtGeom.mjGEOM_PLANE).any())
-                pairs.append((wheel, axis_of[wheel], numbers, is_level))
+                axis, centre = data.geom_xmat[wheel, axis_of[wheel] :: 3], data.geom_xpos[wheel]
+                pairs.append((axis, centre, numbers, is_level))
         return pairs
 
 

@@ -82,6 +82,17 @@ class AttachedSensor(Protocol):
     def sample(self, tick: int) -> None:
         """Measure at a tick."""
 
+    @property
+    def is_silent(self) -> bool:
+        """True if a sample calls no code that may read another sensor."""
+
+    @property
+    def keeps_last(self) -> bool:
+        """True if only the last of several samples can be read; `skip` counts the others."""
+
+    def skip(self, count: int) -> None:
+        """Count samples that are not taken."""
+
     def take_held(self) -> None:
         """Measure all pending samples, before the model changes."""
 

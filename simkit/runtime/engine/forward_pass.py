@@ -151,10 +151,10 @@ class ForwardPass(PhysicsState):
             self.stage = STALE  # an interrupt during the solve leaves unfinished constraints
             if self.law.solve(data, self._closing, probes=True):
                 self._uses_law = LawUse.WHOLE
-        elif self._uses_law or is_shaped:
+        elif is_shaped or (self._uses_law and not (has_new_forces and self._uses_law is LawUse.WHEELS)):
             self.stage = STALE
             self.law.solve(data, self._closing, LawUse.WHOLE if is_shaped else self._uses_law)
-        else:
+        else:  # the check has already changed the contacts of wheels
             mj_forward_skip(model, data, _AFTER_VELOCITIES, 1)
         if self._is_open and has_new_forces and self._space.is_pushed(data):
             self._until = self._fast_until = -1

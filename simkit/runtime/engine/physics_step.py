@@ -195,10 +195,15 @@ class Physics(ForwardPass):
         """
         model, data, free_motion = self.model, self.data, self.free_motion
         use, solve, closing = self._uses_law, self.law.solve, self._closing
+        solve_wheels = self.law.solve_wheels if use is LawUse.WHEELS else None
         for _ in range(count):
             mj_check_pos(model, data)
             mj_check_vel(model, data)
-            if use:
+            if solve_wheels is not None:
+                mj_fwd_position(model, data)
+                mj_fwd_velocity(model, data)
+                solve_wheels(data)
+            elif use:
                 mj_fwd_position(model, data)
                 mj_fwd_velocity(model, data)
                 solve(data, closing, use)

@@ -41,6 +41,11 @@ class RandomStream(InProcess):
         self._drawn = 0
         self.reseed(seed)
 
+    @property
+    def seed(self) -> int | None:
+        """Present seed."""
+        return self._seed
+
     def reseed(self, seed: int) -> None:
         """Set another seed; the same seed keeps the numbers that are drawn already."""
         if seed != self._seed:

@@ -24,6 +24,10 @@ class CommandSource(Protocol):
     def inbox(self) -> Sized:
         """Waiting commands; empty if there are none."""
 
+    @property
+    def revision(self) -> int:
+        """Counter that changes with every change of readers and publishers."""
+
     def deliver_inputs(self) -> None:
         """Pass the waiting commands to their inputs."""
 
@@ -41,6 +45,7 @@ class StepLoop:
         self.scheduler = Scheduler(physics.clock)
         self._physics, self._commands, self._fill = physics, commands, fill
         self.jumped = self._target = 0
+        self._readers = -1  # revision of the readers that the scheduler considers
         self.is_running = self._is_outdated = self._is_served = self._halts = False
         self._deferred: list[Callable[[], None]] = []
         self._idle = threading.Event()
@@ -138,6 +143,7 @@ class StepLoop:
         self.scheduler.clear()
         self._fill(self.scheduler)
         self.scheduler.rewind(self._physics.tick)
+        self._readers = self._commands.revision
 
     def _run(self) -> None:
         physics, commands, program = self._physics, self._commands, _OPEN_LOOPS
@@ -146,7 +152,10 @@ class StepLoop:
             if program.ending is not None:
                 program.end_this_thread()
             tick = physics.tick
-            stop = min(self._target, before.next, sense.next, after.next)
+            if self._readers != commands.revision:
+                self._readers = commands.revision
+                self.scheduler.renew_readers(tick)
+            stop = sense.stop_before(tick, min(self._target, before.next, after.next))
             has_every = bool(before.every or after.every or sense.every)
             if has_every and stop - tick > 1 and not commands.inbox:
                 self._run_single_steps(stop - 1)
@@ -156,7 +165,7 @@ class StepLoop:
                 if self._is_outdated:  # changes by an input apply from this step on
                     self._refill()
                     tick, has_every = physics.tick, bool(before.every or after.every or sense.every)
-                    stop = min(self._target, before.next, sense.next, after.next)
+                    stop = sense.stop_before(tick, min(self._target, before.next, after.next))
                 if commands.inbox:  # commands that an input sent belong to the next step
                     stop = tick + 1
             if before.every or before.next <= tick:
@@ -164,7 +173,7 @@ class StepLoop:
                     task(tick)
                 if physics.tick == tick and not (self._is_outdated or commands.inbox):
                     # all due tasks are done: advance to the next due tick in one call
-                    stop = min(self._target, before.next, sense.next, after.next)
+                    stop = sense.stop_before(tick, min(self._target, before.next, after.next))
             physics.advance(1 if has_every or self._halts else max(1, stop - tick))
             tick = physics.tick
             # a state with NaN or infinite numbers is neither measured nor published

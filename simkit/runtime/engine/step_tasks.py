@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from simkit.runtime.engine import sleep, stray_bodies, velocity_servos
-from simkit.runtime.engine.scheduler import Scheduler, Task
+from simkit.runtime.engine.scheduler import Scheduler, SilentTask, Task
 from simkit.runtime.engine.velocity_limits import LimitedDof, velocity_limiter
 
 if TYPE_CHECKING:
@@ -169,7 +169,7 @@ class StepTasks:
                 if known is None or known[0] is not model or known[1] != dofs:
                     known = model, dofs, velocity_limiter(physics, dofs)
                 self._limiters[rate] = known
-                scheduler.every(rate, known[2], "sense")
+                scheduler.sample(scheduler.clock.grid(rate or 0.0, from_start=True), known[2], SilentTask())
 
 
 def _schedule_sensors_and_plugins(engine: Engine, scheduler: Scheduler) -> None:
@@ -178,7 +178,7 @@ def _schedule_sensors_and_plugins(engine: Engine, scheduler: Scheduler) -> None:
     _schedule_scenery(engine, scheduler, plugins)
     for sensor in engine.structure.all_sensors():
         if not sensor.is_manual:
-            scheduler.on(sensor.timetable(), sensor.sample, "sense")
+            scheduler.sample(sensor.timetable(), sensor.sample, sensor)
     for rate, task in hook_tasks(engine.faults, plugins, "before_step"):
         scheduler.every(rate, task, "before")
     for plugin in plugins:

@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from simkit.linear_algebra import matmul, norm
+from simkit.linear_algebra import matmul, norm, squared_length
 from simkit.runtime.engine.plugin_faults import explanations
 
 if TYPE_CHECKING:
@@ -67,6 +67,8 @@ class StrayBodies:
             return
         data = physics.data
         ways, speeds = data.qpos.take(self._coordinates) - self._starts, data.qvel.take(self._dofs)
+        if squared_length(ways, FARTHEST**2) < FARTHEST**2 and squared_length(speeds, FASTEST**2) < FASTEST**2:
+            return  # all together are neither far nor fast
         far = np.einsum("ij,ij->i", ways, ways) > FARTHEST**2  # nothing else can be far from the world
         suspects = far | (np.einsum("ij,ij->i", speeds, speeds) > FASTEST**2)
         if suspects.any():

@@ -178,9 +178,11 @@ class Imu(ImuMeasurement):
         columns = [np.array(times) // _NS, np.array(times) % _NS, *attitude, *noisy.T]
         return self._template().fill(len(times), dict(zip(_VARIABLE_FIELDS, columns, strict=True)))
 
-    def make_directly(self, raw: bytes, index: int, time_ns: int) -> msgs.Imu | None:
-        if not self.has_plain_noise:
-            return None
+    @property
+    def makes_directly(self) -> bool:
+        return self.has_plain_noise
+
+    def make_directly(self, raw: bytes, index: int, time_ns: int) -> msgs.Imu:
         mount = None if self.is_mounted_straight else self._mount
         reference = None if self.is_against_world else self._from_reference
         attitude, motion = sensor_motion(unpack_numbers(raw), self._arm, mount, self._rotation, reference)

@@ -149,7 +149,7 @@ class ImuMeasurement(Sensor):
         if self._more_noise is not None:
             self._noises.remove(self._more_noise)
         self._more_noise = None if model is None else self._make_noise((model,) * 9, "more")
-        self._covariances_of = None
+        self._covariances_of, self._revision = None, -1
 
     def _make_pending_messages(self) -> None:
         """Make the messages of earlier samples with the present reference and noise."""

@@ -86,3 +86,51 @@ def test_a_schedule_that_is_filled_again_has_the_ticks_of_its_present_rates() ->
     for begin in (0, 30, 0):
         for rates in ((100.0, 50.0), (100.0, 50.0), (50.0, 200.0)):
             assert ticks(rates, begin) == expected((round(1000 / rates[0]), round(1000 / rates[1])), begin)
+
+
+class Sensor:
+    """Sensor whose last sample alone can be read; it records ticks of samples and counts those that are left out."""
+
+    def __init__(self, *, is_silent: bool = True) -> None:
+        self.is_silent = self.keeps_last = is_silent
+        self.ticks: list[int] = []
+        self.count = 0
+
+    def sample(self, tick: int) -> None:
+        self.ticks.append(tick)
+        self.count += 1
+
+    def skip(self, count: int) -> None:
+        self.count += count
+
+
+def run_with_stops(sensors: dict[float, Sensor], stops: list[int]) -> list[int]:
+    """Run sensors by their rates to given ticks, and return all ticks at which the run stopped."""
+    clock = Clock(0.001)
+    scheduler = Scheduler(clock)
+    for rate, sensor in sensors.items():
+        scheduler.sample(clock.grid(rate, from_start=True), sensor.sample, sensor)
+    scheduler.rewind(0)
+    agenda, tick, passed = scheduler.sense, 0, []
+    for stop in stops:
+        while tick < stop:
+            tick = agenda.stop_before(tick, stop)
+            passed.append(tick)
+            for task in agenda.due(tick) if agenda.next <= tick else ():
+                task(tick)
+    return passed
+
+
+def test_of_samples_that_nobody_reads_only_the_last_before_a_stop_is_taken_and_all_are_counted() -> None:
+    sensors = {200.0: Sensor(), 30.0: Sensor()}
+    stops = run_with_stops(sensors, [101, 120, 123, 199])
+    assert stops == [1, 100, 101, 120, 123, 167, 195, 199]
+    assert sensors[200.0].ticks == [1, 100, 120, 195]
+    assert sensors[30.0].ticks == [1, 100, 167]
+    assert [sensor.count for sensor in sensors.values()] == [40, 6]
+
+
+def test_all_samples_are_taken_if_one_task_may_read_the_others() -> None:
+    sensors = {200.0: Sensor(), 30.0: Sensor(is_silent=False)}
+    run_with_stops(sensors, [101, 1000])
+    assert [len(sensor.ticks) for sensor in sensors.values()] == [201, 31]

@@ -25,7 +25,7 @@ from simkit_identification.comparison.sources import (
     world_spec,
 )
 from simkit_identification.comparison.table import Comparison
-from simkit_identification.comparison.tolerances import INVALID, Tolerance, parse_tolerances
+from simkit_identification.comparison.tolerances import INVALID, Tolerance, parse_tolerances, unused_tolerances
 from simkit_identification.measures.recording import SignalRecording
 
 _NOTHING_IN_COMMON: Final = "SK-COMPARE-002"
@@ -86,7 +86,9 @@ def compare(
         return _compare(first, second, "none", choice, confidence, checked, played=frozenset(first.commands))
     other = Path(_file(b))
     old_names = choice.old_names
-    second = read_bag(other, lambda topic: choice.takes(old_names.get(topic, topic))).renamed(old_names)
+    second = read_bag(other, lambda topic: choice.takes(old_names.get(topic, topic)))
+    _check_names(first, second, choice)
+    second = second.renamed(old_names)
     if align == "auto" and has_simulated_times(path) and has_simulated_times(other) and _begin_together(first, second):
         align = "none"
     return _compare(first, second, align, choice, confidence, checked)
@@ -164,9 +166,7 @@ def _compare(
     topics = [t for t in _chosen(a, choice) if t not in played]
     topics += [t for t in _chosen(b, choice) if t not in a.streams and t not in played]
     if not any(t in a.streams and t in b.streams for t in topics):
-        names = [", ".join(sorted(side.streams)) or "none" for side in (a, b)]
-        text = f"{a.name} and {b.name} have no topic in common; a has {names[0]}; b has {names[1]}"
-        raise InputError(_NOTHING_IN_COMMON, text, help="name topics that correspond: --map /scan=/lidar/scan")
+        raise _nothing_in_common(a, b, played)
     offset, sentence = alignment_offset(a, b, align)
     b = b.shifted(offset)
     if sentence:
@@ -178,9 +178,33 @@ def _compare(
         raise InputError(_NOTHING_IN_COMMON, text, help="align them by their first messages: --align start")
     a, b = a.between(start, end), b.between(start, end)
     rows = rows_of_two(a, b, topics, confidence, tolerances)
+    b.notes += [f"tolerance {t.pattern}: no row is called so" for t in unused_tolerances(tolerances[:-1], rows)]
     table = Comparison(a.name, b.name, rows, confidence, _notes(a, b))
     table.charts = charts_of(a, b, rows)
     return table
+
+
+def _check_names(a: SignalRecording, b: SignalRecording, choice: TopicChoice) -> None:
+    """Check that the topics of `names` are in the recordings, each with its own names."""
+    problems: list[str] = []
+    for old, new in choice.names.items():
+        if not choice.takes(old):
+            continue
+        for side, topic in ((a, old), (b, new)):
+            if topic not in side.streams:
+                known = sorted(side.streams)
+                hint = did_you_mean(topic, known) or f"it has {', '.join(known)}"
+                problems.append(f"--map {old}={new}: {side.name} has no topic {topic}; {hint}")
+    if problems:
+        raise InputError(INVALID, f"\n{INVALID} ".join(problems))
+
+
+def _nothing_in_common(a: SignalRecording, b: SignalRecording, played: frozenset[str]) -> InputError:
+    """Return the error for recordings without a common topic besides the commands."""
+    names = [", ".join(sorted(set(side.streams) - played)) or "none" for side in (a, b)]
+    besides = f" besides the commands {', '.join(sorted(played))}" if played else ""
+    text = f"{a.name} and {b.name} have no topic in common{besides}; a has {names[0]}; b has {names[1]}"
+    return InputError(_NOTHING_IN_COMMON, text, help="name topics that correspond: --map /scan=/lidar/scan")
 
 
 def _start(recording: SignalRecording) -> float:

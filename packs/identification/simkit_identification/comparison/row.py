@@ -50,6 +50,8 @@ class Row:
             return self.note or "measured"
         if self.verdict in ("only in a", "only in b", "same"):
             return self.verdict + (f" ({self.note})" if self.note else "")
+        if math.isnan(self.difference):
+            return self.verdict + (f": {self.note}" if self.note else "")
         size = f"{abs(self.difference):.3g}{unit}"
         direction = "larger" if self.difference > 0.0 else "smaller"
         if self.quantity.endswith("distribution"):

@@ -83,7 +83,8 @@ def read_bag(path: Path, choose: Callable[[str], bool], *, name: str = "") -> Si
         recording = _read(bag, choose, name or str(path))
     if not any(stream.count for stream in recording.streams.values()):
         known = ", ".join(sorted(topic.name for topic in bag.topics)) or "none"
-        raise InputError(_EMPTY, f"{path} has no messages to compare; its topics: {known}")
+        cut = f"; {bag.broken}" if bag.broken else ""
+        raise InputError(_EMPTY, f"{path} has no messages to compare; its topics: {known}{cut}")
     return recording
 
 

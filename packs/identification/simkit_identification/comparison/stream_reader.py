@@ -120,7 +120,7 @@ class StreamReader:
         return np.array(values, np.float64)
 
     def _signals(self, times: Floats) -> Iterable[Signal]:
-        """Yield the signals of all numeric fields."""
+        """Yield the signals of all numeric fields, and for each that is NaN or infinite the share of these values."""
         texts = {c.path: c for c in self._columns if c.kind == TEXT}
         numbers: dict[str, tuple[Floats, Floats]] = {}
         for column in self._columns:
@@ -131,7 +131,11 @@ class StreamReader:
         for path, (at, values) in {**numbers, **angles}.items():
             is_angle = path in angles
             unit = "rad" if is_angle else unit_of(self._type_name, path)
-            yield Signal(path, unit, at, values, is_angle, bool(_SETTING.search(path)))
+            is_missing = ~np.isfinite(values)
+            known = np.where(is_missing, np.nan, values)
+            yield Signal(path, unit, at, known, is_angle, bool(_SETTING.search(path)))
+            if is_missing.any():
+                yield Signal(f"missing share of {path}", "share", at, is_missing.astype(np.float64), is_setting=True)
 
 
 def _first(value: Any) -> int:

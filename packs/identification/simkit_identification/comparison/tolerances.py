@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import fnmatch
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
 from simkit.errors import InputError
+from simkit_identification.comparison.row import Row
 
 INVALID: Final = "SK-COMPARE-003"
 DEFAULT_TOLERANCE: Final = "0.1%"
@@ -20,12 +21,14 @@ class Tolerance:
     """Tolerance of the rows that match a pattern.
 
     Attributes:
+        pattern: pattern of the option.
         topic: shell pattern of the topic.
         quantity: shell pattern of the quantity.
         size: size, in the unit of the row, or relative to its value.
         is_relative: True for a size relative to the larger value.
     """
 
+    pattern: str
     topic: str
     quantity: str
     size: float
@@ -76,7 +79,12 @@ def _tolerance(pattern: str, text: str) -> Tolerance:
     if not colon:
         topic, quantity = (pattern, "*") if pattern.startswith("/") else ("*", pattern)
     # square brackets are parts of names, such as position[wheel], not classes of characters
-    return Tolerance(topic or "*", quantity.replace("[", "[[]") or "*", size, is_relative)
+    return Tolerance(pattern, topic or "*", quantity.replace("[", "[[]") or "*", size, is_relative)
+
+
+def unused_tolerances(tolerances: Sequence[Tolerance], rows: Sequence[Row]) -> list[Tolerance]:
+    """Return the tolerances that match no row."""
+    return [t for t in tolerances if not any(t.matches(row.topic, row.quantity) for row in rows)]
 
 
 def tolerance_of(tolerances: list[Tolerance], topic: str, quantity: str, scale: float) -> float:

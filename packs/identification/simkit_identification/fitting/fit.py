@@ -35,6 +35,7 @@ from simkit_identification.fitting.motion import Motion
 from simkit_identification.fitting.noise_level import NoiseLevel, estimate_noise
 from simkit_identification.fitting.parameters import Parameter, Vary, read_parameters_to_vary, without_noise
 from simkit_identification.fitting.problem import RepeatedRecording, fit_problem
+from simkit_identification.fitting.readings import check_fields
 from simkit_identification.fitting.recordings import Bag, read_recordings
 from simkit_identification.fitting.residuals import Residuals
 from simkit_identification.fitting.result import FitResult
@@ -95,7 +96,7 @@ class FitOptions:
         for name, value in (("duration", self.duration), ("window", self.window)):
             if value is not None and not value > 0:
                 problems.append(f"{name}: found {shown(value)}; expected seconds above 0")
-        if self.duration is not None and self.duration <= self.skip:
+        if self.duration is not None and 0 < self.duration <= self.skip:
             problems.append(f"duration {self.duration:g} s is not above skip {self.skip:g} s")
         if problems:
             raise InputError(INVALID_OPTION, f"\n{INVALID_OPTION} ".join(problems))
@@ -232,6 +233,7 @@ class _Fitter:
             Evaluator(problem, self._searched, self._options.jobs, task) as evaluate,
         ):
             residuals = Residuals(recordings, self._options.skip, () if self._is_free else self._options.compare)
+            self._check_compared(residuals)
             start = np.zeros(len(self._searched))
             before = self._first_readings(evaluate, start)
             self._compare_only_known(residuals, before, notes)
@@ -277,6 +279,15 @@ class _Fitter:
             text = f"the run with the first values fails: {evaluate.failures[0]}"
             raise InputError(RUNS_FAILED, text, help="give other first values: --vary PATH=START")
         return before
+
+    def _check_compared(self, residuals: Residuals) -> None:
+        """Raise InputError if the options leave no recorded reading to compare."""
+        last = float(np.max(residuals.times, initial=0.0))
+        if last < self._options.skip:
+            text = f"skip: found {self._options.skip:g} s, and the last reading is at {last:g} s"
+            raise InputError(INVALID_OPTION, text)
+        if not self._is_free:
+            check_fields(self._options.compare, [(name.channel.topic, name.column) for name in residuals.columns])
 
     def _compare_only_known(self, residuals: Residuals, before: Floats, notes: Mapping[str, str]) -> None:
         if not np.any(np.isfinite(before) & np.isfinite(residuals.recorded)):

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 Vary = str | Sequence[str] | Mapping[str, object]
 """Parameters: texts `PATH`, `PATH=START`, `PATH=LOW:HIGH` or `PATH=LOW:START:HIGH`, or values by path."""
 
+_FORMS: Final = "PATH, PATH=START, PATH=LOW:HIGH or PATH=LOW:START:HIGH"
 _EITHER_SIGN: Final = re.compile(
     r"(^|\.)(x|y|z|roll|pitch|yaw|mean|bias_mean|ixy|ixz|iyz|lower|upper|reference|spring_reference|offset|gravity)$"
 )
@@ -131,7 +132,9 @@ def _split(vary: Vary) -> list[tuple[str, str]]:
         return [(path, _text(value)) for path, value in vary.items()]
     pairs = []
     for text in (vary,) if isinstance(vary, str) else vary:
-        path, _, value = text.partition("=")
+        path, equals, value = text.partition("=")
+        if equals and not value.strip():
+            raise _invalid(path.strip(), f"found no value; expected {_FORMS}")
         pairs.append((path.strip(), value.strip()))
     return pairs
 
@@ -151,7 +154,7 @@ def _parameter(path: str, text: str, known: Sequence[SettablePath], timestep: fl
     except ValueError:
         numbers = [math.nan]
     if len(numbers) > 3 or not all(map(math.isfinite, numbers)):
-        raise _invalid(path, f"found {text!r}; expected PATH, PATH=START, PATH=LOW:HIGH or PATH=LOW:START:HIGH")
+        raise _invalid(path, f"found {text!r}; expected {_FORMS}")
     low, high = (numbers[0], numbers[-1]) if len(numbers) > 1 else (-math.inf, math.inf)
     if len(numbers) > 1 and not low < high:
         raise _invalid(path, f"the lower bound {low:g} is not below the upper bound {high:g}")

@@ -301,6 +301,24 @@ def is_compared(topic: str, column: str, compare: Sequence[str]) -> bool:
     return False
 
 
+def check_fields(chosen: Sequence[str], columns: Sequence[tuple[str, str]]) -> None:
+    """Check that each text of `--compare` selects a column.
+
+    Args:
+        chosen: texts `TOPIC` or `TOPIC.FIELD`.
+        columns: topic and name of each column.
+
+    Raises:
+        InputError: SK-CLI-030 a text selects no column.
+    """
+    for text in chosen:
+        if not any(is_compared(topic, column, [text]) for topic, column in columns):
+            topic, _, field = text.partition(".")
+            known = list(dict.fromkeys(column for name, column in columns if matches_topic(name, [topic])))
+            hint = did_you_mean(field, known) or f"fields: {', '.join(known[:20]) or 'none'}"
+            raise InputError("SK-CLI-030", f"--compare {text}: the readings have no such field; {hint}")
+
+
 def check_topics(chosen: Sequence[str], available: Sequence[str]) -> None:
     """Check that each pattern of `--compare` matches a topic.
 

@@ -109,10 +109,12 @@ def _bag_recording(
     commands = command_topics(sim, path, options.play_topics)
     if not commands:
         inputs = ", ".join(world_inputs(sim)) or "none"
-        text = f"{path}: the world hears no topic of this bag; its inputs: {inputs}"
+        text = f"{path}: the world hears no topic of this bag{_cut(path)}; its inputs: {inputs}"
         help_ = "rename topics with --play-topic OLD:=NEW; for a body that moves freely, use --motion MODEL=TOPIC"
         raise InputError(NO_COMMANDS, text, help=help_)
     with open_bag_to_read(path) as bag:
+        if bag.broken:
+            notes[f"the rest of {path}"] = bag.broken
         available = {t: kind for t, kind in common_topics(sim, bag) if t not in commands and t not in commands.values()}
         numeric = [topic for topic, kind in available.items() if has_numbers(kind)]
         check_topics(options.compare, numeric)
@@ -137,6 +139,12 @@ def _bag_recording(
         listed = ", ".join(sorted(available)) or "none"
         raise InputError(NOTHING_COMMON, f"{text}; topics of both: {listed}", help="record the topics of the sensors")
     return RepeatedRecording(str(path), repeated, tuple(kept))
+
+
+def _cut(path: Path) -> str:
+    """Return the reason why a bag is truncated, in brackets; empty for a complete bag."""
+    with open_bag_to_read(path) as bag:
+        return f" ({bag.broken})" if bag.broken else ""
 
 
 def _has_two(readings: Readings) -> bool:

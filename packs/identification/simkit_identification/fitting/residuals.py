@@ -43,7 +43,7 @@ class Residuals:
         sample: index of the sample of each reading; readings of one time of one recording have the same.
         times: time of each reading [s].
         recording: index of the recording of each reading.
-        weights: inverse of the standard deviation of each reading; 0 for those that are not compared.
+        weights: inverse of the standard deviation of each reading; 0 for those that are not compared or have no number.
         deviations: standard deviation of each column.
     """
 
@@ -71,7 +71,7 @@ class Residuals:
         keys = np.stack((self.recording.astype(np.float64), np.round(self.times, 9)), axis=1)
         _, sample = np.unique(keys, axis=0, return_inverse=True)
         self.sample: Integers = sample.ravel().astype(np.intp)
-        self._skipped = self.times < skip - 1e-9
+        self._skipped = (self.times < skip - 1e-9) | ~np.isfinite(self.recorded)
         self._is_used = np.array([is_compared(name.channel.topic, name.column, compare) for name in self.columns], bool)
         self._means = np.array([self._mean(i) for i in range(len(self.columns))])
         self._ranges = np.array([self._variation(i) for i in range(len(self.columns))])

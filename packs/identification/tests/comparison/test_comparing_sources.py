@@ -245,3 +245,44 @@ def test_two_runs_with_other_seeds_seldom_differ(tmp_path: Path) -> None:
         chances += [row.chance for row in table if 0.0 < row.chance < 1.0]
     assert alarms <= 3
     assert float(np.mean(np.array(chances) < 0.05)) < 0.07
+
+
+def test_missing_numbers_are_rows_and_the_types_of_a_topic_are_named(tmp_path: Path) -> None:
+    times = [0.01 * k for k in range(100)]
+    whole = write_bag(tmp_path / "whole.mcap", [("/imu", t, imu(t, (math.sin(t), 0, 0))) for t in times])
+    gyro = [(math.nan, math.inf, 0.0) if k % 4 == 0 else (math.sin(t), 0.0, 0.0) for k, t in enumerate(times)]
+    holed = write_bag(tmp_path / "holed.mcap", [("/imu", t, imu(t, g)) for t, g in zip(times, gyro, strict=True)])
+    table = simkit.compare(whole, holed)
+    for axis in "xy":
+        row = table.row("/imu", f"missing share of angular_velocity.{axis}")
+        assert (row.verdict, row.b) == ("only in b", pytest.approx(0.25))
+    assert simkit.compare(holed, holed).is_same
+    other = write_bag(tmp_path / "other.mcap", [("/imu", t, number(t)) for t in times])
+    table = simkit.compare(whole, other)
+    assert table.row("/imu", "type").text == "differs: types sensor_msgs/msg/Imu and std_msgs/msg/Float64"
+    assert "nan" not in table.text(everything=True)
+
+
+def test_names_of_topics_that_do_not_exist_are_errors_and_unused_tolerances_are_notes(tmp_path: Path) -> None:
+    a, b = voltages(tmp_path / "a.mcap"), voltages(tmp_path / "b.mcap", topic="/volts")
+    with pytest.raises(simkit.InputError) as caught:
+        simkit.compare(a, b, names={"/voltag": "/volts", "/voltage": "/vlts"})
+    assert [line.split(";")[1].strip() for line in caught.value.message.splitlines()] == [
+        "did you mean '/voltage'?",
+        "did you mean '/volts'?",
+    ]
+    table = simkit.compare(a, b, names={"/voltage": "/volts"}, tolerances={"latncy": 0.1, "data": "5%"})
+    assert [note for note in table.notes if "tolerance" in note] == ["tolerance latncy: no row is called so"]
+
+
+def test_a_recording_with_nothing_but_commands_says_so(cart: tuple[Path, Path], tmp_path: Path) -> None:
+    commands = write_bag(tmp_path / "commands.mcap", [("/cmd_vel", 0.1 * k, velocity(0.1)) for k in range(10)])
+    with pytest.raises(simkit.InputError, match="no topic in common besides the commands /cmd_vel; a has none"):
+        simkit.compare(commands, cart[0])
+
+
+def test_a_recording_that_was_cut_off_before_its_messages_says_so(tmp_path: Path) -> None:
+    a = voltages(tmp_path / "a.mcap")
+    (tmp_path / "cut.mcap").write_bytes(a.read_bytes()[:400])
+    with pytest.raises(simkit.InputError, match="its topics: none; the recording was cut off"):
+        simkit.compare(a, tmp_path / "cut.mcap")
