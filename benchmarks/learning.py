@@ -1,9 +1,11 @@
-"""Environments for learning beside a hand-written loop on bare MuJoCo, and their resets.
+"""Environments for learning beside hand-written loops, and their resets.
 
 python benchmarks/learning.py [--rounds N]
 
-One step is 0.1 s of `turtlebot3_world` with a fresh scan of 360 rays with noise. The loop uses the environment's
-compiled model. CPU times; both sides take turns, so that the load of the machine is the same for both.
+One step is 0.1 s of `turtlebot3_world` with a fresh scan of 360 rays with noise. The loops use the environment's
+compiled model, begin each episode in its state, and get the controls of its wheels once for each step. One loop uses
+bare MuJoCo; the other also follows simkit's contact law, by simkit's physics without tasks, plugins and messages. CPU
+times; both sides take turns, so that the load of the machine is the same for both.
 """
 
 from __future__ import annotations
@@ -17,10 +19,13 @@ import numpy as np
 from measure import arguments
 
 import simkit.gym
+from simkit.runtime.engine.physics_state import CONTROL
+from simkit.runtime.engine.physics_step import Physics
 
 LAWS = {"MuJoCo's contacts": ("physics.contact_law=mujoco",), "simkit's contact law": ()}
 SENSOR = "turtlebot3::base_scan::lds"
 ACTION = (0.1, 0.4)
+EPISODE = 3.0  # [s] the robot drives on a circle, free of pillars
 
 
 def environment(overrides: tuple[str, ...]) -> simkit.gym.SimulationEnv:
@@ -34,37 +39,55 @@ def environment(overrides: tuple[str, ...]) -> simkit.gym.SimulationEnv:
     )
 
 
-def bare_loop(env: simkit.gym.SimulationEnv) -> Callable[[], object]:
-    """The same period with MuJoCo and NumPy alone, driven by the environment's present wheel speeds."""
-    sim = env.sim
-    model, data, lidar = copy.copy(sim.mj_model), copy.copy(sim.mj_data), sim.sensor(SENSOR)
-    random, fan = np.random.default_rng(0), lidar.fan
-    count, low, high = fan.count, lidar.options.range_min, lidar.options.range_max
-    ids, distances, rays = np.zeros(count, np.int32), np.zeros(count), np.zeros((count, 3))
-    base, own = sim.link("turtlebot3::base_footprint")._body, fan.body or -1
-    steps = round(0.1 / sim.timestep)
+class Loop:
+    """The same period by hand: steps, rays, noise, reward; with simkit's physics or with MuJoCo and NumPy alone."""
 
-    def step() -> object:
-        data.ctrl[:] = sim.mj_data.ctrl
-        mujoco.mj_step(model, data, steps)
-        mujoco.mj_forward(model, data)
-        origin, rotation = lidar.ray_frame(data)
-        np.matmul(fan.directions, rotation.T, out=rays)
+    def __init__(self, env: simkit.gym.SimulationEnv, has_law: bool) -> None:
+        sim = self._sim = env.sim
+        self._model, self._data = copy.copy(sim.mj_model), copy.copy(sim.mj_data)
+        self._physics = Physics(self._model, self._data, sim.engine.clock) if has_law else None
+        self._lidar, self._random = sim.sensor(SENSOR), np.random.default_rng(0)
+        count = self._lidar.fan.count
+        self._ids, self._distances, self._rays = np.zeros(count, np.int32), np.zeros(count), np.zeros((count, 3))
+        self._base, self._own = sim.link("turtlebot3::base_footprint")._body, self._lidar.fan.body or -1
+        self._steps = env.steps
+
+    def reset(self) -> None:
+        mujoco.mj_copyData(self._data, self._model, self._sim.mj_data)
+        if self._physics is not None:
+            self._physics.set_state(self._sim.engine.physics.get_state(), is_model_changed=False)
+
+    def step(self) -> object:
+        model, data, fan, options = self._model, self._data, self._lidar.fan, self._lidar.options
+        data.ctrl[:] = self._sim.mj_data.ctrl
+        if self._physics is None:
+            mujoco.mj_step(model, data, self._steps)
+            mujoco.mj_forward(model, data)
+        else:
+            self._physics.changed(CONTROL)
+            self._physics.advance(self._steps)
+            self._physics.fresh()
+        origin, rotation = self._lidar.ray_frame(data)
+        np.matmul(fan.directions, rotation.T, out=self._rays)
+        distances, rays = self._distances, self._rays.reshape(-1)
         mujoco.mj_multiRay(
-            model, data, origin, rays.reshape(-1), fan.groups, 1, own, ids, distances, None, count, fan.reach
+            model, data, origin, rays, fan.groups, 1, self._own, self._ids, distances, None, fan.count, fan.reach
         )
-        scan = np.where((distances < 0) | (distances > high), high, distances)
-        scan = np.clip(scan + 0.01 * random.standard_normal(count), low, high).astype(np.float32)
-        return scan, -float(np.hypot(*data.xpos[base][:2])), False, False, {}
+        low, high = options.range_min, options.range_max
+        noisy = np.clip(distances + 0.01 * self._random.standard_normal(fan.count), low, high)
+        scan = np.where((distances < 0) | (distances > high), high, noisy).astype(np.float32)
+        return scan, -float(np.hypot(*data.xpos[self._base][:2])), False, False, {}
 
-    return step
 
-
-def interleaved(ours: Callable[[], object], bare: Callable[[], object], rounds: int) -> tuple[float, float]:
-    """Medians of the CPU times [s] of both sides."""
+def interleaved(env: simkit.gym.SimulationEnv, loop: Loop, rounds: int) -> tuple[float, float]:
+    """Medians of the CPU times [s] of a step of both sides."""
+    sides: tuple[Callable[[], object], ...] = (lambda: env.step(ACTION), loop.step)
     times: tuple[list[float], list[float]] = ([], [])
     for _ in range(rounds):
-        for side, function in zip(times, (ours, bare), strict=True):
+        if env.time > EPISODE:
+            env.reset()
+            loop.reset()
+        for side, function in zip(times, sides, strict=True):
             begun = time.process_time()
             function()
             side.append(time.process_time() - begun)
@@ -75,23 +98,20 @@ def main() -> None:
     rounds = arguments(__doc__, 400).rounds
     for name, overrides in LAWS.items():
         env = environment(overrides)
-        env.reset(seed=0)
-        bare = bare_loop(env)
-
-        def step(env: simkit.gym.SimulationEnv = env) -> None:
-            env.step(ACTION)
-            if env.time > 3.0:  # drives on a circle, free of pillars
-                env.reset()
-
-        interleaved(step, bare, 20)
-        ours, other = interleaved(step, bare, rounds)
-        print(f"step, {name:22s} {ours * 1e6:7.0f} us   bare {other * 1e6:7.0f} us   bare / ours {other / ours:.2f}")
+        for has_law in (False, True) if not overrides else (False,):
+            env.reset(seed=0)
+            loop, kind = Loop(env, has_law), "with the same law" if has_law else "on bare MuJoCo"
+            loop.reset()
+            interleaved(env, loop, 20)
+            ours, other = interleaved(env, loop, rounds)
+            line = f"step, {name:20s} {ours * 1e6:7.0f} us   loop {kind:17s} {other * 1e6:7.0f} us"
+            print(f"{line}   loop / ours {other / ours:.2f}", flush=True)
         resets = []
-        for _ in range(100):
+        for _ in range(300):
             begun = time.process_time()
             env.reset()
             resets.append(time.process_time() - begun)
-        print(f"reset                        {np.median(resets) * 1e6:7.0f} us")
+        print(f"reset {np.median(resets) * 1e6:28.0f} us")
 
 
 if __name__ == "__main__":

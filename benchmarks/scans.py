@@ -120,6 +120,58 @@ def beside_embree(folder: Path, rounds: int) -> None:
             )
 
 
+def many_lidars(folder: Path, rounds: int) -> None:
+    """Scans of the lidars of a fleet on a large mesh, beside the bare ray tracer with the same rays in one scene."""
+    trimesh.creation.icosphere(2, 0.3).export(folder / "ball.stl")
+    print("lidars      rays | million rays/s: embreex, simkit, ratio |   [µs a lidar: embreex, simkit]")
+    for (layers, columns), count in itertools.product(((1, 360), (16, 1024)), (10, 50, 100)):
+        text = fleet(terrain(224, 0.0, folder), folder, layers, columns, count)
+        with simkit.load(text, resource_paths=[str(folder)]) as sim:
+            sim.run(0.05)
+            lidars, data = [sim.sensor(f"r{i}::l::s") for i in range(count)], sim.engine.physics.fresh()
+            bare = [bare_embree(lidar, data) for lidar in lidars[:1]]  # all lidars see nearly the same triangles
+            for lidar in lidars:
+                sim.communication.bus.tap(lidar.topic, lambda _: None)
+
+            def scan() -> None:
+                batch = lidars[0].batch  # noqa: B023
+                if batch is None:
+                    for lidar in lidars:  # noqa: B023
+                        lidar.measure(sim.mj_model, data)  # noqa: B023
+                else:
+                    batch.capture_all(data)  # noqa: B023
+
+            theirs, ours = time_interleaved([bare[0], scan], rounds)
+            theirs, millions = theirs * count, layers * columns * count / 1e6
+            print(
+                f"{count:>6} {layers:>4}x{columns:<4} | {millions / theirs:>23.2f} {millions / ours:>7.2f} "
+                f"{theirs / ours:>6.2f} | {theirs / count * 1e6:>20.0f} {ours / count * 1e6:>8.0f}",
+                flush=True,
+            )
+
+
+def fleet(mesh: Path, folder: Path, layers: int, columns: int, count: int) -> str:
+    """Robots with a body of triangles and a lidar, in rows above a terrain."""
+    ground = f"<geometry><mesh><uri>{mesh}</uri></mesh></geometry>"
+    ball = f"<geometry><mesh><uri>{folder / 'ball.stl'}</uri></mesh></geometry>"
+    vertical = f"<vertical><samples>{layers}</samples><min_angle>-0.4</min_angle><max_angle>0.4</max_angle></vertical>"
+    horizontal = f"<samples>{columns}</samples><min_angle>-3.1416</min_angle><max_angle>3.1416</max_angle>"
+    scan = f"<horizontal>{horizontal}</horizontal>{vertical if layers > 1 else ''}"
+    lidar = (
+        f'<sensor name="s" type="lidar"><update_rate>10</update_rate><lidar><scan>{scan}</scan>'
+        "<range><min>0.1</min><max>60</max></range></lidar></sensor>"
+    )
+    robots = "".join(
+        f'<model name="r{i}"><pose>{1.5 * (i % 10) - 7} {1.5 * (i // 10) - 7} 1.6 0 0 0.3</pose><link name="l">'
+        f'<gravity>false</gravity><collision name="c">{ball}</collision>{lidar}</link></model>'
+        for i in range(count)
+    )
+    return (
+        f'<sdf version="1.9"><world name="w"><model name="ground"><static>true</static><link name="l">'
+        f'<collision name="c">{ground}</collision></link></model>{robots}</world></sdf>'
+    )
+
+
 def bare_embree(sensor: Any, data: Any) -> Callable[[], object]:
     """Return a function that casts the rays of a lidar with embreex alone, in one scene of all that they can hit."""
     from embreex.mesh_construction import TriangleMesh
@@ -229,6 +281,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         report(dense(Path(folder), rounds))
         beside_embree(Path(folder), rounds)
+        many_lidars(Path(folder), rounds)
     error = accuracy()
     print(f"greatest error on a ball 100 m away: {error:.1e} m   aim <= 1e-3")
 

@@ -55,6 +55,7 @@ INTEGERS = {
     ("plugins/ros_parameter_files.py", "item.leaves() for item in inside"): "parameters",
     ("recording/bags/mcap_file.py", "counts.values()"): "messages",
     ("recording/bags/mcap_writer.py", "self._counts.values()"): "messages",
+    ("recording/bags/mcap_writer.py", "sizes"): "bytes",
     ("recording/bags/reader.py", "topic.count for topic in self.topics"): "messages",
     (
         "recording/bags/reader.py",

@@ -99,6 +99,7 @@ class Simulation(ScriptGraph, InProcess):
         self._bus = bus = TopicBus(diagnostics, lambda: self.time, remapping)
         callbacks = EngineCallbacks(
             fill=self._fill,
+            basis=self._basis,
             velocity_limit=lambda name, axis: self.contents.handles.velocity_limit(name, axis),
             set_active=lambda owners: self.communication.set_active(owners),
             abandon=lambda owner, reason: self.communication.abandon(owner, reason),
@@ -227,13 +228,14 @@ class Simulation(ScriptGraph, InProcess):
             keep_changes: True to keep masses, friction, joint dynamics, gains, noise, lights and gravity that were set.
         """
         check_kind(keep_changes, bool, "keep_changes", "True or False")
-        changes, gravity = self.engine.numbers.values, self.gravity
+        self.engine.check_open()
+        kept = (self.gravity, self.engine.numbers.values) if keep_changes else None
         if self._programs is not None:
             self._programs.end()
         self._reset(seed)
-        if keep_changes:
-            self.gravity = gravity
-            self.contents.handles.set_values(changes)
+        if kept is not None:
+            self.gravity = kept[0]
+            self.contents.handles.set_values(kept[1])
         if self._programs is not None:
             self._programs.restart()
 
@@ -415,6 +417,10 @@ class Simulation(ScriptGraph, InProcess):
     def _fill(self, scheduler: Scheduler) -> None:
         self._tasks.fill(scheduler, *self.contents.handles.limited_dofs())
         self.communication.on_demand.fill(scheduler)
+
+    def _basis(self) -> object:
+        """Return what `_fill` reads and a restored state may change; None if each state needs new tasks."""
+        return self._tasks.basis(self.contents.handles.velocity_limits(), self.communication.on_demand.wanted())
 
     def view(self, port: int = 0) -> str:
         """Show the simulation in a browser; `step` and `run` then update the page.

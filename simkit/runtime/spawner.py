@@ -178,9 +178,11 @@ class Spawner:
 
     def restore(self, snapshot: Snapshot) -> None:
         """Restore a snapshot of this simulation."""
+        engine = self._engine
+        has_new_structure = snapshot.structure is not engine.structure
         self.snapshots.restore(snapshot)
-        self._engine.loop.halt()  # `simkit run` then computes its target again
-        self._engine.reschedule()
+        engine.loop.halt()  # `simkit run` then computes its target again
+        (engine.reschedule if has_new_structure else engine.loop.rewind)()
         self.forget_gone()
 
     def undo(self, before: Snapshot) -> None:

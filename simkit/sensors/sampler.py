@@ -193,9 +193,16 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
         if self.lasting is not None:  # its samples take their time
             return
         now = self.sim.time_ns
-        if self._sample is None or self._sample.time_ns != now:
-            self.sample(tick)
         sample = self._sample
+        if sample is None or sample.time_ns != now:
+            if self._revision != self.sim.communication.bus.revision:
+                self._update_readers()
+            if self._is_unread and not self._selects_ticks:  # the state need not be kept to measure it now
+                sample = self._newest = self._begin_sample(tick)
+                sample.raw = self._capture_now(tick)
+                return
+            self.sample(tick)
+            sample = self._sample
         if sample is not None and sample.held is not None and sample.time_ns == now:
             # measured in the present data, whose forward pass the next step needs anyway
             sample.raw, sample.held = self._capture_now(tick), None

@@ -13,7 +13,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = [ROOT / "examples", *sorted(ROOT.glob("packs/*/examples"))]
-OF_EXTRAS = ("matplotlib", "pvlib", "gymnasium", "stable_baselines3", "torch")
+OF_EXTRAS = ("matplotlib", "pvlib", "gymnasium")
 CORE = {"simkit", "numpy", "cv2", "PIL", "scipy"}
 BY_ITS_WORLD = "solar_tracker/day.py"  # its world has simkit's plugin of the sun
 

@@ -140,14 +140,26 @@ LIDAR = """
   </model>
 </world></sdf>
 """
+
+
+def change_frame(sim: Simulation) -> None:
+    sim.communication.bus.settle()
+    sim.sensor("ball::body::lidar").set_frame_id("other")
+
+
+def add_ray_noise(sim: Simulation) -> None:
+    sim.communication.bus.settle()
+    sim.sensor("ball::body::lidar").add_ray_noise(0.1)
+
+
 LIDAR_ACTIONS: dict[str, Action] = {
     "nothing": nothing,
     "reset": lambda sim: sim.reset(seed=5),
     "restore": restore,
     "rate": lambda sim: sim.sensor("ball::body::lidar").set_rate(50.0),
-    "frame": lambda sim: (sim.communication.bus.settle(), sim.sensor("ball::body::lidar").set_frame_id("other")),
+    "frame": change_frame,
     "noise": lambda sim: setattr(sim.sensor("ball::body::lidar"), "noise", 0.2),
-    "more noise": lambda sim: (sim.communication.bus.settle(), sim.sensor("ball::body::lidar").add_ray_noise(0.1)),
+    "more noise": add_ray_noise,
     "spawn": lambda sim: sim.spawn('<sdf version="1.9"><model name="rock"><link name="a"/></model></sdf>'),
     "listen": lambda sim: sim.subscribe("/scan", lambda _: None),
     "keep": lambda sim: sim.subscribe("/scan"),

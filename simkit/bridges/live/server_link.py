@@ -78,6 +78,7 @@ class ServerLink:
         self._types: dict[int, str] = {}
         self._types_sent = SentTypes()
         self._closed: LiveClosed | None = None
+        self._piece = memoryview(bytearray(_PIECE))  # a new one for each piece takes longer than its content
         self._socket, token = self._connect()
         self._reader = FrameReader(LARGEST_OUT, (ANSWER, TELL, MESSAGE), token)
         try:
@@ -243,12 +244,12 @@ class ServerLink:
 
     def _receive_piece(self) -> None:
         try:
-            data = self._socket.recv(_PIECE)
+            size = self._socket.recv_into(self._piece)
         except OSError:
-            data = b""
-        if not data:
+            size = 0
+        if not size:
             self._fail(self._closed or LiveClosed(self._end_message()))
-        self._reader.feed(data)
+        self._reader.feed(self._piece[:size])
         try:
             while (frame := self._reader.next()) is not None:
                 self._dispatch(*frame)

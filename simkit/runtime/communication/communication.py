@@ -135,15 +135,19 @@ class OnDemandTasks:
         self.add(lambda: any(publisher.wanted for publisher in publishers.values()), rate, publish)
         return publishers
 
+    def wanted(self) -> list[bool]:
+        """Return which tasks are needed now."""
+        return [is_wanted() for is_wanted, _, _, _ in self._tasks]
+
     def look(self) -> None:
         """Reschedule if other tasks are needed than at the last check."""
-        wanted = [is_wanted() for is_wanted, _, _, _ in self._tasks]
+        wanted = self.wanted()
         if wanted != self._wanted and any(wanted + self._wanted):
             self._reschedule()
 
     def fill(self, scheduler: Scheduler) -> None:
         """Schedule the tasks that are needed now."""
-        self._wanted = [is_wanted() for is_wanted, _, _, _ in self._tasks]
+        self._wanted = self.wanted()
         for wanted, (_, rate, task, phase) in zip(self._wanted, self._tasks, strict=True):
             if wanted:
                 scheduler.every(rate, task, phase)

@@ -35,9 +35,8 @@ def large_commands(bus: TopicBus) -> list[str]:
 
 def forget_commands(bus: TopicBus) -> None:
     """Forget the last commands, because a reset ends their effect."""
-    for _, end, _, kind in bus.endpoints():
-        if kind == "takes":
-            end.last = None
+    for listener in bus.listeners():
+        listener.last = None
 
 
 def _numbers(message: Message, prefix: str) -> Iterator[tuple[float, str]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from simkit import msgs
@@ -253,6 +254,10 @@ class TopicBus:
     def _all_ends(self) -> Endpoints:
         ends: Endpoints = [*self._publishers.values(), *self._listeners.values()]
         return [end for group in ends for end in group]
+
+    def listeners(self) -> Iterator[Listener]:
+        """Yield all command inputs."""
+        return chain.from_iterable(self._listeners.values())
 
     def endpoints(self, topic: str | None = None) -> Iterator[tuple[str, Publisher | Listener, tuple[str, ...], str]]:
         """Yield tuples of topic, publisher or listener, ROS types, and "publishes" or "takes".

@@ -158,7 +158,13 @@ class ContactLaw:
         """
         if not self.is_on:
             return LawUse.NONE
-        if self.lines and data.ncon and (self.lines.correct(data) or self.lines.reaches_edge(data, self._window)):
+        lines = self.lines
+        if (
+            lines
+            and data.ncon
+            and lines.may_touch(data)
+            and (lines.correct(data) or lines.reaches_edge(data, self._window))
+        ):
             return LawUse.WHOLE
         if self._has_flying(data) or self._has_fast(data) or self._carried.find(data):
             return LawUse.WHOLE

@@ -90,6 +90,10 @@ class LineContacts:
     def __bool__(self) -> bool:
         return self._can_meet
 
+    def may_touch(self, data: mujoco.MjData) -> bool:
+        """Check whether a pair in contact may touch along a line or stand on corners, or be near an edge."""
+        return self._has_corners or bool(self._pairs(data)[0])
+
     def correct(self, data: mujoco.MjData) -> bool:
         """Replace the engine's contacts of pairs that touch along a line or stand on corners.
 

@@ -31,6 +31,9 @@ _LEVEL: Final = 0.9999
 
 Floats = npt.NDArray[np.float64]
 
+_ROTATION: Final = 5
+"""Number of the coordinate of a free body that is its rotation about its vertical axis."""
+
 WheelPair = tuple[Floats, Floats, list[int], bool]
 """Wheel and another geom that touch at several points.
 
@@ -119,7 +122,8 @@ class WheelContacts:
                 row = jacobian[starts[first] : starts[first + 1] + int(data.efc_J_rownnz[first])]
                 other = jacobian[starts[second] : starts[second + 1] + int(data.efc_J_rownnz[second])]
             apart = other - row
-            if np.count_nonzero(apart):  # takes a fifth of the time of `any`
+            # the rotation about the vertical usually tells; counting takes a fifth of the time of `any`
+            if apart.item(_ROTATION % apart.size) or np.count_nonzero(apart):
                 factor[()] = weight
                 apart *= factor
                 row += apart

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Protocol
 
 from simkit.scene import SceneModel
@@ -32,10 +33,12 @@ class AttachedSensor(Protocol):
 
     Attributes:
         is_manual: True if the simulation takes no samples at the sensor's rate.
+        update_rate: rate [Hz]; 0 is every step.
     """
 
     scene: SceneSensor
     scoped: str
+    update_rate: float
     is_manual: bool
 
     @property
@@ -255,6 +258,10 @@ class WorldStructure:
 
     def all_plugins(self) -> list[AttachedPlugin]:
         """Return every plugin in the order in which plugins are loaded and called."""
+        return self._plugins_in_order.copy()
+
+    @cached_property
+    def _plugins_in_order(self) -> list[AttachedPlugin]:
         return [entry.plugin for entry in entries_in_order(self.parts.values())]
 
     def entry_of(self, plugin: AttachedPlugin) -> PluginEntry | None:

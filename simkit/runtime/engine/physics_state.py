@@ -225,6 +225,7 @@ class PhysicsState:
         self.last_applied = np.zeros(model.nv)
         self.last_pushed = np.zeros((model.nbody, 6))
         self.persistent_wrenches = np.zeros((model.nbody, 6))
+        self._has_wrenches = False
         self.shows_applied = True
         self._accelerations_tick = -1
         self._held: HeldState | None = None
@@ -304,9 +305,10 @@ class PhysicsState:
             wrenches: wrenches by body id, shape (6,) [N, N·m].
             are_applied: True if the data already contain the wrenches (a restored state).
         """
-        before = self.persistent_wrenches
-        if not (wrenches or before.any()):
+        if not (wrenches or self._has_wrenches):
             return
+        self._has_wrenches = bool(wrenches)
+        before = self.persistent_wrenches
         self.persistent_wrenches = np.zeros_like(before)
         for body, wrench in wrenches.items():
             self.persistent_wrenches[body] = wrench

@@ -72,6 +72,11 @@ class PluginFaults:
         """Check whether a plugin raised and is disabled."""
         return id(plugin) in self._disabled
 
+    @property
+    def disabled(self) -> tuple[AttachedPlugin, ...]:
+        """Plugins that raised and are disabled."""
+        return tuple(self._disabled.values())
+
     def living(self, structure: WorldStructure) -> list[AttachedSensor | AttachedPlugin]:
         """Return the sensors and plugins of a structure, without disabled plugins."""
         plugins = structure.all_plugins()

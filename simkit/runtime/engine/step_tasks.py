@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from simkit.runtime.engine import sleep, stray_bodies, velocity_servos
 from simkit.runtime.engine.scheduler import Scheduler, SilentTask, Task
+from simkit.runtime.engine.simulated_time import TickGrid
 from simkit.runtime.engine.velocity_limits import LimitedDof, velocity_limiter
 
 if TYPE_CHECKING:
@@ -135,6 +137,28 @@ class StepTasks:
         self._engine = engine
         self._checked_topics: object = None  # sensors and their topics that were searched for shared topics
         self._limiters: dict[float | None, _Limiter] = {}  # by rate
+        self._is_repeatable = False
+        self._limits: list[object] = []
+
+    def basis(self, limits: list[object], wanted: list[bool]) -> tuple[object, ...] | None:
+        """Return what the schedule depends on and a restored state of the same structure may change.
+
+        Args:
+            limits: velocity limits of the joints; a change replaces these objects.
+            wanted: which tasks on demand are needed.
+
+        Returns:
+            None if tasks have a state of their own, so that each restored state needs new ones: timetables of delayed
+            or shifted samples, batches of sensors, groups of plugins, and plugins that move scenery.
+        """
+        if not self._is_repeatable:
+            return None
+        engine, structure = self._engine, self._engine.structure
+        plugins = [(plugin.before_step_rate, plugin.after_step_rate) for plugin in structure.all_plugins()]
+        sensors = [(sensor.update_rate, sensor.is_manual) for sensor in structure.all_sensors()]
+        identities = list(map(id, limits))
+        self._limits = limits  # they stay alive, so that no other object gets their identity
+        return engine.physics.sleep.watches, engine.faults.disabled, plugins, sensors, identities, wanted
 
     def fill(self, scheduler: Scheduler, exact: list[LimitedDof], coasting: list[LimitedDof]) -> None:
         """Fill an empty scheduler.
@@ -156,7 +180,7 @@ class StepTasks:
         if topics != self._checked_topics:
             _report_shared_topics(engine)
             self._checked_topics = topics
-        _schedule_sensors_and_plugins(engine, scheduler)
+        self._is_repeatable = _schedule_sensors_and_plugins(engine, scheduler)
 
     def _schedule_velocity_limits(
         self, scheduler: Scheduler, exact: list[LimitedDof], coasting: list[LimitedDof]
@@ -172,13 +196,16 @@ class StepTasks:
                 scheduler.sample(scheduler.clock.grid(rate or 0.0, from_start=True), known[2], SilentTask())
 
 
-def _schedule_sensors_and_plugins(engine: Engine, scheduler: Scheduler) -> None:
-    _group_sensors(engine)
+def _schedule_sensors_and_plugins(engine: Engine, scheduler: Scheduler) -> bool:
+    """Schedule sensors and hooks, and return whether the tasks fit every restored state with the same rates."""
+    is_repeatable = not _group_sensors(engine)
     plugins = [plugin for plugin in engine.structure.all_plugins() if not engine.faults.is_disabled(plugin)]
     _schedule_scenery(engine, scheduler, plugins)
     for sensor in engine.structure.all_sensors():
         if not sensor.is_manual:
-            scheduler.sample(sensor.timetable(), sensor.sample, sensor)
+            grid = sensor.timetable()
+            is_repeatable &= grid is None or isinstance(grid, TickGrid)
+            scheduler.sample(grid, sensor.sample, sensor)
     for rate, task in hook_tasks(engine.faults, plugins, "before_step"):
         scheduler.every(rate, task, "before")
     for plugin in plugins:
@@ -187,6 +214,8 @@ def _schedule_sensors_and_plugins(engine: Engine, scheduler: Scheduler) -> None:
     for rate, task in hook_tasks(engine.faults, plugins, "after_step"):
         scheduler.every(rate, task, "after")
     engine.faults.end_schedule()
+    can_group = max(Counter(map(type, plugins)).values(), default=0) >= MIN_GROUP_SIZE
+    return is_repeatable and not can_group and not any(hasattr(plugin, "move_scenery") for plugin in plugins)
 
 
 def _schedule_scenery(engine: Engine, scheduler: Scheduler, plugins: Sequence[Any]) -> None:
@@ -200,13 +229,14 @@ def _schedule_scenery(engine: Engine, scheduler: Scheduler, plugins: Sequence[An
                     scheduler.on(sensor.scene_timetable(), task, "sense")
 
 
-def _group_sensors(engine: Engine) -> None:
-    """Group the sensors of one kind into batches."""
+def _group_sensors(engine: Engine) -> bool:
+    """Group the sensors of one kind into batches, and return whether a kind has several sensors."""
     kinds: dict[type, list[AttachedSensor]] = {}
     for sensor in engine.structure.all_sensors():
         kinds.setdefault(type(sensor), []).append(sensor)
     for kind, sensors in kinds.items():
         kind.make_batches(sensors)  # type: ignore[attr-defined]
+    return any(len(sensors) > 1 for sensors in kinds.values())
 
 
 def _report_shared_topics(engine: Engine) -> None:

@@ -191,6 +191,10 @@ class EntityHandles:
         others = [j for j in moving if j not in self.exact_limits and j.least_velocity_limit < NO_LIMIT]
         return [dof for joint in exact for dof in joint.limited_dofs()], [d for j in others for d in j.limited_dofs()]
 
+    def velocity_limits(self) -> list[object]:
+        """Return the array of each joint's velocity limits [rad/s or m/s], which a change replaces."""
+        return [joint.get_state()[1] for joint in self.tables["joint"].values()]
+
     def velocity_limit(self, name: str, axis: int) -> float:
         """Return the velocity limit of a joint's axis [rad/s or m/s]."""
         return self.joint(name).axis_velocity_limit(axis)

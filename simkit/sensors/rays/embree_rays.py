@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import functools
 import importlib
+from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
 
 import mujoco
@@ -26,6 +28,7 @@ _FLAT = 1e-2
 """Cosine between ray and normal below which rounding decides where a ray meets the plane of a triangle."""
 _MANY = 1000
 """Rays towards one body from which rotating them alone is faster than with a matrix for each ray."""
+_MOST_PAIRS = 1 << 18  # pairs of a body and a ray that are computed together
 _CUBE = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float64)
 _CUBE_FACES = np.array(
     [
@@ -296,6 +299,11 @@ class MovingBodies:
     def __len__(self) -> int:
         return len(self._bodies)
 
+    def numbers_of(self, bodies: MovingBodies) -> Ids:
+        """Return the numbers here of the bodies of a part of these bodies."""
+        number = {id(body): i for i, body in enumerate(self._bodies)}
+        return np.array([number[id(body)] for body in bodies._bodies], dtype=np.intp)
+
     def cast(self, data: mujoco.MjData, rays: RayBundle, best: Vector, hits: npt.NDArray[np.int32]) -> None:
         """Shorten distances and set hits where a body is hit first.
 
@@ -305,63 +313,90 @@ class MovingBodies:
             best: shortest distances so far [m], shape (n,).
             hits: geoms at those distances, shape (n,).
         """
-        if not self._bodies:
-            return
+        if self._bodies:
+            self.cast_fans(data, [(rays, np.arange(len(self._bodies)))], rays.columns, best, hits)
+
+    def cast_fans(
+        self,
+        data: mujoco.MjData,
+        fans: Sequence[tuple[RayBundle, Ids]],
+        columns: Vector,
+        best: Vector,
+        hits: npt.NDArray[np.int32],
+    ) -> None:
+        """Shorten distances of the rays of k fans, and set hits; Embree traces a body with the rays of all fans.
+
+        Args:
+            data: physics data with up-to-date poses.
+            fans: rays of each fan, all of one number, and the bodies that they can hit, ascending.
+            columns: rays of all fans, one fan after the other, shape (3, k · n).
+            best: shortest distances so far [m], shape (k · n,).
+            hits: geoms at those distances, shape (k · n,).
+        """
         turns = data.xmat.take(self._ids, 0).reshape(-1, 3, 3)
         positions = data.xpos.take(self._ids, 0)
-        centres = positions + np.einsum("bij,bj->bi", turns, self._centres) - rays.origin
-        origins = np.einsum("bj,bji->bi", rays.origin - positions, turns) - self._centres
-        reached = self._reached(centres, rays)
-        for spheres, which in rays.pairs(centres.take(reached, 0), self._radii.take(reached)):
-            if which.size:
-                owners = np.broadcast_to(reached.take(spheres), which.shape)
-                self._cast_pairs(owners, which, rays, (origins, turns), best, hits)
-
-    def _reached(self, centres: Vector, rays: RayBundle) -> Ids:
-        """Return the bodies that rays may hit, for the centres of their spheres from the origin of the rays [m]."""
-        if not len(centres):
-            return np.empty(0, np.intp)
-        squares = np.einsum("ij,ij->i", centres, centres)
-        height = matmul(centres, rays.axis)
-        side = np.sqrt(np.maximum(squares - height * height, 0.0))
-        is_reached = reaches_between_cones(height, side, self._radii, rays.lowest, rays.highest)
-        is_reached &= np.sqrt(squares) - self._radii <= rays.reach
-        return np.flatnonzero(is_reached)
+        places, length, start = positions + np.einsum("bij,bj->bi", turns, self._centres), len(best) // len(fans), 0.0
+        limits = np.repeat([rays.reach for rays, _ in fans], length) if len(fans) > 1 else fans[0][0].reach
+        origins = np.array([rays.origin for rays, _ in fans])
+        parts: list[tuple[Ids, Ids, Ids]] = []
+        for number, (rays, bodies) in enumerate(fans):
+            centres, radii, start = places.take(bodies, 0) - rays.origin, self._radii.take(bodies), rays.start
+            near = _reached(centres, radii, rays)
+            for spheres, which in rays.pairs(centres.take(near, 0), radii.take(near)):
+                if which.size:
+                    owners = np.broadcast_to(bodies.take(near.take(spheres)), which.shape)
+                    parts.append((owners, which + number * length, np.full(len(which), number)))
+                if sum(len(part[0]) for part in parts) > _MOST_PAIRS:
+                    self._cast_pairs(parts, (positions, turns, origins), columns, start, limits, best, hits)
+                    parts.clear()
+        if parts:
+            self._cast_pairs(parts, (positions, turns, origins), columns, start, limits, best, hits)
 
     def _cast_pairs(
         self,
-        owners: Ids,
-        which: Ids,
-        rays: RayBundle,
-        frames: tuple[Vector, Vector],
+        parts: Sequence[tuple[Ids, Ids, Ids]],
+        frames: tuple[Vector, Vector, Vector],
+        columns: Vector,
+        start: float,
+        limits: Vector | float,
         best: Vector,
         hits: npt.NDArray[np.int32],
     ) -> None:
         """Cast rays on the body of each of them.
 
         Args:
-            owners: bodies, ascending, shape (k,); not empty.
-            which: numbers of the rays, shape (k,).
-            rays: rays to cast.
-            frames: origin of the rays in the frame of each body, relative to `centre` [m], shape (m, 3), and rotation
-                matrices of the bodies, shape (m, 3, 3).
+            parts: bodies, numbers of the rays, and their fans; each of the shape (m,) and not empty.
+            frames: positions of all bodies [m] and their rotation matrices, and the origins of all fans [m].
+            columns: all rays, shape (3, n).
+            start: distance from the origin at which the rays start [m].
+            limits: longest distances of the rays [m], shape (n,), or one for all.
             best: shortest distances so far [m], shape (n,).
             hits: geoms at those distances, shape (n,).
         """
-        bounds = np.flatnonzero(owners[1:] != owners[:-1]) + 1
-        pieces = [slice(*ends) for ends in zip([0, *bounds.tolist()], [*bounds.tolist(), len(owners)], strict=True)]
-        bodies = owners[[piece.start for piece in pieces]].tolist()
-        directions, local = rays.columns.take(which, 1), np.empty((3, len(which)))
-        if len(which) < _MANY * len(bodies):
-            np.einsum("in,nij->jn", directions, frames[1].take(owners, 0), out=local)
+        owners, which, fans = (np.concatenate(column) for column in zip(*parts, strict=True))
+        if fans[0] != fans[-1]:
+            order = np.argsort(owners, kind="stable")
+            owners, which, fans = owners.take(order), which.take(order), fans.take(order)
+        positions, turns, fan_origins = frames
+        ends = np.append(np.flatnonzero((owners[1:] != owners[:-1]) | (fans[1:] != fans[:-1])) + 1, len(owners))
+        firsts = np.append(0, ends[:-1])
+        bodies = owners.take(firsts)
+        offsets = fan_origins.take(fans.take(firsts), 0) - positions.take(bodies, 0)
+        own_origins = np.einsum("bj,bji->bi", offsets, turns.take(bodies, 0)) - self._centres.take(bodies, 0)
+        origins = np.repeat(own_origins.T, ends - firsts, axis=1)
+        changes = [0, *(np.flatnonzero(owners[1:] != owners[:-1]) + 1).tolist(), len(owners)]
+        pieces = [(int(owners[first]), slice(first, last)) for first, last in pairwise(changes)]
+        directions, local = columns.take(which, 1), np.empty((3, len(which)))
+        if len(which) < _MANY * len(pieces):
+            np.einsum("in,nij->jn", directions, turns.take(owners, 0), out=local)
         else:
-            for i, piece in zip(bodies, pieces, strict=True):
-                rotate_columns(frames[1][i].T, directions[:, piece], local[:, piece])
-        origins = frames[0].T.take(owners, 1)
-        single, starts = single_precision(origins, local, rays.start)
-        reach: Any = reach_of(np.minimum(best.take(which), rays.reach, dtype=np.float32), rays.start)
+            for i, piece in pieces:
+                rotate_columns(turns[i].T, directions[:, piece], local[:, piece])
+        single, starts = single_precision(origins, local, start)
+        limit = limits if isinstance(limits, float) else limits.take(which)
+        reach: Any = reach_of(np.minimum(best.take(which), limit, dtype=np.float32), start)
         rows = np.empty(len(which), np.intp)
-        for i, piece in zip(bodies, pieces, strict=True):
+        for i, piece in pieces:
             rows[piece] = self._bodies[i].scene.first(starts[:, piece], single[:, piece], reach[piece])
         rows += 1
         planes = self._planes.take(rows + self._first_planes.take(owners), 0).T
@@ -369,13 +404,25 @@ class MovingBodies:
         for i in sorted(set(owners[flat].tolist())):
             own = flat[owners[flat] == i]
             self._bodies[i].scene.clamp_grazing(distances, own, origins[:, own].T, local[:, own].T, rows[own] - 1)
-        np.maximum(distances, rays.start, out=distances)
+        np.maximum(distances, start, out=distances)
         nearer = np.flatnonzero(distances < best.take(which))[::-1]  # of equal distances, the first body counts
         which, distances, owners = which.take(nearer), distances.take(nearer), owners.take(nearer)
         np.minimum.at(best, which, distances)
         geoms = self._geom_of.take(rows.take(nearer) + self._first_geoms.take(owners))
         is_first = best.take(which) == distances
         hits[which[is_first]] = geoms[is_first]
+
+
+def _reached(centres: Vector, radii: Vector, rays: RayBundle) -> Ids:
+    """Return the spheres that rays may hit, for their centres from the origin of the rays [m] and radii [m]."""
+    if not len(centres):
+        return np.empty(0, np.intp)
+    squares = np.einsum("ij,ij->i", centres, centres)
+    height = matmul(centres, rays.axis)
+    side = np.sqrt(np.maximum(squares - height * height, 0.0))
+    is_reached = reaches_between_cones(height, side, radii, rays.lowest, rays.highest)
+    is_reached &= np.sqrt(squares) - radii <= rays.reach
+    return np.flatnonzero(is_reached)
 
 
 def _geometry_key(model: mujoco.MjModel, geom: int) -> tuple[object, ...]:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
+from functools import partial
+from itertools import pairwise
 
 import mujoco
 import numpy as np
@@ -10,11 +12,13 @@ import numpy.typing as npt
 
 from simkit.pose import Vector
 from simkit.runtime.particle_clouds import has_sources
+from simkit.sensors.rays.embree_rays import MovingBodies
 from simkit.sensors.rays.geom_types import Ids
 from simkit.sensors.rays.lidar_measurement import LidarMeasurement, LidarReading
 from simkit.sensors.rays.numpy_rays import cast_on_shapes
 from simkit.sensors.rays.ray_culling import geom_half_sizes, reaches_between_cones
-from simkit.sensors.rays.ray_fan import RayFan
+from simkit.sensors.rays.ray_fan import RAYS_PER_THREAD, RayFan
+from simkit.sensors.rays.ray_threads import ray_threads
 from simkit.sensors.sensor_batch import MIN_MEMBERS, SensorBatch
 
 _CHUNK = 1 << 16  # pairs of fan and shape that are tested together
@@ -44,6 +48,8 @@ class LidarBatch(SensorBatch[LidarMeasurement]):
         self._geoms, self._carriers = self._targets.geoms[self._which], self._targets.carriers[self._which]
         self._radii = self.model.geom_rbound[self._geoms]
         self._halves = geom_half_sizes(self.model, self._geoms)
+        self._movers = MovingBodies([body for body in self._targets.triangles_and_boxes if body.carrier])
+        self._reachable: dict[int, Ids] = {}  # bodies of `_movers` by the id of a fan
         self._readings: dict[int, LidarReading] = {}
 
     def capture_all(self, data: mujoco.MjData) -> None:
@@ -77,11 +83,26 @@ class LidarBatch(SensorBatch[LidarMeasurement]):
         count, directions = first.count, first.numpy_directions
         assert directions is not None
         best, hits = np.full(len(fans) * count, np.inf), np.full(len(fans) * count, -1, dtype=np.int32)
+        self._find_movers(fans)
+        columns, bundles = np.empty((3, len(best))), []
         for i, fan in enumerate(fans):
             own_rays = slice(i * count, (i + 1) * count)
             fan.distances, fan.hits = best[own_rays], hits[own_rays]
-            rays = fan.rays_from(origins[i], rotations[i], start)
-            fan.cast_on_planes_and_triangles(data, rays, fan.distances, fan.hits)
+            bundles.append(fan.rays_from(origins[i], rotations[i], start, out=columns[:, own_rays]))
+
+        def cast_on_triangles(some: range) -> None:
+            rays = slice(some.start * count, some.stop * count)
+            own_origins = np.repeat(origins[some.start : some.stop].T, count, axis=1)
+            first.cast_on_static_triangles(own_origins, columns[:, rays], start, best[rays], hits[rays])
+            if len(self._movers):
+                pairs = [(bundles[i], self._reachable[id(fans[i])]) for i in some]
+                self._movers.cast_fans(data, pairs, columns[:, rays], best[rays], hits[rays])
+            for i in some:
+                fans[i].cast_on_planes(data, bundles[i], fans[i].distances, fans[i].hits)
+
+        threads = min(ray_threads.count, max(1, len(best) // RAYS_PER_THREAD), len(fans))
+        ends = [i * len(fans) // threads for i in range(threads + 1)]
+        ray_threads.run([partial(cast_on_triangles, range(*ends_of_part)) for ends_of_part in pairwise(ends)])
         for fan_indices, shapes in self._near(fans, data, origins, rotations):
             shapes_in_fans = self._targets.shapes_in_frame(
                 data, self._which.take(shapes), origins.take(fan_indices, 0), rotations.take(fan_indices, 0)
@@ -91,6 +112,13 @@ class LidarBatch(SensorBatch[LidarMeasurement]):
             # copies, because a view would keep the arrays of all scans alive
             fan.distances, fan.hits = fan.distances.copy(), fan.hits.copy()
             fan.finish()
+
+    def _find_movers(self, fans: Sequence[RayFan]) -> None:
+        """Find the moving bodies with triangles, and those that each fan can hit, once for each fan."""
+        for fan in fans:
+            if id(fan) not in self._reachable:
+                fan.find_triangles()
+                self._reachable[id(fan)] = self._movers.numbers_of(fan.movers)
 
     def _near(
         self, fans: Sequence[RayFan], data: mujoco.MjData, origins: Vector, rotations: Vector

@@ -8,7 +8,6 @@ column.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
@@ -23,6 +22,7 @@ Interval = tuple[Vector, Vector]
 
 _CHUNK = 32768  # pairs of ray and shape processed at a time, so that they stay in the processor's cache
 _ROWS = 4096
+_TESTS = 1 << 16  # pairs of ray and sphere that are tested together
 _LARGE_BLOCK = 1500  # number of rays towards one shape from which the shape is processed alone
 _TINY = 1e-300  # replacement for a zero divisor
 
@@ -50,22 +50,28 @@ def rotate_columns(matrix: Vector, columns: Vector, out: Vector | None = None) -
     return out
 
 
-def rays_towards(directions: Vector, centres: Vector, radii: Vector) -> Iterator[Ids]:
-    """Yield the numbers of the rays that may hit each sphere; no such ray is missing.
+def pairs_towards(directions: Vector, centres: Vector, radii: Vector) -> Iterator[tuple[Ids, Ids]]:
+    """Yield pairs of a sphere and a ray that may hit it, some spheres at a time; no such pair is missing.
 
     Args:
         directions: unit vectors, shape (n, 3).
         centres: centres of the spheres from the origin of the rays [m], shape (m, 3).
         radii: radii of the spheres [m], shape (m,).
+
+    Yields:
+        Indices of spheres, ascending, and of rays.
     """
-    for centre, radius in zip(centres, radii.tolist(), strict=True):
-        far = math.sqrt(float(matmul(centre, centre)))
-        if far <= radius * (1 + 1e-9) + 1e-9:
-            yield np.arange(len(directions))
-            continue
-        # the cosine between ray and centre is at least that of the sphere's edge; a margin of 1e-6 loses no ray
-        least = math.sqrt(max(0.0, 1.0 - (radius / far) ** 2)) * far - 1e-6 * far
-        yield np.flatnonzero(rotate_vectors(directions, centre) >= least)
+    far = np.sqrt(np.einsum("ij,ij->i", centres, centres))
+    # the cosine between ray and centre is at least that of the sphere's edge; a margin of 1e-6 loses no ray
+    share = radii / np.maximum(far, _TINY)
+    least = np.sqrt(np.maximum(1.0 - share * share, 0.0)) * far - 1e-6 * far
+    least[far <= radii * (1 + 1e-9) + 1e-9] = -np.inf
+    some = max(1, _TESTS // max(1, len(directions)))
+    for first in range(0, len(centres), some):
+        part = slice(first, first + some)
+        along = rotate_vectors(directions, centres[part].T).T
+        spheres, rays = np.nonzero(along >= least[part, None])
+        yield spheres + first, rays
 
 
 def _quadratic(a: Vector, b: Vector, gap: Vector) -> Interval:
@@ -168,11 +174,10 @@ class FanDirections:
             large: number of rays from which a sphere comes alone.
 
         Yields:
-            Indices of spheres and of rays, either as pairs, spheres ascending, or one sphere and all rays towards it.
+            Indices of spheres and of rays, either as pairs, or one sphere and all rays towards it.
         """
         if self._grid is None:
-            for i, rays in enumerate(rays_towards(self.directions, centres, radii)):
-                yield np.array((i,)), rays
+            yield from pairs_towards(self.directions, centres, radii)
             return
         spheres, first_row, rows, first, columns = self._blocks(centres, radii)
         row_length = len(self._grid[1])

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from simkit.linear_algebra import matmul, norm
 from simkit.pose import Pose, Vector
 from simkit.sensors.rays.geom_types import Ids
-from simkit.sensors.rays.numpy_rays import FanDirections, rays_towards
+from simkit.sensors.rays.numpy_rays import FanDirections, pairs_towards
 
 MANY_PAIRS = 1 << 15
 """Number of rays towards one sphere from which they are no longer computed together with those towards others."""
@@ -68,9 +68,8 @@ class RayBundle:
         """
         if self.search is not None and self.rotation is not None:
             yield from self.search.pairs(matmul(centres, self.rotation), radii, large=MANY_PAIRS)
-        elif len(centres):
-            near = list(rays_towards(self.directions, centres, radii))
-            yield np.repeat(np.arange(len(near)), [len(rays) for rays in near]), np.concatenate(near)
+        else:
+            yield from pairs_towards(self.directions, centres, radii)
 
 
 RayHits = tuple[Vector, npt.NDArray[np.int32], npt.NDArray[np.bool_]]
@@ -159,6 +158,8 @@ class NearbyGeoms:
 
     def reached(self, data: mujoco.MjData, rays: RayBundle) -> npt.NDArray[np.intp]:
         """Return the numbers of the geoms within reach and between the fan's elevations; no such geom is missing."""
+        if not self._which.size:
+            return self._which
         centres = data.geom_xpos.take(self._geoms, 0)
         centres -= rays.origin
         square = np.einsum("ij,ij->i", centres, centres)

@@ -46,7 +46,8 @@ MANY_RAYS: Final = 2048
 """Number of rays from which NumPy is faster on shapes than the engine."""
 
 _RAYS_PER_CHUNK = 1 << 18  # rays traced at a time, which limits the memory besides the result
-_RAYS_PER_THREAD = 1 << 13  # fewest rays for which a thread saves time
+RAYS_PER_THREAD: Final = 1 << 13
+"""Fewest rays for which a thread saves time."""
 _LARGEST = float(np.finfo(np.float64).max)
 _LARGEST_SINGLE = 3e38  # of float32, with a margin
 
@@ -82,6 +83,7 @@ class RayFan:
         numpy_directions: directions for casts in NumPy; None if the engine casts.
         offset: pose of the fan in the body's frame; None if it may change.
         own_geoms: geoms of a static carrier that are not hit.
+        movers: moving bodies with triangles that the rays can hit, after `find_triangles`.
 
     Args:
         directions: unit vectors in the sensor's frame, shape (n, 3).
@@ -108,8 +110,9 @@ class RayFan:
         self.ids = np.array((-1,), dtype=np.int32)
         self._nearby: NearbyGeoms | None = None
         self._static: list[TriangleBody] | None = None
-        self._movers = MovingBodies([])
+        self.movers = MovingBodies([])
         self._parts: list[FanPart] = []
+        self._pieces = 0
         self.groups = np.zeros(6, dtype=np.uint8)
         self.groups[list(groups)] = 1
         self.grid, self.numpy_directions = (
@@ -163,7 +166,7 @@ class RayFan:
     @property
     def casts_in_rows(self) -> bool:
         """True if `RayFanRows` can cast the rays: they are few, and hit no moving triangles."""
-        return self.by_engine and not self.targets.needs_engine and not len(self._movers)
+        return self.by_engine and not self.targets.needs_engine and not len(self.movers)
 
     def _find_targets(self, model: mujoco.MjModel, names: NameMap, hidden: Sequence[int]) -> RayTargets:
         def find() -> RayTargets:
@@ -206,8 +209,9 @@ class RayFan:
             self.hits = shapes.ids[self.hits]
         else:
             self._clear()
-        self._find_triangles(targets.triangles_for_engine)
-        self._cast_on_triangles(data, rays, self.distances, self.hits)
+        self.find_triangles()
+        self.cast_on_static_triangles(origin, rays.columns, start, self.distances, self.hits)
+        self.movers.cast(data, rays, self.distances, self.hits)
         self.finish()
 
     def use(self, distances: Vector, geoms: npt.NDArray[np.int32]) -> None:
@@ -221,11 +225,13 @@ class RayFan:
         directions = rotate_vectors(self.directions, rotation.T)
         return RayBundle(origin, directions.T, start, self.reach, self._limit, rotation[:, 2], *self.bounds)
 
-    def rays_from(self, origin: Vector, rotation: Vector, start: float, part: FanPart | None = None) -> RayBundle:
-        """Return the rays, or those of a part, in the world; see `cast`."""
+    def rays_from(
+        self, origin: Vector, rotation: Vector, start: float, part: FanPart | None = None, out: Vector | None = None
+    ) -> RayBundle:
+        """Return the rays, or those of a part, in the world, in the array `out` if it is given; see `cast`."""
         search, bounds = (self.numpy_directions, self.bounds) if part is None else part[1:]
         assert search is not None
-        columns, axis = rotate_columns(rotation, search.columns), rotation[:, 2]
+        columns, axis = rotate_columns(rotation, search.columns, out), rotation[:, 2]
         return RayBundle(origin, columns, start, self.reach, self._limit, axis, *bounds, search, rotation)
 
     def _nearby_movers(self, shapes: ReducedModelCaster) -> NearbyGeoms:
@@ -236,12 +242,14 @@ class RayFan:
 
     def _cast_parts(self, data: mujoco.MjData, origin: Vector, rotation: Vector, start: float) -> None:
         """Cast the rays in NumPy and with Embree: one part in each thread. Each ray is computed alone."""
-        self._find_triangles(self.targets.triangles_and_boxes)
+        self.find_triangles()
         self._find_shapes()
-        count = min(ray_threads.count, max(1, self.count // _RAYS_PER_THREAD))
-        if len(self._parts) != count:
+        count = min(ray_threads.count, max(1, self.count // RAYS_PER_THREAD))
+        # a low and a high part for each thread, because rays to the sky take less time than rays to the ground
+        pieces = 1 if count == 1 else 2 * count
+        if self._pieces != pieces:
             assert self.numpy_directions is not None
-            self._parts = _parts_of(self.numpy_directions, self.grid, count)
+            self._parts, self._pieces = _parts_of(self.numpy_directions, self.grid, pieces), pieces
 
         def cast_part(part: FanPart) -> None:
             rays, best, hits = (
@@ -249,10 +257,17 @@ class RayFan:
                 self.distances[part.rays],
                 self.hits[part.rays],
             )
-            self.cast_on_planes_and_triangles(data, rays, best, hits)
+            self.cast_on_static_triangles(origin, rays.columns, start, best, hits)
+            self.movers.cast(data, rays, best, hits)
+            self.cast_on_planes(data, rays, best, hits)
             self._cast_on_shapes(data, rays, best, hits)
 
-        ray_threads.run([partial(cast_part, part) for part in self._parts])
+        def cast_parts(number: int) -> None:
+            for i in sorted({number, pieces - 1 - number}):
+                if i < len(self._parts):
+                    cast_part(self._parts[i])
+
+        ray_threads.run([partial(cast_parts, number) for number in range(count)])
 
     def finish(self) -> None:
         self.infinite = self.distances > min(self.reach, _LARGEST)
@@ -262,13 +277,9 @@ class RayFan:
         self.hits = np.full(self.count, -1, dtype=np.int32)
         self.distances = np.full(self.count, np.inf)
 
-    def cast_on_planes_and_triangles(
-        self, data: mujoco.MjData, rays: RayBundle, best: Vector, hits: npt.NDArray[np.int32]
-    ) -> None:
-        """Cast on planes in NumPy and on triangles with Embree; shorten `best` and set `hits`, shapes (n,)."""
+    def cast_on_planes(self, data: mujoco.MjData, rays: RayBundle, best: Vector, hits: npt.NDArray[np.int32]) -> None:
+        """Cast on planes in NumPy; shorten `best` and set `hits`, shapes (n,)."""
         targets = self.targets
-        self._find_triangles(targets.triangles_and_boxes)
-        self._cast_on_triangles(data, rays, best, hits)
         for i in targets.planes.tolist():
             if self.carrier and targets.carriers[i] == self.carrier:
                 continue
@@ -296,27 +307,37 @@ class RayFan:
             shapes = self.targets.shapes_in_frame(data, which, rays.origin, rays.rotation)
             cast_on_shapes(rays.search, shapes, rays.reach, rays.start, best, hits)
 
-    def _find_triangles(self, bodies: list[TriangleBody]) -> None:
+    def find_triangles(self) -> None:
+        """Find the triangles that the rays can hit, once for each model."""
         if self._static is None:
+            bodies = self.targets.triangles_for_engine if self.by_engine else self.targets.triangles_and_boxes
             self._static = [body for body in bodies if not body.carrier]
-            self._movers = MovingBodies([body for body in bodies if body.carrier and self._can_reach(body)])
+            self.movers = MovingBodies([body for body in bodies if body.carrier and self._can_reach(body)])
 
-    def _cast_on_triangles(
-        self, data: mujoco.MjData, rays: RayBundle, best: Vector, hits: npt.NDArray[np.int32]
+    def cast_on_static_triangles(
+        self, origin: Vector, columns: Vector, start: float, best: Vector, hits: npt.NDArray[np.int32]
     ) -> None:
-        """Cast on static triangles, then on each moving body with the rays that may hit it."""
+        """Cast rays of this fan, or of fans with the same targets, on static triangles.
+
+        Args:
+            origin: common origin of the rays in the world [m], shape (3,), or the origin of each, shape (3, n).
+            columns: unit vectors in the world, shape (3, n).
+            start: distance from the origin at which the rays start [m].
+            best: shortest distances so far [m], shape (n,), which are shortened.
+            hits: geoms at those distances, shape (n,).
+        """
         assert self._static is not None
         for body in self._static:
             for first in range(0, len(best), _RAYS_PER_CHUNK):
                 part = slice(first, first + _RAYS_PER_CHUNK)
-                limit: Any = min(rays.reach, _LARGEST_SINGLE)
+                limit: Any = min(self.reach, _LARGEST_SINGLE)
                 if body is not self._static[0] or self.by_engine:  # other geoms may be nearer
-                    limit = np.minimum(best[part], rays.reach, dtype=np.float32)
-                distances, geoms = body.cast(rays.origin, rays.columns[:, part], rays.start, limit)
+                    limit = np.minimum(best[part], self.reach, dtype=np.float32)
+                own_origin = origin if origin.ndim == 1 else origin[:, part]
+                distances, geoms = body.cast(own_origin, columns[:, part], start, limit)
                 nearer = distances < best[part]
                 np.copyto(best[part], distances, where=nearer)
                 np.copyto(hits[part], geoms, where=nearer)
-        self._movers.cast(data, rays, best, hits)
 
     def _can_reach(self, body: TriangleBody) -> bool:
         if body.carrier == self.carrier:
@@ -365,7 +386,7 @@ class RayFanRows:
         self._casters: list[ReducedModelCaster | None] = [None] * states.count
         self._triangles: list[list[TriangleBody]] = [[]] * states.count
         self._batch: Any = None
-        self._movers: Any = None
+        self.movers: Any = None
 
     def take(self, row: int) -> None:
         """Copy the surroundings of the fan to one row."""
@@ -387,10 +408,10 @@ class RayFanRows:
         self._batch = Batch(models[0], states.count, states.threads)
         if any(model is not models[0] for model in models):
             self._batch.set_models(models)
-        self._movers = None
+        self.movers = None
         if has_movers:
             places = self._batch.bind("mocap_pos"), self._batch.bind("mocap_quat")
-            self._movers = (*places, *shapes.mover_bodies(fan.carrier))
+            self.movers = (*places, *shapes.mover_bodies(fan.carrier))
 
     def cast(self, origins: Vector, rotations: Vector, start: float) -> Vector:
         """Return the distances in all simulations [m], shape (n, rays); infinite for no hit within the reach.
@@ -407,8 +428,8 @@ class RayFanRows:
         directions = np.nan_to_num(matmul(fan.directions, rotations.transpose(0, 2, 1)))
         distances = np.full(directions.shape[:2], np.inf)
         if self._batch is not None:
-            if self._movers is not None:
-                places, quaternions, bodies, is_kept = self._movers
+            if self.movers is not None:
+                places, quaternions, bodies, is_kept = self.movers
                 places[:], quaternions[:] = states.field("xpos")[:, bodies], states.field("xquat")[:, bodies]
                 places[:, ~is_kept] = ENDLESS
             distances = self._cast_on_shapes(origins, directions, start)

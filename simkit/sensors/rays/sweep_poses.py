@@ -45,14 +45,9 @@ class SweepPoses:
         self._rows, self._timestep = rows, timestep
         self._lag = start - rows.first
         self.positions, self.quaternions = rows.arrays()
-        self._last = len(self.positions) - 1
-
-    def moves(self, body: int) -> bool:
-        """Check whether a body has different poses at the ticks."""
-        if not body:
-            return False
-        positions, quaternions = self.positions[:, body], self.quaternions[:, body]
-        return bool((positions != positions[0]).any() or (quaternions != quaternions[0]).any())
+        self._last, self._bodies = len(self.positions) - 1, self.positions.shape[1]
+        self._times: Vector | None = None
+        self._rows_of_times: tuple[Ids, Ids, Vector] = (np.empty(0, np.intp), np.empty(0, np.intp), np.empty(0))
 
     def positions_at(self, bodies: Ids, times: Vector) -> Vector:
         """Return the positions [m] of m bodies at n times, shape (3, m, n)."""
@@ -65,29 +60,41 @@ class SweepPoses:
         return moved
 
     def _ticks(self, times: Vector) -> tuple[Ids, Ids, Vector]:
-        """Return the rows before and after some times, and the share of the step between them."""
+        """Return the rows before and after some times, and the share of the step between them.
+
+        The rows are kept for the next call with the same array, because all bodies need those of the same columns.
+        """
+        if times is self._times:
+            return self._rows_of_times
         ticks = times / self._timestep
         ticks += self._lag
-        np.clip(ticks, 0.0, self._last, out=ticks)
+        np.maximum(ticks, 0.0, out=ticks)
+        np.minimum(ticks, self._last, out=ticks)
         before = ticks.astype(np.intp)
         ticks -= before
-        return before, np.minimum(before + 1, self._last), ticks
+        self._times, self._rows_of_times = times, (before, np.minimum(before + 1, self._last), ticks)
+        return self._rows_of_times
 
-    def at(self, bodies: int | Ids, times: Vector) -> Poses:
+    def at(self, bodies: int | Ids, times: Vector, which: Ids | None = None) -> Poses:
         """Return the poses of a body at some times, or of one body at each time.
 
         Args:
             bodies: MuJoCo's body, or bodies, shape (n,).
-            times: times after the scan's stamp [s], shape (n,).
+            times: times after the scan's stamp [s], shape (n,) or, if `which` is given, any shape.
+            which: indices in `times`, shape (n,); None for all.
         """
         before, after, share = self._ticks(times)
+        if which is not None:
+            before, after, share = before.take(which), after.take(which), share.take(which)
         if isinstance(bodies, int):
             positions, quaternions = self.positions[:, bodies].T, self.quaternions[:, bodies].T
             first, second = positions.take(before, 1), positions.take(after, 1)
             begin, end = quaternions.take(before, 1), quaternions.take(after, 1)
         else:
-            first, second = self.positions[before, bodies].T, self.positions[after, bodies].T
-            begin, end = self.quaternions[before, bodies].T, self.quaternions[after, bodies].T
+            places, turns = self.positions.reshape(-1, 3), self.quaternions.reshape(-1, 4)
+            begin_rows, end_rows = before * self._bodies + bodies, after * self._bodies + bodies
+            first, second = places.take(begin_rows, 0).T, places.take(end_rows, 0).T
+            begin, end = turns.take(begin_rows, 0).T, turns.take(end_rows, 0).T
         second = second - first
         second *= share
         second += first
@@ -102,9 +109,11 @@ def slerp(begin: Vector, end: Vector, share: Vector) -> Vector:
         change = np.where(square > 2.0, -end, end) - begin
         square = _square(change)
     if not square.size or np.maximum.reduce(square) <= _SMALL_CHORD:
-        weight = share * _small_ratio(square, share)
-        rest = 1.0 - share
-        first = rest * _small_ratio(square, rest)
+        # sin(share·a) / sin(a) for the angle a between the quaternions
+        angle = square * (1.0 + square * (1 / 12 + square * (1 / 90 + square * (1 / 560 + square / 3150))))
+        whole, rest = _sinc(angle), 1.0 - share
+        weight = share * (_sinc(angle * (share * share)) / whole)
+        first = rest * (_sinc(angle * (rest * rest)) / whole)
     else:
         angle = 2.0 * np.asarray(arcsin(np.minimum(0.5 * np.sqrt(square), 1.0)))
         sine = np.maximum(each(math.sin, angle), 1e-300)
@@ -123,13 +132,6 @@ def _square(columns: Vector) -> Vector:
     total += y * y
     total += z * z
     return total
-
-
-def _small_ratio(square: Vector, share: Vector) -> Vector:
-    """Return sin(share·a)/(share·sin a) for the angle a between quaternions whose distance has this square."""
-    angle = square * (1.0 + square * (1 / 12 + square * (1 / 90 + square * (1 / 560 + square / 3150))))
-    part = angle * (share * share)
-    return _sinc(part) / _sinc(angle)
 
 
 def _sinc(square: Vector) -> Vector:

@@ -89,10 +89,15 @@ class WorldRays:
     spread: float
     is_ahead: bool
 
+    def columns(self) -> tuple[Vector, Vector]:
+        """Return the origin [m] and the direction of each ray, shapes (3, l · c)."""
+        layers = len(self.numbers)
+        origins = self.origins if layers == 1 else np.tile(self.origins, layers)
+        return origins, self.directions.reshape(3, -1)
+
     def all_origins(self) -> Vector:
         """Return the origin of each ray [m], shape (l · c, 3)."""
-        origins = np.broadcast_to(self.origins.T, (*self.numbers.shape, 3))
-        return np.ascontiguousarray(origins).reshape(-1, 3)
+        return np.ascontiguousarray(self.columns()[0].T)
 
     def all_directions(self) -> Vector:
         """Return the direction of each ray, shape (l · c, 3)."""
@@ -182,6 +187,7 @@ class SweptCaster:
         self._radii = self._carrier_radii()
         static = targets.triangles_for_engine if fan.by_engine else targets.triangles_and_boxes
         needs_triangles = not targets.needs_engine
+        self._mover_shapes = self._sort_mover_shapes()
         self._static = [body for body in static if not body.carrier] if needs_triangles else []
         self._moving_triangles = self._find_moving_triangles() if needs_triangles else {}
 
@@ -201,6 +207,20 @@ class SweptCaster:
             square = positions[:, 0] ** 2 + positions[:, 1] ** 2 + positions[:, 2] ** 2
             radii.append(float((np.sqrt(square) + bounds).max()) * (1 + 1e-9) + 1e-6)
         return np.array(radii)
+
+    def _sort_mover_shapes(self) -> list[tuple[Ids, Ids, Ids]]:
+        """Return the planes and shapes of the movers, sorted by type and carrier.
+
+        Returns:
+            For each type: geoms, number of geoms of each carrier, and index of each carrier's first geom.
+        """
+        targets, sorted_shapes = self._targets, []
+        types, owner = targets.types[self._movers], targets.carriers[self._movers]
+        for kind in sorted(set(types.tolist()) - set(TRIANGLES)):
+            geoms_of = [self._movers[(types == kind) & (owner == carrier)] for carrier in self._mover_carriers]
+            counts = np.array([len(geoms) for geoms in geoms_of], dtype=np.intp)
+            sorted_shapes.append((targets.geoms[np.concatenate(geoms_of)], counts, np.cumsum(counts) - counts))
+        return sorted_shapes
 
     def _find_moving_triangles(self) -> dict[int, TriangleBody]:
         bodies = self._targets.triangles_and_boxes
@@ -250,8 +270,7 @@ class SweptCaster:
         else:
             self._cast_on_static_geoms(data, rays, start, hits)
         if self._static:
-            origins = np.broadcast_to(rays.origins[:, None], rays.directions.shape).reshape(3, -1)
-            directions, numbers = rays.directions.reshape(3, -1), rays.numbers.ravel()
+            (origins, directions), numbers = rays.columns(), rays.numbers.ravel()
             for body in self._static:
                 self._cast_on_triangles(body, numbers, origins, directions, start, hits)
         if len(self._mover_carriers):
@@ -392,17 +411,11 @@ class SweptCaster:
         if not len(which):
             return
         columns = which % len(rays.times)
-        poses = rays.poses.at(self._bodies.take(carriers), rays.times.take(columns))
+        poses = rays.poses.at(self._bodies.take(carriers), rays.times, columns)
         origins, directions, numbers = _of_rays(rays, which)
         turn = matrices_of(poses.quaternions)
         origins, directions = _turn_back(turn, origins - poses.positions), _turn_back(turn, directions)
-        targets = self._targets
-        types, owner = targets.types[self._movers], targets.carriers[self._movers]
-        for kind in sorted(set(types.tolist()) - set(TRIANGLES)):
-            geoms_of = [self._movers[(types == kind) & (owner == c)] for c in self._mover_carriers]
-            counts = np.array([len(geoms) for geoms in geoms_of], dtype=np.intp)
-            first = np.cumsum(counts) - counts
-            geoms = targets.geoms[np.concatenate(geoms_of)]
+        for geoms, counts, first in self._mover_shapes:
             repeats = counts.take(carriers)
             if not repeats.any():
                 continue
@@ -508,12 +521,17 @@ def _unit(vectors: Vector) -> Vector:
 
 def _turn(matrix: Any, vectors: Vector) -> Vector:
     """Return vectors turned by rotation matrices; components are the first axis."""
-    return np.stack([_dot(matrix[i], vectors) for i in range(3)])
+    turned: Vector = np.empty((3, *np.broadcast_shapes(matrix[0][0].shape, vectors.shape[1:])))
+    for row, out in zip(matrix, turned, strict=True):
+        np.multiply(row[0], vectors[0], out=out)
+        out += row[1] * vectors[1]
+        out += row[2] * vectors[2]
+    return turned
 
 
 def _turn_back(matrix: Any, vectors: Vector) -> Vector:
     """Return vectors turned by the inverses of rotation matrices; components are the first axis."""
-    return np.stack([_dot([row[i] for row in matrix], vectors) for i in range(3)])
+    return _turn(tuple(zip(*matrix, strict=True)), vectors)
 
 
 def _of_rays(rays: WorldRays, which: Ids) -> tuple[Vector, Vector, Ids]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -57,6 +58,8 @@ class ScanProgress(NamedTuple):
     def columns(self, until: float) -> Ids:
         """Return the columns of the pattern that are not cast yet and fire up to a time [s]."""
         times = self.pattern.times
+        if self.done < 0 and until == math.inf:
+            return np.arange(len(times))
         return np.flatnonzero((times > self.done) & (times <= until))
 
 

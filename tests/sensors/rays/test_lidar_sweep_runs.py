@@ -12,6 +12,7 @@ from lidar_sweep_worlds import ANGULAR, INERTIA, LINEAR, POSE, SWEEP, WALL, fan,
 from sensor_worlds import box, sensor
 
 import simkit
+from simkit.pose import Pose
 from simkit.runtime.array_rules import CannotBatchError
 from simkit.sensors.base import sensor_rule
 from simkit.sensors.rays import ray_fan
@@ -308,3 +309,66 @@ def test_clouds_of_plugins_arrive_after_the_last_ray(plugin: str) -> None:
         sim.subscribe("/cloud", callback=lambda m: arrivals.append((sim.time, stamp(m))))
         sim.run(0.25)
     assert np.allclose(arrivals, [(0.1, 0.002), (0.198, 0.1)])
+
+
+def _spawned(integrator: str) -> Any:
+    """Return the moving world in an MJCF world with an integrator."""
+    sim = simkit.load(
+        f'<mujoco><option timestep="0.002" gravity="0 0 0" integrator="{integrator}"/><worldbody/></mujoco>'
+    )
+    for part in (flyer(lidar(72, noise=False)), WALL, CRATE, HAT):
+        sim.spawn(f'<sdf version="1.9">{part}</sdf>')
+    for name, velocity in MOVES.items():
+        launch(sim, name, *velocity)
+    return sim
+
+
+def test_a_sweep_with_the_integrator_rk4_has_the_ranges_of_another_integrator() -> None:
+    # the bodies' velocities are constant, so that both integrators move them on the same ways
+    with _spawned("RK4") as sim, _spawned("implicitfast") as other:
+        assert sim.mj_model.opt.integrator != other.mj_model.opt.integrator
+        sim.run(0.25)
+        other.run(0.25)
+        found, expected = (s.sensor("m::l::s")._true_reading().ranges for s in (sim, other))
+        near = np.isfinite(expected)
+        assert 0.2 < near.mean() < 1
+        assert np.array_equal(np.isfinite(found), near)
+        assert np.abs(found[near] - expected[near]).max() < 1e-5
+
+
+def test_a_teleport_in_mid_scan_moves_the_rays_after_it() -> None:
+    """The rays before the teleport start at the old place, those at least a step later at the new one."""
+    walls = box("left", "0 6 1 0 0 0", "40 0.2 4") + box("right", "0 -6 1 0 0 0", "40 0.2 4")
+    swept = flyer(lidar(72, noise=False).replace(f"<pose>{POSE}</pose>", ""))
+    with simkit.load(world(swept, walls)) as sim:
+        sim.run(0.15)  # the scan that began at 0.1 s is half done: it has covered the right side
+        sim.model("m").set_pose(Pose((0, 2, 1)))
+        sim.run(0.06)
+        swept_by = sim.sensor("m::l::s")
+        reading = swept_by._true_reading()
+        seen = np.isfinite(reading.ranges)
+        side = np.abs(np.where(seen, reading.ranges, 0.0) * reading.sweep.directions[:, 1])
+        late = swept_by.ray_times > 0.05 + 1e-9
+        early = swept_by.ray_times < 0.05 - 0.002
+        assert (seen & early).sum() > 20
+        assert (seen & late).sum() > 20
+        assert side[seen & early] == pytest.approx(5.9, abs=1e-6)
+        assert side[seen & late] == pytest.approx(3.9, abs=1e-6)
+
+
+def test_a_sweep_hits_a_body_asleep_where_it_lies() -> None:
+    floor = box("floor", "0 0 -0.1 0 0 0", "40 40 0.2")
+    crate = target("crate", "<box><size>1 1 1</size></box>", "3 0 0.5 0 0 0").replace("<gravity>false</gravity>", "")
+    parts = (flyer(lidar(72, noise=False).replace(f"<pose>{POSE}</pose>", ""), pose="0 0 0.5 0 0 0"), floor, crate)
+    readings = []
+    for sleeps in (True, False):
+        with simkit.load(world(*parts), overrides=[f"physics.sleep={str(sleeps).lower()}"]) as sim:
+            launch(sim, "m", (0.5, 0.3, 0.0), (0.0, 0.0, 0.4))
+            sim.run(1.55)
+            link = sim.model("crate").link("l")
+            assert sim.engine.physics.sleep.is_asleep(link._body, sim.engine.physics.fresh()) == sleeps
+            readings.append(sim.sensor("m::l::s")._true_reading().ranges)
+    near = np.isfinite(readings[1])
+    assert 2 < near.sum() < 36
+    assert np.array_equal(np.isfinite(readings[0]), near)
+    assert np.abs(readings[0][near] - readings[1][near]).max() < 1e-4

@@ -77,6 +77,35 @@ def test_a_grid_finds_the_rays_towards_moving_triangles_that_a_test_of_all_rays_
         assert cast(sim, (ELEVATIONS, AZIMUTHS), 1) == cast(sim, None, 1)
 
 
+LIDAR = """<sensor name="s" type="lidar"><update_rate>20</update_rate><lidar><scan><horizontal><samples>250</samples>
+  <min_angle>-3</min_angle><max_angle>3</max_angle></horizontal><vertical><samples>12</samples><min_angle>-0.5</min_angle>
+  <max_angle>0.4</max_angle></vertical></scan><range><min>0.1</min><max>20</max></range></lidar></sensor>"""
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_lidars_that_cast_together_have_the_bits_of_each_alone(threads: int, tmp_path: pathlib.Path) -> None:
+    trimesh.creation.icosphere(2, 0.4).export(tmp_path / "ball.stl")
+    text = world()
+    for i in (0, 1, 4, 5, 8):  # balls of triangles and boxes carry a lidar
+        text = text.replace(f'<model name="m{i}">', f'<model name="r{i}">')
+        begin = text.index("<gravity>", text.index(f'<model name="r{i}">'))
+        text = text[:begin] + LIDAR + text[begin:]
+    with simkit.load(text, resource_paths=[str(tmp_path)]) as sim, ray_threads.use(threads):
+        lidars = [sim.sensor(f"r{i}::l::s") for i in (0, 1, 4, 5, 8)]
+        for lidar in lidars:
+            sim.subscribe(lidar.topic)
+        sim.run(0.0501)
+        assert len({id(lidar.batch) for lidar in lidars}) == 1
+        assert lidars[0].batch is not None
+        lidars[0].batch.capture_all(lidars[0].computed_data())
+        together = [lidar.batch.captured(lidar.batch_index) for lidar in lidars]
+        for lidar, reading in zip(lidars, together, strict=True):
+            alone = lidar.measure_now()
+            assert 0.3 < np.isfinite(alone.ranges).mean() < 1.0
+            assert reading.ranges.tobytes() == alone.ranges.tobytes()
+            assert reading.hits.tobytes() == alone.hits.tobytes()
+
+
 def test_the_error_of_a_job_reaches_the_caller() -> None:
     def fail() -> None:
         raise ValueError("job")

@@ -1,7 +1,7 @@
 """Plugin that drives a TurtleBot3 to goals with a trained policy: `simkit run world.sdf --plugin-path .`.
 
 `train_turtlebot3.py` trains the policy. Its weights are NumPy arrays in `policy.npz`, so that playing it needs
-neither PyTorch nor Gymnasium, and gives the same bits in every run.
+no Gymnasium, and gives the same bits in every run.
 """
 
 from __future__ import annotations

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass
+from operator import attrgetter
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -102,7 +103,7 @@ class Actions:
             values = np.asarray(action, dtype=np.float64)
         except (TypeError, ValueError):
             values = np.empty(0)
-        if values.shape != self._low.shape or values.sum() != values.sum():
+        if values.shape != self._low.shape or np.isnan(values).any():
             names = ", ".join(self.names)
             text = f"found the action {shorten(repr(action), 60)}; expected the shape {self._low.shape} with {names}"
             raise invalid(text, "limit NaN and other invalid numbers before step", "SK-GYM-004")
@@ -326,10 +327,10 @@ def _setter(sample: Message, path: str, type_name: str) -> tuple[SetField, str, 
     if not isinstance(value, (int, float)) or isinstance(value, bool):
         hint = f"available: {', '.join(_number_fields(sample))}"
         raise _wrong(f"the field {path!r} of a {type_name} is no number", hint)
-    convert = type(value)
+    convert, parents = type(value), plain.rpartition(".")[0]
+    find_owner = attrgetter(parents) if parents else None
 
     def set_field(message: Message, number: float) -> None:
-        owner, name = _owner(message, plain)
-        setattr(owner, name, convert(number))
+        setattr(message if find_owner is None else find_owner(message), name, convert(number))
 
     return set_field, "", 0

@@ -315,6 +315,8 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
 
     def _checked_values(self, options: object) -> Values:
         """Return the values that the options of `reset` set."""
+        if options is None:
+            return {}
         values = options.get("values", {}) if isinstance(options, Mapping) else {}
         if not isinstance(values, Mapping) or not isinstance(options, (Mapping, type(None))):
             raise invalid(

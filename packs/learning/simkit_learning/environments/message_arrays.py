@@ -35,7 +35,7 @@ def conversion_of(message: Message) -> tuple[Conversion, Bounds]:
     kind = msgs.type_name(message).rpartition("/")[2]
     if kind == "LaserScan":
         limits = float(message.range_min), float(message.range_max)
-        return lambda m: np.clip(m.ranges, *limits), limits
+        return lambda m: np.minimum(np.maximum(m.ranges, limits[0]), limits[1]), limits  # `clip` takes twice as long
     if kind == "Range":
         limits = float(message.min_range), float(message.max_range)
         return lambda m: np.clip(np.array([m.range], np.float32), *limits), limits
