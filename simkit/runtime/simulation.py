@@ -95,7 +95,7 @@ class Simulation(ScriptEntities, ScriptGraph, InProcess):
         self._bus = bus = TopicBus(diagnostics, lambda: self.time, remapping)
         callbacks = EngineCallbacks(
             fill=self._fill,
-            basis=self._basis,
+            schedule_inputs=self._schedule_inputs,
             velocity_limit=lambda name, axis: self.contents.handles.velocity_limit(name, axis),
             set_active=lambda owners: self.communication.set_active(owners),
             abandon=lambda owner, reason: self.communication.abandon(owner, reason),
@@ -384,9 +384,9 @@ class Simulation(ScriptEntities, ScriptGraph, InProcess):
         self._tasks.fill(scheduler, *self.contents.handles.limited_dofs())
         self.communication.on_demand.fill(scheduler)
 
-    def _basis(self) -> object:
+    def _schedule_inputs(self) -> object:
         """Return what `_fill` reads and a restored state may change; None if each state needs new tasks."""
-        return self._tasks.basis(self.contents.handles.velocity_limits(), self.communication.on_demand.wanted())
+        return self._tasks.inputs(self.contents.handles.velocity_limits(), self.communication.on_demand.wanted())
 
     def view(self, port: int = 0) -> str:
         """Show the simulation in a browser; `step` and `run` then update the page.
