@@ -6,7 +6,7 @@ import abc
 import math
 from collections.abc import Callable, Mapping, Sequence
 from itertools import chain
-from typing import Any, ClassVar, TypeVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 import mujoco
 import numpy as np
@@ -19,7 +19,7 @@ from simkit.diagnostic_record import TEXT_SOURCE
 from simkit.diagnostics import Diagnostics, Severity, Where
 from simkit.errors import InputError
 from simkit.linear_algebra import matmul
-from simkit.msgs.message_types import Message
+from simkit.msgs.message_types import M, Message
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.pose import Pose, Vector
@@ -45,8 +45,10 @@ _BODY = int(mujoco.mjtObj.mjOBJ_XBODY)
 AnyNoiseProcess = TypeVar("AnyNoiseProcess", bound=NoiseProcess)
 
 
-class Sensor(Sampler):
+class Sensor(Sampler, Generic[M]):
     """Sensor of a model. To add a kind: derive, set `kinds`, override `read_options` and implement `measure`.
+
+    The type parameter is the class of `latest` and `truth`, with the kind's default topics.
 
     Attributes:
         kinds: `<sensor type>` names in files.
@@ -165,7 +167,7 @@ class Sensor(Sampler):
         return next(iter(self._topics.values()), "")
 
     @property
-    def latest(self) -> Message:
+    def latest(self) -> M | Any:  # `Any` stands for None, so that a type checker asks for no check
         """Newest message that has arrived, or None before the first."""
         self.sim.engine.check_open()
         if self._sample is None:
@@ -173,7 +175,7 @@ class Sensor(Sampler):
         return self._message(self._sample, next(iter(self._topics)))
 
     @property
-    def truth(self) -> Message:
+    def truth(self) -> M | Any:  # as `latest`
         """Newest message without noise, or None before the first."""
         self.sim.engine.check_open()
         sample = self._finished_sample()

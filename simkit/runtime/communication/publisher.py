@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Final, NamedTuple, Protocol
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Final, Generic, NamedTuple, Protocol
 
 from simkit import msgs
 from simkit.in_process import InProcess
 from simkit.msgs import Message
 from simkit.msgs.message_arguments import checked_message
+from simkit.msgs.message_types import M
 from simkit.runtime.communication.journal import JournalKeeper
 from simkit.runtime.communication.subscription import Callback, LazyMessage, PendingWork
 
@@ -44,8 +45,10 @@ class TopicSides(NamedTuple):
     publishers: list[Publisher]
 
 
-class Publisher(InProcess):
+class Publisher(InProcess, Generic[M]):
     """Publisher of a topic; `wanted` is true while the topic has subscribers.
+
+    The type parameter is the class of the messages.
 
     Attributes:
         last: last message of a latched topic.
@@ -142,7 +145,7 @@ class Publisher(InProcess):
             return 0
         return readers.keeps
 
-    def publish(self, message: Message) -> None:
+    def publish(self, message: M | Mapping[str, Any]) -> None:
         """Pass a message to every subscriber now, and to command inputs before the next step.
 
         Args:
@@ -215,7 +218,7 @@ class Publisher(InProcess):
         return f"<Publisher {self.topic!r} {self.type_name}, {heard}>"
 
 
-class ExternalPublisher(Publisher):
+class ExternalPublisher(Publisher[M]):
     """Publisher that belongs to no plugin or sensor; its messages are external inputs."""
 
     __slots__ = ()
@@ -235,7 +238,7 @@ class ExternalPublisher(Publisher):
         if latched and topic == ROSOUT:
             self.keep_history(KEPT_LOG_MESSAGES)
 
-    def publish(self, message: Message) -> None:
+    def publish(self, message: M | Mapping[str, Any]) -> None:
         """Publish a message, or a dict of its fields, and record it in the journal.
 
         Raises:

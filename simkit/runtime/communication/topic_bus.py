@@ -276,6 +276,11 @@ class TopicBus:
             clash = find_conflict(self.endpoints(topic), topic, end)
             if clash:
                 raise MessageError(clash)
+        if isinstance(end, Publisher):
+            for reader in self._readers_of(topic).readers:
+                if reader.expected not in ("", end.type_name) and reader.active:
+                    text = f"topic {topic!r} has a subscription of type {reader.expected}, got {end.type_name}"
+                    raise MessageError(text)
 
     # ------------------------------------------------------------------ lists
 
