@@ -1,20 +1,23 @@
 """Vector environments beside MuJoCo's batch, processes, and the environments of other projects.
 
-python benchmarks/learning_vectors.py [--rounds N] [--environments N] [--processes N]
+python benchmarks/learning_vectors.py [--rounds N] [--environments N] [--processes N] [--many N,N,…]
 
 One step is 0.1 s of `simkit/TurtleBot3Goal-v0` with a fresh scan of 360 rays in each environment. MuJoCo's batch makes
-the same steps from the same states with the same rays, on the same threads. Then the drives of Gazebo Sim and of Gazebo
-Classic are compared in `turtlebot3_world`. The sides take turns; wall times, because both use all processors, but CPU
-times for the peers. `--processes 0` leaves out the processes.
+the same steps from the same states with the same controls and rays, on the same threads. Then the drives of Gazebo Sim
+and of Gazebo Classic are compared in `turtlebot3_world`. The sides take turns; wall times, because both use all
+processors, but CPU times for the peers. Pictures a second, and start and memory of many environments follow.
+`--processes 0` leaves out the processes, `--many ""` the many environments.
 """
 
 from __future__ import annotations
 
 import argparse
 import re
+import subprocess
+import sys
 import tempfile
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -31,23 +34,46 @@ ENVIRONMENT, SENSOR, PERIOD = "simkit/TurtleBot3Goal-v0", "turtlebot3::base_scan
 _VELOCITIES = int(mujoco.mjtStage.mjSTAGE_VEL)
 
 
-def bare_batch(envs: Any) -> Callable[[], object]:
-    """The same steps and rays with MuJoCo's batch alone, from the present states of the environments."""
-    physics, sim, count = envs._physics, envs._sim, envs.num_envs
-    fan, threads = sim.sensor(SENSOR).fan, physics.batch.nthread
-    steps = Batch(sim.mj_model, count, threads, persistent=True)
-    rays = Batch(fan.targets.shapes_by_engine.model_for_rows(False), count, threads)
-    positions, turns, controls = steps.bind("xpos"), steps.bind("xmat"), steps.bind("ctrl")
-    number = round(PERIOD / sim.timestep)
+class BareBatch:
+    """The last step of the environments with MuJoCo's batch alone: the same states, controls, steps and rays.
 
-    def step() -> object:
-        steps.state[:] = physics.batch.state
-        controls[:] = envs.view.ctrl
-        steps.step(None, number, _VELOCITIES)
+    The controls change at the ticks of the drive and of the servos; a program for MuJoCo's batch divides its steps
+    there, too. Constant controls would need fewer iterations of MuJoCo's solver.
+    """
+
+    def __init__(self, envs: Any) -> None:
+        self._physics, sim, count = envs._physics, envs._sim, envs.num_envs
+        self._fan, threads = sim.sensor(SENSOR).fan, self._physics.batch.nthread
+        model = self._physics._models[0]
+        self._steps = Batch(model, count, threads)
+        self._rays = Batch(self._fan.targets.shapes_by_engine.model_for_rows(False), count, threads)
+        self._positions, self._turns = self._steps.bind("xpos"), self._steps.bind("xmat")
+        self._controls = self._steps.bind("ctrl")
+        self._parts: list[tuple[int, Any]] = []
+        self._begin = self._physics.batch.state.copy()
+        engine_step, view = self._physics.batch.step, envs.view
+
+        def step(ids: Any, number: int, stage: int) -> None:
+            if not self._parts:
+                self._begin = self._physics.batch.state.copy()
+            self._parts.append((number, view.ctrl.copy()))
+            engine_step(ids, number, stage)
+
+        self._physics.batch.step = step
+
+    def forget(self) -> None:
+        """Record the next step of the environments."""
+        self._parts.clear()
+
+    def step(self) -> object:
+        """Repeat the recorded step."""
+        self._steps.state[:] = self._begin
+        for place, (number, controls) in enumerate(self._parts):
+            self._controls[:] = controls
+            self._steps.step(None, number, _VELOCITIES if place == len(self._parts) - 1 else 0)
+        fan, turns = self._fan, self._turns
         turned = fan.directions @ turns[:, fan.body].reshape(-1, 3, 3).transpose(0, 2, 1)
-        return rays.ray(np.broadcast_to(positions[:, fan.body][:, None], turned.shape), turned)
-
-    return step
+        return self._rays.ray(np.broadcast_to(self._positions[:, fan.body][:, None], turned.shape), turned)
 
 
 def medians(
@@ -66,14 +92,22 @@ def medians(
 def vectors(count: int, processes: int, rounds: int) -> None:
     batch = simkit.gym.make_vec(ENVIRONMENT, num_envs=count)
     batch.reset(seed=0)
-    random = np.random.default_rng(0)
-    sides: dict[str, Callable[[], object]] = {
-        "simkit's batch": lambda: batch.step(random.uniform(-1, 1, (count, 2))),
-        "MuJoCo's batch": bare_batch(batch),
-    }
+    random, bare = np.random.default_rng(0), BareBatch(batch)
+
+    def step() -> None:
+        bare.forget()
+        batch.step(random.uniform(-1, 1, (count, 2)))
+
+    sides: dict[str, Callable[[], object]] = {"simkit's batch": step, "MuJoCo's batch": bare.step}
     others: dict[str, Any] = {}
-    for name, law in (("processes", "mujoco"), ("processes, simkit's contact law", "simkit")) if processes else ():
-        options = {"processes": True, "overrides": (f"physics.contact_law={law}",)}
+    kinds: list[tuple[str, str, Any]] = []
+    if processes:
+        kinds.append(("processes", "mujoco", True))
+        kinds.append(("turns in two processes", "mujoco", 2))
+        kinds.append(("processes, simkit's contact law", "simkit", True))
+        kinds.append(("turns, simkit's contact law", "simkit", 2))
+    for name, law, given in kinds:
+        options = {"processes": given, "overrides": (f"physics.contact_law={law}",)}
         others[name] = simkit.gym.make_vec(ENVIRONMENT, num_envs=processes, **options)
         others[name].reset(seed=0)
         sides[name] = lambda envs=others[name]: envs.step(random.uniform(-1, 1, (processes, 2)).astype(np.float32))
@@ -121,6 +155,68 @@ def drives(count: int, processes: int, rounds: int) -> None:
         print(f"{name:34s} {seconds * 1e6:8.0f} us for each environment   {name} / ours {seconds / ours:5.2f}")
     for envs in made.values():
         envs.close()
+
+
+def pictures(count: int, rounds: int, size: int = 64) -> None:
+    """Pictures of a camera on each of so many burgers, drawn by the software renderer in one step of a batch."""
+    text = fleet.robot("turtlebot3", -2.0, -0.5, "classic")
+    text = text.replace("<ros><namespace>turtlebot3</namespace></ros>", "").replace(
+        "<namespace>turtlebot3</namespace>", ""
+    )
+    place = text.index("</link>", text.index('name="base_scan"'))
+    text = text[:place] + CAMERA.format(size=size) + text[place:]
+    source = (Path(__file__).resolve().parents[1] / "worlds" / "turtlebot3_world.sdf").read_text(encoding="utf-8")
+    world = re.sub(r"<include>.*?</include>", lambda _: text, source, count=1, flags=re.DOTALL)
+    twist = {"/cmd_vel": {"linear.x": (0.0, 0.22), "angular.z": (-1.5, 1.5)}}
+    options: dict[str, Any] = {"action": twist, "samples_all": False}
+    options["overrides"] = ("physics.contact_law=mujoco", "scene.renderer=software")
+    seeing = simkit.gym.make_vec(world, num_envs=count, batch=True, observation={"eye": "/eye"}, **options)
+    blind = simkit.gym.make_vec(world, num_envs=count, batch=True, observation={"p": "turtlebot3"}, **options)
+    random, sides = np.random.default_rng(0), {}
+    for name, envs in (("with pictures", seeing), ("without", blind)):
+        envs.reset(seed=0)
+        sides[name] = lambda envs=envs: envs.step(random.uniform((0.0, -1.5), (0.22, 1.5), (count, 2)))
+    for label, clock in (("of wall time", time.perf_counter), ("of CPU time", time.process_time)):
+        found = medians(sides, rounds, clock)
+        rate = count / (found["with pictures"] - found["without"])
+        print(f"{count} pictures of {size} x {size} in a step: {rate:6.0f} pictures a second {label}")
+    seeing.close()
+    blind.close()
+
+
+CAMERA = """<sensor name="eye" type="camera"><topic>eye</topic><update_rate>10</update_rate><camera>
+<horizontal_fov>1.2</horizontal_fov><image><width>{size}</width><height>{size}</height></image>
+<clip><near>0.05</near><far>20</far></clip></camera></sensor>"""
+
+MANY = """
+import sys, time
+import numpy as np
+import simkit.gym
+def memory():
+    with open("/proc/self/status") as lines:
+        return next(int(line.split()[1]) / 1024 for line in lines if line.startswith("VmRSS"))
+count, options = int(sys.argv[1]), eval(sys.argv[2])
+one = simkit.gym.make_vec("simkit/TurtleBot3Goal-v0", num_envs=1, **options)
+one.reset(seed=0)
+one.step(np.zeros((1, 2)))
+before, begun = memory(), time.process_time()
+envs = simkit.gym.make_vec("simkit/TurtleBot3Goal-v0", num_envs=count, **options)
+envs.reset(seed=0)
+begun = time.process_time() - begun
+envs.step(np.zeros((count, 2)))
+print(f"{count:6d} environments   start {begun:6.2f} s   {(memory() - before) * 1024 / count:7.1f} kB for each")
+"""
+
+
+def many(counts: Sequence[int]) -> None:
+    """Start and memory of many environments, each number in a process of its own (Linux)."""
+    for name, options in (
+        ("batch", {}),
+        ("turns, simkit's contact law", {"processes": 1, "overrides": ("physics.contact_law=simkit",)}),
+    ):
+        for count in counts:
+            print(f"{name:34s} ", end="", flush=True)
+            subprocess.run([sys.executable, "-c", MANY, str(count), repr(options)], check=True)
 
 
 # ---------------------------------------------------------------------- peers
@@ -217,9 +313,12 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=20)
     parser.add_argument("--environments", type=int, default=64)
     parser.add_argument("--processes", type=int, default=16)
+    parser.add_argument("--many", default="64,1024,4096", help="numbers of environments whose memory is measured")
     options = parser.parse_args()
     vectors(options.environments, options.processes, options.rounds)
     drives(options.environments, options.processes, options.rounds)
+    pictures(options.environments, options.rounds)
+    many([int(number) for number in options.many.split(",") if number])
     peers(options.rounds)
 
 

@@ -5,8 +5,8 @@ python benchmarks/memory.py --sizes [ROW ...]
 
 `--sizes` prints the resident memory of new processes, and the size of a bag: `robots` (a world of 100 TurtleBots after
 its load and after 10 s, beside MuJoCo with the same compiled model), `environments` (4096 environments of a vector),
-`images` (a minute of RGB-D recorded at 30 Hz, after ten seconds and at the end) and `bag` (the nine topics of the main
-job).
+`images` (a minute of RGB-D and clouds recorded at 30 Hz, after ten seconds and at the end) and `bag` (nine topics of
+the main job).
 """
 
 from __future__ import annotations

@@ -106,6 +106,8 @@ class JointStates(ModelPlugin):
 class JointStatesRule(PluginRule):
     """Joint states in n simulations: positions, then velocities."""
 
+    reads_poses = False
+
     def __init__(self, plugin: JointStates) -> None:
         self._plugin, self._topic = plugin, plugin._states.topic
 

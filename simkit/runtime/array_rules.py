@@ -119,9 +119,12 @@ class PluginRule(abc.ABC):
 
     Attributes:
         grids: ticks of the hooks that run at a rate.
+        reads_poses: False if the hooks read only joints, controls and their own state; a batch then leaves out the
+            forward pass before them, which takes a third of a step.
     """
 
     grids: Sequence[Grid] = ()
+    reads_poses = True
 
     @abc.abstractmethod
     def bind(self, states: StateArrays) -> None:

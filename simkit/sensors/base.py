@@ -317,8 +317,16 @@ class Sensor(Sampler):
             sim.engine.reports.warning("SK-SENSOR-023", f"{message} and has no effect", self.scene.where)
 
     def set_frame_id(self, frame: str) -> None:
-        """Set the frame of all messages."""
+        """Set the frame of the messages of all later samples."""
+        self._make_pending_messages()
+        if self._sample is not None and not self.needs_renderer:
+            self.latest  # noqa: B018 - made now, because it has the frame of its sample
         self.frame_id = frame
+
+    def _make_pending_messages(self) -> None:
+        """Make the messages of earlier samples with the present noise, frame and options."""
+        for _, publisher, _ in self._publishers:
+            self.sim.communication.bus.settle_topic(publisher.topic)
 
     def bind(self, compiled: Compiled) -> None:
         """Find the sensor in a compiled model; called again after every change of structure."""

@@ -56,6 +56,7 @@ ACTIONS: dict[str, Action] = {
     "restore": restore,
     "rate": lambda sim: sim.sensor("ball::body::imu").set_rate(100.0),
     "latest": lambda sim: sim.sensor("ball::body::imu").latest,
+    "frame": lambda sim: sim.sensor("ball::body::imu").set_frame_id("other"),
     "reference": turn_reference,
     "other noise": lambda sim: setattr(sim.sensor("ball::body::imu"), "noise", 0.2),
     "more noise": lambda sim: sim.sensor("ball::body::imu").add_white_noise(0.1),
@@ -126,7 +127,7 @@ def test_the_bytes_are_those_of_the_messages_for_any_options_of_the_sensor(
 LIDAR = """
 <sdf version="1.9"><world name="w">
   <model name="wall"><static>true</static><pose>2 0 0 0 0 0</pose>
-    <link name="a"><collision name="c"><geometry><box><size>1 4 4</size></box></geometry></collision></link></model>
+    <link name="a"><collision name="c"><geometry><box><size>1 4 200</size></box></geometry></collision></link></model>
   <model name="ball"><pose>0 0 50 0 0 0.3</pose>
     <link name="body">
       <inertial><mass>1</mass><inertia><ixx>0.1</ixx><iyy>0.2</iyy><izz>0.3</izz></inertia></inertial>
@@ -143,12 +144,10 @@ LIDAR = """
 
 
 def change_frame(sim: Simulation) -> None:
-    sim.communication.bus.settle()
     sim.sensor("ball::body::lidar").set_frame_id("other")
 
 
 def add_ray_noise(sim: Simulation) -> None:
-    sim.communication.bus.settle()
     sim.sensor("ball::body::lidar").add_ray_noise(0.1)
 
 

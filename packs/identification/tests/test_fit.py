@@ -12,6 +12,7 @@ from fit_worlds import pendulum, push, record, servo, slider, swing, turn
 
 import simkit
 from simkit import InputError, RunSpec
+from simkit.recording import Recorder
 from simkit.testing import open_scenario
 from simkit.testing.scenarios.scenario_file import read_scenario
 from simkit_identification.fitting.problem import RepeatedRecording
@@ -198,3 +199,19 @@ def test_a_value_at_a_bound_is_a_warning(pushed: Path) -> None:
     result = simkit.fit(slider(), pushed, f"{MASS}=0.5:1.5", compare="/joint_states")
     assert result.values[MASS] == pytest.approx(1.5, rel=1e-3)
     assert "SK-FIT-007" in {d.code for d in result.diagnostics}
+
+
+@pytest.mark.slow
+def test_the_friction_of_wheels_comes_back_from_a_drive_that_slips(tmp_path: Path) -> None:
+    friction = "turtlebot3::wheel_*_link::tread.surface.friction.ode.mu"
+    bag = tmp_path / "slip.mcap"
+    topics = ["/cmd_vel", "/odom", "/joint_states"]
+    with (
+        simkit.load("turtlebot3_empty", seed=3, overrides=[f"{friction}=0.03"]) as sim,
+        Recorder(sim, bag, topics=topics),
+    ):
+        for forward, turn_rate in ((0.22, 0.0), (-0.22, 0.0), (0.0, 2.8)):
+            sim.publish("/cmd_vel", {"linear": {"x": forward}, "angular": {"z": turn_rate}})
+            sim.run(0.5)
+    result = simkit.fit("turtlebot3_empty", bag, f"{friction}=0.01:0.6", compare="/joint_states", jobs=1)
+    assert result.values[friction] == pytest.approx(0.03, rel=0.01)

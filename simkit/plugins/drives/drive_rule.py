@@ -62,6 +62,7 @@ class DifferentialDriveRule(PluginRule):
     """
 
     odometry: OdometryRows
+    reads_poses = False
 
     def __init__(self, plugin: ModelPlugin, command_topic: str, wheels: Sequence[DriveWheel]) -> None:
         if any(wheel.joint.dof != 1 or not math.isfinite(wheel.radius) for wheel in wheels):

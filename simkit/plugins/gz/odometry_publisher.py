@@ -170,6 +170,8 @@ class OdometryPublisher(ModelPlugin):
 class OdometryPublisherRule(PluginRule):
     """Odometry from the true motion in n simulations."""
 
+    reads_poses = False
+
     def __init__(self, plugin: OdometryPublisher) -> None:
         self._plugin = plugin
 

@@ -243,8 +243,9 @@ class RenderedCamera(RenderedSampler):
         self._products = {**self._products, product: changed}
 
     def set_frame_id(self, frame: str) -> None:
-        """Set the frame of all messages."""
-        self.frame_id, self.optical_frame_id = frame, ""
+        """Set the frame of the messages of all later samples."""
+        super().set_frame_id(frame)
+        self.optical_frame_id = ""
 
     def optical_frames(self) -> dict[str, Pose]:
         return {self.optical_frame_id: OPTICAL_POSE} if self.optical_frame_id else {}

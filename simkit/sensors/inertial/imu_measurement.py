@@ -151,11 +151,6 @@ class ImuMeasurement(Sensor):
         self._more_noise = None if model is None else self._make_noise((model,) * 9, "more")
         self._covariances_of, self._revision = None, -1
 
-    def _make_pending_messages(self) -> None:
-        """Make the messages of earlier samples with the present reference and noise."""
-        for _, publisher, _ in self._publishers:
-            self.sim.communication.bus.settle_topic(publisher.topic)
-
     @property
     def has_plain_noise(self) -> bool:
         """True if the noise is the same function of a sample's number for all samples, without quantisation."""

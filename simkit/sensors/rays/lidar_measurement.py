@@ -514,14 +514,17 @@ class LidarMeasurement(Sensor):
 
     def add_ray_noise(self, stddev: float) -> None:
         """Set `ray_noise` with a standard deviation [m]."""
+        self._make_pending_messages()
         self.ray_noise = self._make_uniform_noise(NoiseModel(stddev=stddev), self.fan.count, "more on ranges")
 
     def add_range_noise(self, stddev: float) -> None:
         """Set `range_noise` with a standard deviation [m]."""
+        self._make_pending_messages()
         self.range_noise = self._make_noise((NoiseModel(stddev=stddev),), "nearest range")
 
     def add_point_noise(self, stddev: float) -> None:
         """Set `point_noise` with a standard deviation, in m for positions and in the unit of intensity."""
+        self._make_pending_messages()
         self.point_noise = self._make_uniform_noise(NoiseModel(stddev=stddev), 4 * self.fan.count, "points")
 
 

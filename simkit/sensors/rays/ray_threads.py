@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from concurrent.futures import Future, ThreadPoolExecutor, wait
+from contextlib import contextmanager, suppress
 from typing import Final
 
 from simkit.sensors.cameras.rendering.render_thread import usable_cores
@@ -37,11 +37,17 @@ class RayThreads:
 
     def run(self, jobs: Sequence[Callable[[], None]]) -> None:
         """Run jobs that do not depend on each other: the first in this thread, each other one in its own."""
-        pending = [self._threads().submit(job) for job in jobs[1:]]
-        if jobs:
-            jobs[0]()
-        for job in pending:
-            job.result()
+        pending: list[Future[None]] = []
+        try:
+            with suppress(RuntimeError):  # an interpreter that is ending starts no thread
+                for job in jobs[1:]:
+                    pending.append(self._threads().submit(job))
+            for job in (*jobs[:1], *jobs[1 + len(pending) :]):
+                job()
+        finally:  # also after an error or Ctrl-C, because the threads write into arrays that the next fan uses
+            wait(pending)
+        for result in pending:
+            result.result()
 
     def _threads(self) -> ThreadPoolExecutor:
         if self._pool is None or self._process != os.getpid():  # a fork has no threads

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import os
 import pathlib
+import subprocess
+import sys
+import threading
 from typing import Any
 
 import numpy as np
@@ -114,6 +117,38 @@ def test_the_error_of_a_job_reaches_the_caller() -> None:
     with pytest.raises(ValueError, match="job"):
         RayThreads().run([lambda: done.append(1), fail])
     assert done == [1]
+
+
+def test_an_error_of_the_first_job_is_raised_when_no_other_job_writes_any_more() -> None:
+    began, may_end, done = threading.Event(), threading.Event(), []
+
+    def slow() -> None:
+        began.set()
+        may_end.wait()
+        done.append(1)
+
+    def fail() -> None:
+        began.wait()
+        threading.Timer(0.01, may_end.set).start()
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        RayThreads().run([fail, slow])
+    assert done == [1]
+
+
+def test_rays_are_cast_while_the_interpreter_ends() -> None:
+    program = """if True:
+        import atexit
+        from simkit.sensors.rays.ray_threads import RayThreads
+        done = []
+        def at_exit():
+            RayThreads().run([lambda i=i: done.append(i) for i in range(3)])
+            print(done)
+        atexit.register(at_exit)
+    """
+    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert (ended.stdout, ended.stderr) == ("[0, 1, 2]\n", "")
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="the system has no fork")

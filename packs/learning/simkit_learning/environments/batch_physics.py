@@ -23,6 +23,7 @@ from simkit_learning.environments.sampled_rows import SampledRows
 Ids = npt.NDArray[np.intp]
 _STATE: Final = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 _BAD: Final = [BAD_POSITION, BAD_VELOCITY, BAD_ACCELERATION]
+_NONE: Final = int(mujoco.mjtStage.mjSTAGE_NONE)
 _SLEEP: Final = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
 _VELOCITIES, _ACCELERATIONS = int(mujoco.mjtStage.mjSTAGE_VEL), int(mujoco.mjtStage.mjSTAGE_ACC)
 
@@ -57,6 +58,7 @@ class BatchPhysics:
         self._servos, self._rules = self.view.servos, list(rules)
         for rule in self._rules:
             rule.bind(self.view)
+        self._reads_poses = any(rule.reads_poses for rule in self._rules)
         self._compute_limits()
 
     def _compute_limits(self) -> None:
@@ -141,7 +143,9 @@ class BatchPhysics:
                     *(source.next_stop(tick) for source in sampled),
                 ]
                 stop = self._next_stop(group, tick, stops)
-                stage = _ACCELERATIONS if stop == last and with_accelerations else _VELOCITIES
+                # other stops read joints only, whose values need no forward pass
+                is_read = self._reads_poses or stop == last or stop in stops[1:]
+                stage = _ACCELERATIONS if stop == last and with_accelerations else _VELOCITIES if is_read else _NONE
                 try:
                     self.batch.step(rows, stop - tick, stage)
                 except SimulationError as error:

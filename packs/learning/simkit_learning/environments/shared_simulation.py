@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 class SharedSimulation:
     """Simulation in which several environments take turns.
 
-    A turn takes as long as a step of a single environment and 0.3 ms for the change of the state. An environment takes
-    the memory of a state, a thousandth of that of a process.
+    A turn takes as long as a step of a single environment and about 1 ms for the change of the state. An environment
+    takes the memory of a state: 34 kB for a TurtleBot3.
 
     Args:
         spec: specification of the environments.

@@ -31,16 +31,8 @@ def clip(frame: Frame, points: Floats, values: Floats, faces: Integers) -> tuple
         Faces that stay whole; new corners with their values; for each three new corners the number of their face in
         `faces`, shape (j,).
     """
-    used = np.zeros(len(points), bool)
-    used[faces.ravel()] = True
-    corners = np.flatnonzero(used)
-    right, up, ahead = frame.in_camera(points[corners])
-    middle = frame.view.left + frame.half[0], frame.view.bottom + frame.half[1]
-    across, along = right - middle[0] * ahead, up - middle[1] * ahead
-    # one bit for each plane that a corner is outside of
-    bits = _bits(frame, across, along, ahead, 1.0, corners, len(points))
-    a, b, c = (bits.take(faces[:, k]) for k in range(3))
-    seen = np.flatnonzero((a & b & c) == 0)
+    corners, across, along, ahead = _places(frame, points, faces)
+    seen = np.flatnonzero(_are_inside(frame, across, along, ahead, corners, len(points), faces))
     bits = _bits(frame, across, along, ahead, _MARGIN, corners, len(points))
     a, b, c = (bits.take(faces[seen, k]) for k in range(3))
     crosses = (a | b | c) != 0
@@ -58,9 +50,41 @@ def clip(frame: Frame, points: Floats, values: Floats, faces: Integers) -> tuple
         away = _distances(frame, flat[:, 0], flat[:, 1], flat[:, 2], _MARGIN)[plane]
         data = _cut(data, away.reshape(-1, 3))
     flat = data.reshape(-1, data.shape[2])
+    middle = _middle(frame)
     new_points = frame.from_camera(flat[:, 0] + middle[0] * flat[:, 2], flat[:, 1] + middle[1] * flat[:, 2], flat[:, 2])
     sources: Integers = np.rint(flat[::3, -1]).astype(np.int32)
     return uncut_faces, new_points, flat[:, 3:-1].astype(np.float32), sources
+
+
+def are_in_view(frame: Frame, points: Floats, faces: Integers) -> npt.NDArray[np.bool_]:
+    """Return True for each face that is not outside of the image, and that `clip` therefore keeps, shape (m,)."""
+    corners, across, along, ahead = _places(frame, points, faces)
+    return _are_inside(frame, across, along, ahead, corners, len(points), faces)
+
+
+def _middle(frame: Frame) -> tuple[float, float]:
+    """Return the tangents of the middle of the image."""
+    return frame.view.left + frame.half[0], frame.view.bottom + frame.half[1]
+
+
+def _places(frame: Frame, points: Floats, faces: Integers) -> tuple[Array, Array, Array, Array]:
+    """Return the corners of faces, and their coordinates relative to the axis through the middle of the image [m]."""
+    used = np.zeros(len(points), bool)
+    used[faces.ravel()] = True
+    corners = np.flatnonzero(used)
+    right, up, ahead = frame.in_camera(points[corners])
+    middle = _middle(frame)
+    return corners, right - middle[0] * ahead, up - middle[1] * ahead, ahead
+
+
+def _are_inside(
+    frame: Frame, across: Array, along: Array, ahead: Array, corners: Array, count: int, faces: Integers
+) -> npt.NDArray[np.bool_]:
+    """Return False for each face whose corners are all outside of the same plane of the frustum."""
+    bits = _bits(frame, across, along, ahead, 1.0, corners, count)  # one bit for each plane a corner is outside of
+    a, b, c = (bits.take(faces[:, k]) for k in range(3))
+    inside: npt.NDArray[np.bool_] = (a & b & c) == 0
+    return inside
 
 
 def _distances(frame: Frame, right: Array, up: Array, ahead: Array, margin: float) -> tuple[Array, ...]:

@@ -58,7 +58,7 @@ class ColourImage:
         self._shapes, self._table, self._lamps, self._quads = shapes, table, lamps, quads
         self._textures, self._surroundings, self._shadows = textures, surroundings, shadows
         frame = shapes.frame
-        corners = shapes.corners(opaque, lamps, quads)
+        corners = shapes.in_view(shapes.corners(opaque, lamps, quads))
         self._light = CornerLight(table, lamps, frame.eye)
         layers = shapes.lit(corners, self._light)
         self._layers = len(layers)

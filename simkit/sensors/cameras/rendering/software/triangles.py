@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 
 from simkit.sensors.cameras.rendering.software import shape_meshes
-from simkit.sensors.cameras.rendering.software.clipping import clip
+from simkit.sensors.cameras.rendering.software.clipping import are_in_view, clip
 from simkit.sensors.cameras.rendering.software.flat_shapes import line_points, plane_points
 from simkit.sensors.cameras.rendering.software.frame import Frame
 from simkit.sensors.cameras.rendering.software.lamps import CornerLight, Lamp
@@ -190,6 +190,30 @@ class VisibleShapes:
             np.repeat(np.array(drawn_rows, np.int32), counts),
             np.concatenate(parts),
             np.concatenate(coordinates),
+        )
+
+    def in_view(self, corners: Corners) -> Corners:
+        """Return the corners without the faces that `triangles` would drop, so that no light is computed for them.
+
+        In a small image of a large world, these are more than half of all faces.
+        """
+        faces = corners.faces
+        doubtful = self.needs_clipping[corners.owners[faces[:, 0]]] if len(faces) else np.zeros(0, bool)
+        if not doubtful.any():
+            return corners
+        is_kept = ~doubtful
+        is_kept[doubtful] = are_in_view(self.frame, corners.points, faces[doubtful])
+        faces = faces[is_kept]
+        used = np.zeros(len(corners.points), bool)
+        used[faces.ravel()] = True
+        numbers = np.cumsum(used, dtype=np.int32) - np.int32(1)
+        return Corners(
+            corners.points[used],
+            corners.normals[used],
+            numbers.take(faces),
+            corners.owners[used],
+            corners.parts[used],
+            corners.coordinates[used],
         )
 
     def lit(self, corners: Corners, light: CornerLight) -> list[Floats]:
