@@ -17,8 +17,8 @@ Entry = Mapping[str, Any]
 _HEAD = """# Speed
 
 How fast simkit is, version by version, as the ratio to MuJoCo alone on the same compiled model. Both take turns in one
-process. A ratio of 1 is the speed of MuJoCo; less is faster. In a ratio of 2, half of the time is the physics and half is
-what a simulator adds: plugins, sensors with their noise, and messages.
+process. A ratio of 1 is the speed of MuJoCo; less is faster. In a ratio of 2, half of the time is the physics, and half
+is what a simulator adds: plugins, sensors with their noise, and messages.
 
 The robot of the first rows is a TurtleBot3 waffle in `turtlebot3_world`, with steps of 1 ms. "Main job" is its drive of
 36 s by `worlds/turtlebot3_world_drive.yaml`; recorded, it writes nine topics to a bag. [The other
@@ -80,7 +80,8 @@ def last_entry(entries: Sequence[Entry]) -> str:
         "## Last entry\n",
         f"Commit `{entry['commit'][:10]}` of {entry['date'][:10]}, {machine(entry)}. Times are of a step unless the",
         "row names something else; one row alone: `python benchmarks/history measure --case NAME`.\n",
-        "| name | work of simkit | work of MuJoCo | time of simkit | time of MuJoCo | ratio |\n|---|---|---|---|---|---|",
+        "| name | work of simkit | work of MuJoCo | time of simkit | time of MuJoCo | ratio |",
+        "|---|---|---|---|---|---|",
     ]
     for name, case in CASES.items():
         if found := entry["ratios"].get(name):

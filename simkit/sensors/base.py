@@ -21,10 +21,12 @@ from simkit.errors import InputError
 from simkit.linear_algebra import matmul
 from simkit.msgs.message_types import M, Message
 from simkit.msgs.topic_names import valid_topic
+from simkit.packs import is_shipped
 from simkit.params import Params
 from simkit.pose import Pose, Vector
 from simkit.runtime import Simulation
 from simkit.runtime.array_rules import CannotBatchError, SensorRule, array_rule_of
+from simkit.runtime.communication.publisher import Tally
 from simkit.runtime.engine.random_streams import RandomStreams
 from simkit.runtime.engine.simulated_time import TickGrid
 from simkit.scene import SceneSensor
@@ -258,8 +260,21 @@ class Sensor(Sampler, Generic[M]):
             publisher = self.sim.communication.bus.advertise(
                 topic, spec.type_name, check=check, pending=self._process_pending
             )
+            publisher.tally = self.tally
             self._topics.setdefault(product, publisher.topic)
             self._publishers.append((product, publisher, spec.needs_reading))
+
+    def tally(self) -> Tally | None:
+        """Return the number of samples, each of which is a message; None if a sample may have no message.
+
+        It is also None for a kind of the user: its measurements are made when the messages are counted, so that an
+        error in them ends the run.
+        """
+        selects = self._selects_ticks or self._selects_products_of_sample or self._overrides("sample")
+        is_irregular = self._delayed is not None or self.lasting is not None or self.is_manual
+        if selects or is_irregular or self._message_artefacts or not is_shipped(type(self)):
+            return None
+        return self.count, self._time_ns, self.timetable()
 
     # ------------------------------------------------------------------ methods that the simulation calls
 

@@ -17,6 +17,7 @@ from simkit.runtime.communication.subscription import Callback, LazyMessage, Pen
 if TYPE_CHECKING:
     from simkit.runtime.communication.command_queue import CommandQueue
     from simkit.runtime.communication.subscription import TopicReaders
+    from simkit.runtime.engine.scheduler import Timetable
 
 ROSOUT: Final = "/rosout"
 KEPT_LOG_MESSAGES: Final = 1000
@@ -24,6 +25,11 @@ KEPT_LOG_MESSAGES: Final = 1000
 
 Check = Callable[[], None]
 """Function that raises a SimkitError if an owner cannot make its messages on this machine."""
+
+
+Tally = tuple[int, int, "Timetable | None"]
+"""Number of messages since t = 0 of a publisher whose messages follow from the time alone, time [ns] of the newest,
+and the ticks of the messages (None for every step). With no reader, it is the number that a reader would receive."""
 
 
 class PublishingBus(JournalKeeper, Protocol):
@@ -57,6 +63,8 @@ class Publisher(InProcess, Generic[M]):
         check: function that is called for every new reader; None if the owner can always make its messages.
         present: function that returns the message of the present state, for a reader that cannot wait for the next one;
             None if the owner has no such function. It changes nothing.
+        tally: function that returns the number of messages, also while nobody reads them, or None if the messages
+            must be received to be counted; None if the owner has no such function.
         node: name of the node of a program that publishes here; empty for any other publisher.
     """
 
@@ -73,6 +81,7 @@ class Publisher(InProcess, Generic[M]):
         "owner",
         "pending",
         "present",
+        "tally",
         "topic",
         "type_name",
     )
@@ -95,6 +104,7 @@ class Publisher(InProcess, Generic[M]):
         self.history: deque[Message] | None = None
         self.active, self.node = True, ""
         self.present: Callable[[], Message] | None = None
+        self.tally: Callable[[], Tally | None] | None = None
 
     @property
     def wanted(self) -> bool:
