@@ -40,6 +40,10 @@ from simkit.sensors.topics_and_frames import check_topic, entity_topic, read_fra
 __all__ = ["Product", "Sample", "Sensor"]
 
 
+_NAMES_FOR_USERS = (
+    *("name", "scoped", "kind", "topic", "topics", "frame_id", "update_rate", "set_rate", "pose"),
+    *("latest", "truth", "noise", "options", "sim"),
+)
 _COMMON_ELEMENTS = ("visualize", "pose", "update_rate", "topic")
 _RATE_TYPE = "std_msgs/msg/Float64"
 _BODY = int(mujoco.mjtObj.mjOBJ_XBODY)
@@ -108,6 +112,12 @@ class Sensor(Sampler, Generic[M]):
             params.diagnostics.note("SK-SENSOR-025", message, params.block("enable_metrics").where, "simkit bench")
         self.timing = read_timing(params, scene.rate)
         check_topic(self.timing.set_rate_topic, params, "set_rate_topic")
+
+    def __dir__(self) -> list[str]:
+        """Return the names that users read or call, for completion: those of all kinds and those that the kind adds."""
+        kind = type(self).__mro__[: type(self).__mro__.index(Sensor)]
+        own = {name for cls in kind for name in vars(cls) if not name.startswith("_") and not hasattr(Sensor, name)}
+        return sorted({*_NAMES_FOR_USERS, *own})
 
     # ------------------------------------------------------------------ methods that a kind overrides
 

@@ -321,6 +321,15 @@ def test_a_sensor_of_another_class_than_the_given_one_is_an_error():
             sim.sensor("height", type=Lidar)
 
 
+def test_completion_of_a_sensor_lists_what_users_need():
+    with load(TWO_WHEELS) as sim:
+        names = dir(sim.sensor("height"))
+        assert {"latest", "truth", "pose", "noise", "set_rate"} <= set(names)
+        assert not {"attach", "bind", "sample_only_while", "_sample"} & set(names)
+        assert len(names) < 25
+        assert all(hasattr(sim.sensor("height"), name) for name in names)
+
+
 class Counter(simkit.WorldPlugin):
     """Count the calls of its hooks."""
 
