@@ -1,4 +1,4 @@
-"""Users' names that packs bring, such as `simkit.sweep`: the only module of the core that names packs.
+"""Users' names of packs and of folders above the runtime: the only module of the core that names packs.
 
 Each name has its type for editors and mypy. Its module is imported on first use. Without its pack, the error says which
 pack is missing.
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 MODULES: Final[dict[str, str]] = {
     "sim.add_node": "simkit_nodes.lock_step",
+    "sim.run_until": "simkit.testing.conditions.opened_condition",
     "sim.set_ros_parameters": "simkit_nodes.lock_step",
     "sim.view": "simkit_view.view.script_view",
     "simkit.compare": "simkit_identification.comparison.compare",
@@ -36,7 +37,7 @@ MODULES: Final[dict[str, str]] = {
     "simkit.launch": "simkit_launch.launch",
     "simkit.sweep": "simkit_learning.sweeps.sweep",
 }
-"""Module of a pack by the user's name that needs it."""
+"""Module of a pack, or of a folder above the runtime, by the user's name that needs it."""
 
 
 def pack_module(name: str) -> Any:

@@ -46,8 +46,13 @@ def test_the_readme_has_at_most_150_lines() -> None:
 
 
 def test_every_page_is_named_by_an_index() -> None:
-    """A page is linked from the index of its folder, from the README of its pack or from the index of all pages."""
-    indexes = [*ROOT.glob("packs/*/README.md"), ROOT / "docs" / "index.md", ROOT / "docs" / "sensors" / "index.md"]
+    """A page is linked from an index of its folder, the README of its pack, a start page or the index of all pages."""
+    indexes = [
+        *ROOT.glob("packs/*/README.md"),
+        *ROOT.glob("docs/start/*.md"),
+        ROOT / "docs" / "index.md",
+        ROOT / "docs" / "sensors" / "index.md",
+    ]
     linked = {
         (index.parent / target.split("#")[0]).resolve()
         for index in indexes

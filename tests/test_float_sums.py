@@ -63,7 +63,7 @@ INTEGERS = {
     ): "bytes",
     ("recording/export/bag_folder.py", "t.count for t in topics"): "messages",
     ("recording/graphs/layered_layout.py", "position[neighbour] for neighbour in sides[name]"): "positions in a column",
-    ("recording/topic_counts.py", "row.count for row in self._rows.values()"): "messages",
+    ("recording/topic_counts.py", "row.count for row in self.rows"): "messages",
     ("runtime/communication/topic_bus.py", "li.active for li in self._listeners.get(topic, ())"): "active subscribers",
     ("simkit_verification/testing/bundles/bundle_writer.py", "entry['size'] for entry in table.values()"): "bytes",
     ("testing/golden/array_packing.py", "_size(entry) for entry in self._entries"): "bytes",

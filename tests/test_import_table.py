@@ -103,7 +103,7 @@ PACK_NAMES = {"simkit.facade": "types and modules of the users' names that packs
 FRONT = {"__init__", "__main__"}
 """Modules that only hand on what a user imports or runs."""
 
-RE_EXPORTS = {"simkit.extend", "simkit.facade", "simkit.recording", "simkit.testing"}
+RE_EXPORTS = {"simkit.extend", "simkit.facade", "simkit.recording", "simkit.sensors", "simkit.testing"}
 """Modules that give other modules' names to users; their imports for type checkers make no circle."""
 
 HEAVY = {

@@ -34,6 +34,7 @@ OWN_FILES = {
     "msgs/shipped_interfaces.py": "data of the package",
     "packs.py": "entry points that pip has installed",
     "packs/authoring/simkit_authoring/plugin_reload.py": "modules that Python has imported already",
+    "packs/identification/simkit_identification/result_texts.py": "templates of the pack",
     "packs/nodes/simkit_nodes/private_packages.py": "modules that pip has installed",
     "packs/ros/simkit_ros/type_support.py": "/proc/self/maps",
     "registry.py": "modules of the package",

@@ -25,6 +25,7 @@ BY_THEIR_NAMES = {
     "lifecycle",
     "loaders.resources.bundled_models",
     "msgs.goal_status",
+    "sensors",
     "sensors.presets",
     "yaml_reader",
 }

@@ -17,16 +17,21 @@ Entry = Mapping[str, Any]
 _HEAD = """# Speed
 
 How fast simkit is, version by version, as the ratio to MuJoCo alone on the same compiled model. Both take turns in one
-process. A ratio of 1 is the speed of MuJoCo; less is faster. `python benchmarks/history page` writes this page.
+process. A ratio of 1 is the speed of MuJoCo; less is faster. In a ratio of 2, half of the time is the physics, and half
+is what a simulator adds: plugins, sensors with their noise, and messages.
+
+The robot of the first rows is a TurtleBot3 waffle in `turtlebot3_world`, with steps of 1 ms. "Main job" is its drive of
+36 s by `worlds/turtlebot3_world_drive.yaml`; recorded, it writes nine topics to a bag. [The other
+benchmarks](../benchmarks/README.md) measure parts in more detail. Their ratios differ from those of this page where
+their robot stands still, their time is divided otherwise, or other programs ran.
+
+Each entry in [benchmarks/history/entries](../benchmarks/history/entries) names its commit, processor and versions:
 
     python benchmarks/history measure          # measures the last commit and adds an entry
     python benchmarks/history measure COMMIT   # an older one
     python benchmarks/history check            # exit 1 if a ratio grew by 8 % from the commit before
     python benchmarks/history check BEFORE AFTER --case main_job
-
-Each entry in [benchmarks/history/entries](../benchmarks/history/entries) names its commit, processor and versions. The
-robot of the first rows is a TurtleBot3 waffle in `turtlebot3_world`, with steps of 1 ms. [The other
-benchmarks](../benchmarks/README.md) measure parts in more detail.
+    python benchmarks/history page             # writes this page
 """
 
 
@@ -75,7 +80,8 @@ def last_entry(entries: Sequence[Entry]) -> str:
         "## Last entry\n",
         f"Commit `{entry['commit'][:10]}` of {entry['date'][:10]}, {machine(entry)}. Times are of a step unless the",
         "row names something else; one row alone: `python benchmarks/history measure --case NAME`.\n",
-        "| name | simkit | beside | simkit | MuJoCo | ratio |\n|---|---|---|---|---|---|",
+        "| name | work of simkit | work of MuJoCo | time of simkit | time of MuJoCo | ratio |",
+        "|---|---|---|---|---|---|",
     ]
     for name, case in CASES.items():
         if found := entry["ratios"].get(name):
@@ -109,9 +115,9 @@ def peers(figures: Mapping[str, Any]) -> str:
     """Return the table of other simulators."""
     lines = [
         "## Beside other simulators\n",
-        'Published figures are of the machines of their authors; the column "of whom" says so. Measured figures are of',
+        'Published figures are of the machines of their authors; the column "source" says so. Measured figures are of',
         "one machine with two shared cores, both sides in turn.\n",
-        "| what | simulator | figure | simkit | of whom | command |\n|---|---|---|---|---|---|",
+        "| work | simulator | its figure | figure of simkit | source | command |\n|---|---|---|---|---|---|",
     ]
     for row in figures["peer"]:
         command = f"`{row['command']}`" if "command" in row else ""
@@ -122,7 +128,7 @@ def peers(figures: Mapping[str, Any]) -> str:
 
 def memory(figures: Mapping[str, Any]) -> str:
     """Return the table of memory and sizes."""
-    lines = ["## Memory and size\n", "| what | figure | command |\n|---|---|---|"]
+    lines = ["## Memory and size\n", "| world or file | figure | command |\n|---|---|---|"]
     lines += [f"| {row['what']} | {row['figure']} | `{row['command']}` |" for row in figures["memory"]]
     return "\n".join([*lines, "", figures["memory_notes"].strip()]) + "\n"
 

@@ -32,6 +32,13 @@ from simkit.msgs.wide_strings import with_wide_strings
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
+    from typing_extensions import TypeVar  # the types of the standard library contain it
+
+    M = TypeVar("M", default=Any)
+else:
+    from typing import TypeVar
+
+    M = TypeVar("M")  # class of a message; Any if it is not given
 
 # Message of any type: an object of a dataclass that rosbags creates at run time.
 Message = Any
@@ -158,6 +165,38 @@ def own_package_hint(package: str, names: Iterable[str]) -> str:
     if any(name.startswith(f"{package}/") for name in names):
         return ""
     return f"; if the package {package!r:.80} is yours, add its folder with --interfaces DIR"
+
+
+def named_type(type_: str | type) -> str:
+    """Return the name of a message type, given by its name or by its class.
+
+    Raises:
+        MessageError: the class is not that of a message.
+    """
+    if not isinstance(type_, type):
+        return type_
+    name = getattr(type_, "__msgtype__", None)
+    if not isinstance(name, str):
+        raise MessageError(f"{type_.__name__} is not a class of messages; use one of simkit.msgs, such as LaserScan")
+    return name
+
+
+def interface_type(type_: str | type, part: str) -> str:
+    """Return the name of a service or action type, given by its name or by the class of its first part.
+
+    Args:
+        type_: name such as `std_srvs/srv/SetBool`, or class such as `msgs.SetBool_Request`.
+        part: name of the part whose class is accepted: "Request" or "Goal".
+
+    Raises:
+        MessageError: the class is not that of such a part.
+    """
+    if not isinstance(type_, type):
+        return type_
+    name = named_type(type_)
+    if not name.endswith(f"_{part}"):
+        raise MessageError(f"{name} is no class of a {part.lower()}; use one of simkit.msgs that ends with _{part}")
+    return name.removesuffix(f"_{part}")
 
 
 @cache

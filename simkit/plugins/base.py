@@ -15,9 +15,10 @@ import abc
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Final, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Literal, TypeVar, overload
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where
+from simkit.msgs.message_types import named_type
 from simkit.params import Params
 from simkit.plugins.attribute_state import copy_attributes, restore_attributes
 from simkit.plugins.endpoints import Endpoint
@@ -30,6 +31,7 @@ from simkit.topic_logger import TopicLogger
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.msgs import Message
+    from simkit.msgs.message_types import M
     from simkit.run_spec import PluginErrorPolicy
     from simkit.runtime import Simulation
     from simkit.runtime.array_rules import PluginRule
@@ -156,22 +158,57 @@ class Plugin(abc.ABC):
 
     # ------------------------------------------------------------------ methods that a plugin's author calls
 
-    def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Publisher:
-        """Open a publisher; `topic` is expanded and remapped as in ROS, `type_name` is like `nav_msgs/msg/Odometry`."""
+    @overload
+    def advertise(self, topic: str, type_name: type[M], *, latched: bool = False) -> Publisher[M]: ...
+
+    @overload
+    def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Publisher[Any]: ...
+
+    def advertise(self, topic: str, type_name: str | type, *, latched: bool = False) -> Publisher[Any]:
+        """Open a publisher; `topic` is expanded and remapped as in ROS.
+
+        Args:
+            topic: name of the topic.
+            type_name: type, such as `nav_msgs/msg/Odometry` or `msgs.Odometry`.
+            latched: send the last message to a later subscriber (transient local).
+        """
+        type_name = named_type(type_name)
         with self.sim.communication.bus.owned_by(self):
             return self.sim.communication.bus.advertise(self.ros.topic(topic), type_name, latched=latched)
 
-    def listen(self, topic: str, types: str | Sequence[str], callback: Callable[[Message], object]) -> Listener:
+    @overload
+    def listen(self, topic: str, types: type[M], callback: Callable[[M], object]) -> Listener: ...
+
+    @overload
+    def listen(self, topic: str, types: str | Sequence[str], callback: Callable[[Message], object]) -> Listener: ...
+
+    def listen(self, topic: str, types: str | type | Sequence[str], callback: Callable[[Message], object]) -> Listener:
         """Call `callback(message)` between two steps for each message on `topic`; it may have any of the `types`."""
+        types = named_type(types) if isinstance(types, type) else types
         name = self.ros.topic(topic)
         guarded = self.sim.engine.faults.guard(self, f"its callback for {name!r}", callback)
         with self.sim.communication.bus.owned_by(self):
             kinds = (types,) if isinstance(types, str) else types
             return self.sim.communication.bus.listen(name, kinds, guarded)
 
+    @overload
+    def subscribe(
+        self, topic: str, callback: Callable[[M], None] | None = None, keep: int | None = None, *, type: type[M]
+    ) -> Subscription[M]: ...
+
+    @overload
     def subscribe(
         self, topic: str, callback: Callable[[Message], None] | None = None, keep: int | None = None
-    ) -> Subscription:
+    ) -> Subscription[Any]: ...
+
+    def subscribe(
+        self,
+        topic: str,
+        callback: Callable[[Message], None] | None = None,
+        keep: int | None = None,
+        *,
+        type: type | None = None,
+    ) -> Subscription[Any]:
         """Receive each message on a topic at the moment of its publication.
 
         Use this method for sensor readings. Use `listen` for commands: its callbacks run between two steps.
@@ -180,29 +217,54 @@ class Plugin(abc.ABC):
             topic: name of the topic, expanded and remapped as in ROS.
             callback: function called with each message.
             keep: number of the newest messages to store in `.messages`.
+            type: class that the messages must have, such as `msgs.LaserScan`; None for any.
         """
         name = self.ros.topic(topic)
         guarded = callback and self.sim.engine.faults.guard(self, f"its callback for {name!r}", callback)
         with self.sim.communication.bus.owned_by(self):
-            subscription = self.sim.subscribe(name, guarded, keep)
+            subscription = self.sim.communication.subscribe(name, guarded, keep, "stop", type)
         subscription.owner = self  # one that is removed with its model receives nothing
         return subscription
 
-    def offer(self, service: str, type_name: str, handler: Callable[[Message], object]) -> Service:
+    @overload
+    def offer(self, service: str, type_name: type[M], handler: Callable[[M], object]) -> Service: ...
+
+    @overload
+    def offer(self, service: str, type_name: str, handler: Callable[[Message], object]) -> Service: ...
+
+    def offer(self, service: str, type_name: str | type, handler: Callable[[Message], object]) -> Service:
         """Open a service.
 
         Args:
             service: name of the service, expanded and remapped as in ROS.
-            type_name: type of the service, such as `std_srvs/srv/Trigger`.
+            type_name: type of the service, such as `std_srvs/srv/Trigger`, or the class of its requests.
             handler: function from the request to the response: a message, a dict of fields, or None for all zeros.
         """
         with self.sim.communication.bus.owned_by(self):
-            return self.sim.offer(self.ros.topic(service), type_name, handler)
+            return self.sim.communication.services.offer(self.ros.topic(service), type_name, handler)
 
+    @overload
+    def act(
+        self,
+        action: str,
+        type_name: type[M],
+        on_goal: Callable[[GoalHandle[M]], None],
+        on_cancel: Callable[[GoalHandle[M]], bool | None] | None = None,
+    ) -> Action: ...
+
+    @overload
     def act(
         self,
         action: str,
         type_name: str,
+        on_goal: Callable[[GoalHandle], None],
+        on_cancel: Callable[[GoalHandle], bool | None] | None = None,
+    ) -> Action: ...
+
+    def act(
+        self,
+        action: str,
+        type_name: str | type,
         on_goal: Callable[[GoalHandle], None],
         on_cancel: Callable[[GoalHandle], bool | None] | None = None,
     ) -> Action:
@@ -210,7 +272,7 @@ class Plugin(abc.ABC):
 
         Args:
             action: name of the action, expanded and remapped as in ROS.
-            type_name: type of the action.
+            type_name: type of the action, or the class of its goals.
             on_goal: function called between two steps with each new goal; it may call the goal's `reject`. An accepted
                 goal is active until a hook calls the goal's `succeed`, `abort` or `canceled`. A hook may report
                 progress with `publish_feedback`.

@@ -20,19 +20,15 @@ from simkit.runtime.communication.journal import journaled
 from simkit.runtime.communication.large_commands import forget_commands, large_commands
 from simkit.runtime.communication.script_graph import ScriptGraph
 from simkit.runtime.communication.topic_bus import TopicBus
-from simkit.runtime.contact.collision_contacts import Contact, list_contacts
 from simkit.runtime.engine.engine import Engine
 from simkit.runtime.engine.engine_state import EngineCallbacks
 from simkit.runtime.engine.plugin_faults import add_driver_hints
 from simkit.runtime.engine.simulated_time import Clock
 from simkit.runtime.engine.snapshot import Snapshot, Snapshots, Stateful
 from simkit.runtime.engine.step_tasks import StepTasks
-from simkit.runtime.handles.joint import Joint
-from simkit.runtime.handles.light import Light
-from simkit.runtime.handles.link import Link
 from simkit.runtime.handles.model import Model
-from simkit.runtime.handles.visual import Visual
 from simkit.runtime.portable_snapshot import PortableSnapshot, pack_snapshot, unpack_snapshot
+from simkit.runtime.script_entities import ScriptEntities
 from simkit.runtime.world_contents import WorldContents
 from simkit.runtime.world_control import Page, Programs, WorldControl
 from simkit.runtime.world_source import LoadedState, WorldSource
@@ -52,7 +48,7 @@ if TYPE_CHECKING:
 _ASYNC_SLICE: Final = 0.02  # [s] wall time in which `run_async` does not return to the event loop
 
 
-class Simulation(ScriptGraph, InProcess):
+class Simulation(ScriptEntities, ScriptGraph, InProcess):
     """Loaded world, made by `simkit.load`; also a context manager.
 
     All readings show the state at `time`.
@@ -99,7 +95,7 @@ class Simulation(ScriptGraph, InProcess):
         self._bus = bus = TopicBus(diagnostics, lambda: self.time, remapping)
         callbacks = EngineCallbacks(
             fill=self._fill,
-            basis=self._basis,
+            schedule_inputs=self._schedule_inputs,
             velocity_limit=lambda name, axis: self.contents.handles.velocity_limit(name, axis),
             set_active=lambda owners: self.communication.set_active(owners),
             abandon=lambda owner, reason: self.communication.abandon(owner, reason),
@@ -180,10 +176,21 @@ class Simulation(ScriptGraph, InProcess):
             slice_ = max(1, int(slice_ * min(share, 2.0)))
             await sleep(0)
 
-    def run_until(self, condition: Callable[[Simulation], bool], timeout: float) -> bool:
-        """Step until `condition(sim)` holds after a step; return False if `timeout` [s] passed first."""
-        check_function(condition, "condition")
+    def run_until(self, condition: Callable[[Simulation], bool] | str, timeout: float) -> bool:
+        """Step until a condition holds after a step; return False if `timeout` [s] passed first.
+
+        Args:
+            condition: function of the simulation, or text such as `"pose('bot').x > 0.5"`, as in scenario files.
+            timeout: longest simulated time [s].
+
+        Raises:
+            InputError: the text has a syntax error or an unknown name, or is not true or false (SK-COND-…).
+        """
         self.engine.check_open()
+        if isinstance(condition, str):
+            with pack_module("sim.run_until").opened_condition(self, condition) as holds:
+                return self.run_until(holds, timeout)
+        check_function(condition, "condition")
         for _ in range(self.engine.clock.checked_ticks(timeout, "timeout")):
             self.step()
             if condition(self):
@@ -320,41 +327,6 @@ class Simulation(ScriptGraph, InProcess):
         """World as the file describes it."""
         return self.engine.world
 
-    @property
-    def models(self) -> dict[str, Model]:
-        """Top-level models by name."""
-        self.engine.check_open()
-        return self.contents.models
-
-    def model(self, name: str) -> Model:
-        """Return a model by scoped name; a KeyError suggests the closest name."""
-        return self.contents.open_handles.model(name)
-
-    def link(self, name: str) -> Link:
-        """Return a link by scoped name; a KeyError suggests the closest name."""
-        return self.contents.open_handles.link(name)
-
-    def joint(self, name: str) -> Joint:
-        """Return a joint by scoped name; a KeyError suggests the closest name."""
-        return self.contents.open_handles.joint(name)
-
-    def sensor(self, name: str) -> Any:
-        """Return a sensor by scoped name; a KeyError suggests the closest name."""
-        return self.contents.open_handles.find("sensor", name)
-
-    def light(self, name: str) -> Light:
-        """Return a light by scoped name; a KeyError suggests the closest name."""
-        return self.contents.open_handles.light(name)
-
-    def visual(self, name: str) -> Visual:
-        """Return a visual by scoped name; a KeyError suggests the closest name."""
-        return self.contents.open_handles.find_visual(name)
-
-    def contacts(self, model: Model | str | None = None) -> list[Contact]:
-        """Return the contacts of a model, also with itself, or of all; a KeyError suggests the closest name."""
-        name = None if model is None else self.model(cast("str", getattr(model, "scoped", model))).scoped
-        return list_contacts(self.engine.compiled, self.engine.physics.awake_data(), name)
-
     def spawn(self, source: object, name: str | None = None, pose: Pose | None = None) -> Model:
         """Add a model during the run; everything else keeps its state and its handles.
 
@@ -385,12 +357,6 @@ class Simulation(ScriptGraph, InProcess):
         self.control.gravity = value
 
     @property
-    def plugins(self) -> dict[str, Any]:
-        """Plugins of the file by scoped name."""
-        self.engine.check_open()
-        return self.contents.plugins
-
-    @property
     def paused(self) -> bool:
         """True while the world is paused; settable. A pause does not stop a script that calls `step` or `run`."""
         return self.control.paused
@@ -418,9 +384,9 @@ class Simulation(ScriptGraph, InProcess):
         self._tasks.fill(scheduler, *self.contents.handles.limited_dofs())
         self.communication.on_demand.fill(scheduler)
 
-    def _basis(self) -> object:
+    def _schedule_inputs(self) -> object:
         """Return what `_fill` reads and a restored state may change; None if each state needs new tasks."""
-        return self._tasks.basis(self.contents.handles.velocity_limits(), self.communication.on_demand.wanted())
+        return self._tasks.inputs(self.contents.handles.velocity_limits(), self.communication.on_demand.wanted())
 
     def view(self, port: int = 0) -> str:
         """Show the simulation in a browser; `step` and `run` then update the page.

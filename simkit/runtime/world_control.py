@@ -469,6 +469,7 @@ def _reset_physics(engine: Engine, loaded: Snapshot) -> None:
     data.ctrl[:], data.eq_active[:] = fresh.ctrl, fresh.eq_active
     data.qacc_warmstart[:] = data.qfrc_applied[:] = 0.0
     data.xfrc_applied[:] = physics.persistent_wrenches
+    assert isinstance(loaded.data, mujoco.MjData)  # the loaded state is not compact
     copy_state(loaded.structure.compiled.model, loaded.data, model, data, ("qvel",))
     physics.push_once(False)
     physics.changed_model()

@@ -156,6 +156,7 @@ def _write_first_state(loaded: Snapshot, compiled: Compiled) -> None:
     """
     before, data = loaded.structure.compiled, compiled.data
     positions = data.qpos.copy()
+    assert isinstance(loaded.data, mujoco.MjData)  # the loaded state is not compact
     mujoco.mj_copyData(data, compiled.model, loaded.data)
     if not np.array_equal(before.model.qpos0, compiled.model.qpos0):
         first = mujoco.MjData(before.model)

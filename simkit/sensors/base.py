@@ -6,7 +6,7 @@ import abc
 import math
 from collections.abc import Callable, Mapping, Sequence
 from itertools import chain
-from typing import Any, ClassVar, TypeVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 import mujoco
 import numpy as np
@@ -19,12 +19,14 @@ from simkit.diagnostic_record import TEXT_SOURCE
 from simkit.diagnostics import Diagnostics, Severity, Where
 from simkit.errors import InputError
 from simkit.linear_algebra import matmul
-from simkit.msgs.message_types import Message
+from simkit.msgs.message_types import M, Message
 from simkit.msgs.topic_names import valid_topic
+from simkit.packs import is_shipped
 from simkit.params import Params
 from simkit.pose import Pose, Vector
 from simkit.runtime import Simulation
 from simkit.runtime.array_rules import CannotBatchError, SensorRule, array_rule_of
+from simkit.runtime.communication.publisher import Tally
 from simkit.runtime.engine.random_streams import RandomStreams
 from simkit.runtime.engine.simulated_time import TickGrid
 from simkit.scene import SceneSensor
@@ -45,8 +47,10 @@ _BODY = int(mujoco.mjtObj.mjOBJ_XBODY)
 AnyNoiseProcess = TypeVar("AnyNoiseProcess", bound=NoiseProcess)
 
 
-class Sensor(Sampler):
+class Sensor(Sampler, Generic[M]):
     """Sensor of a model. To add a kind: derive, set `kinds`, override `read_options` and implement `measure`.
+
+    The type parameter is the class of `latest` and `truth`, with the kind's default topics.
 
     Attributes:
         kinds: `<sensor type>` names in files.
@@ -165,7 +169,7 @@ class Sensor(Sampler):
         return next(iter(self._topics.values()), "")
 
     @property
-    def latest(self) -> Message:
+    def latest(self) -> M | Any:  # `Any` stands for None, so that a type checker asks for no check
         """Newest message that has arrived, or None before the first."""
         self.sim.engine.check_open()
         if self._sample is None:
@@ -173,7 +177,7 @@ class Sensor(Sampler):
         return self._message(self._sample, next(iter(self._topics)))
 
     @property
-    def truth(self) -> Message:
+    def truth(self) -> M | Any:  # as `latest`
         """Newest message without noise, or None before the first."""
         self.sim.engine.check_open()
         sample = self._finished_sample()
@@ -256,8 +260,21 @@ class Sensor(Sampler):
             publisher = self.sim.communication.bus.advertise(
                 topic, spec.type_name, check=check, pending=self._process_pending
             )
+            publisher.tally = self.tally
             self._topics.setdefault(product, publisher.topic)
             self._publishers.append((product, publisher, spec.needs_reading))
+
+    def tally(self) -> Tally | None:
+        """Return the number of samples, each of which is a message; None if a sample may have no message.
+
+        It is also None for a kind of the user: its measurements are made when the messages are counted, so that an
+        error in them ends the run.
+        """
+        selects = self._selects_ticks or self._selects_products_of_sample or self._overrides("sample")
+        is_irregular = self._delayed is not None or self.lasting is not None or self.is_manual
+        if selects or is_irregular or self._message_artefacts or not is_shipped(type(self)):
+            return None
+        return self.count, self._time_ns, self.timetable()
 
     # ------------------------------------------------------------------ methods that the simulation calls
 

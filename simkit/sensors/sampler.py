@@ -207,14 +207,19 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
             # measured in the present data, whose forward pass the next step needs anyway
             sample.raw, sample.held = self._capture_now(tick), None
 
-    def _publish_directly(self, tick: int) -> None:
-        """Publish the message that `make_directly` returns for a new sample."""
+    def _publish_served(self, tick: int) -> bool:
+        """Publish the message that the batch or `make_directly` makes for a new sample; false if there is none."""
+        if self.batch is not None and self.batch.publish_sample(self, tick):
+            return True
+        if not self._is_direct:
+            return False
         index, time_ns = self._index + 1, self.sim.engine.clock.time_ns(tick)
         raw = self._capture_now(tick)
         sample = Sample(index, time_ns)
         sample.raw = raw  # read by `latest` and `truth`
         message = sample.messages[next(iter(self._products))] = self.make_directly(raw, index, time_ns)
         self.publish_made(sample, message)
+        return True
 
     def publish_made(self, sample: Sample, message: Message) -> None:
         """Take over a sample whose only message a batch has made, and publish it."""
@@ -281,12 +286,8 @@ class Sampler(NoiseKeeper, InProcess, abc.ABC):
             return
         # every reader needs its message at once: a batch makes the messages of its sensors together, and a kind may
         # make its message from the captured values, without a reading
-        if self._is_served and not self.artefacts:
-            if self.batch is not None and self.batch.publish_sample(self, tick):
-                return
-            if self._is_direct:
-                self._publish_directly(tick)
-                return
+        if self._is_served and not self.artefacts and self._publish_served(tick):
+            return
         if self._group is not None:  # no reader needs its message at once: many samples become messages together
             packed = self._group.add(tick, self._capture_now(tick))
             for _, publisher, _ in self._read_publishers:

@@ -6,6 +6,7 @@ import abc
 from collections.abc import Callable
 from typing import TYPE_CHECKING, ClassVar
 
+from simkit.msgs.message_types import M
 from simkit.pose import Vector
 from simkit.runtime.array_rules import Floats, Ids, SensorRule, Ticks
 from simkit.sensors.base import Product, Sensor
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     from simkit.runtime.state_arrays import StateArrays
 
 
-class VectorSensor(Sensor):
+class VectorSensor(Sensor[M]):
     """Sensor whose reading is a vector with noise on each number, published as one message.
 
     Attributes:

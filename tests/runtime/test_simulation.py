@@ -10,6 +10,7 @@ import pytest
 
 import simkit
 from simkit.runtime.engine.physics_state import ENGINE_WARNINGS
+from simkit.sensors import Altimeter, Lidar
 
 BALL = """<sdf version="1.9"><world name="w"><gravity>0 0 -9.8</gravity>{extra}
   <model name="ball"><pose>0 0 5 0 0 0</pose><link name="l"><inertial><mass>2</mass></inertial>
@@ -290,6 +291,34 @@ def test_run_until_stops_when_the_condition_holds():
         assert sim.run_until(lambda s: s.model("ball").pose.position[2] < 4.5, timeout=2.0)
         assert sim.time == pytest.approx(math.sqrt(2 * 0.5 / 9.8), abs=2e-3)
         assert not sim.run_until(lambda s: False, timeout=0.01)
+
+
+def test_run_until_takes_a_condition_as_text():
+    with load(BALL.format(extra="")) as sim:
+        assert sim.run_until("pose('ball').z < 4.5", timeout=2.0)
+        assert sim.time == pytest.approx(math.sqrt(2 * 0.5 / 9.8), abs=2e-3)
+        assert not sim.run_until("pose('ball').z > 4.5", timeout=0.01)
+        with pytest.raises(simkit.InputError, match="SK-COND-005"):
+            sim.run_until("pose('bal').z < 4.5", timeout=1.0)
+
+
+TWO_WHEELS = """<sdf version="1.9"><model name="m"><link name="left"><sensor name="imu" type="imu"/></link>
+<link name="right"><sensor name="imu" type="imu"/><sensor name="height" type="altimeter"/></link></model></sdf>"""
+
+
+def test_a_last_name_finds_a_sensor_if_only_one_sensor_has_it():
+    with load(TWO_WHEELS) as sim:
+        assert list(sim.sensors) == ["m::left::imu", "m::right::imu", "m::right::height"]
+        assert sim.sensor("height") is sim.sensors["m::right::height"] is sim.sensor("m::right::height")
+        with pytest.raises(KeyError, match="2 sensors have the name 'imu': m::left::imu, m::right::imu"):
+            sim.sensor("imu")
+
+
+def test_a_sensor_of_another_class_than_the_given_one_is_an_error():
+    with load(TWO_WHEELS) as sim:
+        assert sim.sensor("height", type=Altimeter).kind == "altimeter"
+        with pytest.raises(simkit.InputError, match="SK-NAME-007"):
+            sim.sensor("height", type=Lidar)
 
 
 class Counter(simkit.WorldPlugin):

@@ -19,6 +19,7 @@ from simkit.plugins.not_deep_copied import SharedByCopies
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
+    from simkit.runtime.communication.publisher import Tally
     from simkit.scene import SceneModel
 
 CLOCK: Final = "rosgraph_msgs/msg/Clock"
@@ -176,6 +177,13 @@ class ClockPublisher(WorldPlugin):
 
     def load(self, parent: Simulation, params: Params) -> None:
         self._clock = self.advertise("/clock", CLOCK)
+        self._clock.tally = self._tally
+
+    def _tally(self) -> Tally:
+        clock, tick = self.sim.engine.clock, self.sim.tick
+        grid = clock.grid(self.after_step_rate or 0.0)
+        count = tick if grid is None else grid.index(tick)
+        return count, clock.time_ns(tick if grid is None else grid.tick(count)), grid
 
     def after_step(self) -> None:
         if self._clock.wanted:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Generic
 
 from simkit.argument_checks import check_function
 from simkit.errors import ActionError, InputError, PluginError, SimkitError, SubscriberError, callback_name, cause_text
@@ -19,6 +19,7 @@ from simkit.in_process import InProcess
 from simkit.msgs import Message
 from simkit.msgs.goal_status import GoalStatus
 from simkit.msgs.message_arguments import checked_message
+from simkit.msgs.message_types import M, interface_type
 from simkit.msgs.topic_names import absolute_name
 from simkit.runtime.communication.endpoint_table import EndpointTable
 from simkit.runtime.communication.script_callback import ScriptCallback
@@ -35,8 +36,10 @@ GoalCallback = Callable[["GoalHandle"], None]
 CancelCallback = Callable[["GoalHandle"], bool | None]
 
 
-class GoalHandle(InProcess):
+class GoalHandle(InProcess, Generic[M]):
     """Goal, as seen by the client that sent it and by the plugin that executes it.
+
+    The type parameter is the class of the goal message.
 
     Attributes:
         action: action that executes the goal.
@@ -53,7 +56,7 @@ class GoalHandle(InProcess):
         self,
         action: Action,
         number: int,
-        request: Message,
+        request: M,
         sent_ns: int,
         on_feedback: Callback | None = None,
         on_done: EndCallback | None = None,
@@ -295,7 +298,7 @@ class ActionTable(EndpointTable[Action]):
     def act(
         self,
         name: str,
-        type_name: str,
+        type_name: str | type,
         on_goal: GoalCallback,
         on_cancel: CancelCallback | None = None,
         *,
@@ -319,6 +322,7 @@ class ActionTable(EndpointTable[Action]):
         check_function(on_goal, "on_goal")
         if on_cancel is not None:
             check_function(on_cancel, "on_cancel")
+        type_name = interface_type(type_name, self.part)
         self._check_type(type_name)
         self._report_clash(name)
         action = Action(self, name, type_name, on_goal, on_cancel, node)

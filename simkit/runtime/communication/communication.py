@@ -12,6 +12,7 @@ from simkit.diagnostics import NOWHERE, Diagnostics, name_hint
 from simkit.errors import MessageError
 from simkit.lifecycle import LifecycleStates
 from simkit.msgs.message_arguments import checked_message
+from simkit.msgs.message_types import named_type
 from simkit.msgs.topic_names import TYPES_OF_DICTS, absolute_name
 from simkit.runtime.communication.action_server import ActionTable
 from simkit.runtime.communication.log_topic import LogTopic
@@ -27,7 +28,7 @@ from simkit.runtime.communication.transform_buffer import TransformBuffer
 if TYPE_CHECKING:
     from simkit.msgs import Message
     from simkit.runtime.communication.publisher import Listener, Publisher
-    from simkit.runtime.communication.subscription import Callback
+    from simkit.runtime.communication.subscription import Callback, CallbackPolicy, Subscription
     from simkit.runtime.communication.topic_bus import TopicBus
     from simkit.runtime.engine.engine import Engine
     from simkit.runtime.engine.scheduler import Phase, Scheduler, Task
@@ -267,7 +268,7 @@ class Communication:
                 self.bus.advertise(topic, msgs.type_name(message))
         self.bus.publish(topic, message)
 
-    def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Publisher:
+    def advertise(self, topic: str, type_name: str | type, *, latched: bool = False) -> Publisher:
         """Open a topic for messages of a script or of another process.
 
         Args:
@@ -324,7 +325,30 @@ class Communication:
                 report(relay)
         return relay
 
-    def listen(self, topic: str, types: str | Sequence[str], callback: Callback, *, records: bool = True) -> Listener:
+    def subscribe(
+        self,
+        topic: str,
+        callback: Callback | None,
+        keep: int | None,
+        on_error: CallbackPolicy,
+        type_: str | type | None,
+    ) -> Subscription:
+        """Receive a topic, which must have the type `type_`, given by class or name; None for any type.
+
+        Raises:
+            MessageError: the type is unknown, or the topic has another type.
+        """
+        self._engine.check_open()
+        if type_ is None:
+            return self.bus.subscribe(topic, callback, keep, on_error)
+        (expected,) = self._checked_types(topic, type_)
+        subscription = self.bus.subscribe(topic, callback, keep, on_error)
+        subscription.expected = expected
+        return subscription
+
+    def listen(
+        self, topic: str, types: str | type | Sequence[str], callback: Callback, *, records: bool = True
+    ) -> Listener:
         """Open a topic for commands to a script or to another process.
 
         Args:
@@ -346,9 +370,11 @@ class Communication:
                 report(listener)
         return listener
 
-    def _checked_types(self, topic: str, types: str | Sequence[str]) -> tuple[str, ...]:
+    def _checked_types(self, topic: str, types: str | type | Sequence[str]) -> tuple[str, ...]:
         """Return the full names of types that may be used on a topic."""
         topic = absolute_name(topic)
+        if isinstance(types, type):
+            types = named_type(types)
         if not isinstance(types, (list, tuple)):
             check_text(types, "the type")
             types = (str(types),)

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Final, NamedTuple, Protocol
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Final, Generic, NamedTuple, Protocol
 
 from simkit import msgs
 from simkit.in_process import InProcess
 from simkit.msgs import Message
 from simkit.msgs.message_arguments import checked_message
+from simkit.msgs.message_types import M
 from simkit.runtime.communication.journal import JournalKeeper
 from simkit.runtime.communication.subscription import Callback, LazyMessage, PendingWork
 
 if TYPE_CHECKING:
     from simkit.runtime.communication.command_queue import CommandQueue
     from simkit.runtime.communication.subscription import TopicReaders
+    from simkit.runtime.engine.scheduler import Timetable
 
 ROSOUT: Final = "/rosout"
 KEPT_LOG_MESSAGES: Final = 1000
@@ -23,6 +25,11 @@ KEPT_LOG_MESSAGES: Final = 1000
 
 Check = Callable[[], None]
 """Function that raises a SimkitError if an owner cannot make its messages on this machine."""
+
+
+Tally = tuple[int, int, "Timetable | None"]
+"""Number of messages since t = 0 of a publisher whose messages follow from the time alone, time [ns] of the newest,
+and the ticks of the messages (None for every step). With no reader, it is the number that a reader would receive."""
 
 
 class PublishingBus(JournalKeeper, Protocol):
@@ -44,8 +51,10 @@ class TopicSides(NamedTuple):
     publishers: list[Publisher]
 
 
-class Publisher(InProcess):
+class Publisher(InProcess, Generic[M]):
     """Publisher of a topic; `wanted` is true while the topic has subscribers.
+
+    The type parameter is the class of the messages.
 
     Attributes:
         last: last message of a latched topic.
@@ -54,6 +63,8 @@ class Publisher(InProcess):
         check: function that is called for every new reader; None if the owner can always make its messages.
         present: function that returns the message of the present state, for a reader that cannot wait for the next one;
             None if the owner has no such function. It changes nothing.
+        tally: function that returns the number of messages, also while nobody reads them, or None if the messages
+            must be received to be counted; None if the owner has no such function.
         node: name of the node of a program that publishes here; empty for any other publisher.
     """
 
@@ -70,6 +81,7 @@ class Publisher(InProcess):
         "owner",
         "pending",
         "present",
+        "tally",
         "topic",
         "type_name",
     )
@@ -92,6 +104,7 @@ class Publisher(InProcess):
         self.history: deque[Message] | None = None
         self.active, self.node = True, ""
         self.present: Callable[[], Message] | None = None
+        self.tally: Callable[[], Tally | None] | None = None
 
     @property
     def wanted(self) -> bool:
@@ -142,7 +155,7 @@ class Publisher(InProcess):
             return 0
         return readers.keeps
 
-    def publish(self, message: Message) -> None:
+    def publish(self, message: M | Mapping[str, Any]) -> None:
         """Pass a message to every subscriber now, and to command inputs before the next step.
 
         Args:
@@ -215,7 +228,7 @@ class Publisher(InProcess):
         return f"<Publisher {self.topic!r} {self.type_name}, {heard}>"
 
 
-class ExternalPublisher(Publisher):
+class ExternalPublisher(Publisher[M]):
     """Publisher that belongs to no plugin or sensor; its messages are external inputs."""
 
     __slots__ = ()
@@ -235,7 +248,7 @@ class ExternalPublisher(Publisher):
         if latched and topic == ROSOUT:
             self.keep_history(KEPT_LOG_MESSAGES)
 
-    def publish(self, message: Message) -> None:
+    def publish(self, message: M | Mapping[str, Any]) -> None:
         """Publish a message, or a dict of its fields, and record it in the journal.
 
         Raises:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 from simkit.argument_checks import check_function
+from simkit.msgs.message_types import M
 from simkit.runtime.communication.parameter import Parameter, checked_parameter
 from simkit.runtime.communication.script_callback import ScriptCallback
 
 if TYPE_CHECKING:
+    from simkit.deferred_response import DeferredResponse
     from simkit.msgs import Message
     from simkit.runtime.communication.action_server import Action, CancelCallback, EndCallback, GoalHandle
     from simkit.runtime.communication.communication import Communication
@@ -38,12 +40,18 @@ class ScriptGraph:
 
     # ------------------------------------------------------------------ topics
 
-    def advertise(self, topic: str, type_name: str, latched: bool = False) -> Publisher:
+    @overload
+    def advertise(self, topic: str, type_name: type[M], latched: bool = False) -> Publisher[M]: ...
+
+    @overload
+    def advertise(self, topic: str, type_name: str, latched: bool = False) -> Publisher[Any]: ...
+
+    def advertise(self, topic: str, type_name: str | type, latched: bool = False) -> Publisher[Any]:
         """Open a topic for publishing.
 
         Args:
             topic: name of the topic; a missing leading slash is added.
-            type_name: ROS 2 type, such as `std_msgs/msg/String`.
+            type_name: ROS 2 type, such as `std_msgs/msg/String` or `msgs.String`.
             latched: send the last message to a later subscriber (transient local).
 
         Raises:
@@ -51,14 +59,20 @@ class ScriptGraph:
         """
         return self.communication.advertise(topic, type_name, latched=latched)
 
-    def listen(self, topic: str, types: str | Sequence[str], callback: Callback) -> Listener:
+    @overload
+    def listen(self, topic: str, types: type[M], callback: Callable[[M], object]) -> Listener: ...
+
+    @overload
+    def listen(self, topic: str, types: str | Sequence[str], callback: Callback) -> Listener: ...
+
+    def listen(self, topic: str, types: str | type | Sequence[str], callback: Callback) -> Listener:
         """Open a topic for commands: `callback(message)` is called between two steps for each message.
 
         Use `subscribe` for messages that a sensor or a plugin publishes.
 
         Args:
             topic: name of the topic; a missing leading slash is added.
-            types: accepted type or types.
+            types: accepted type or types, or the class of the messages.
             callback: function that receives each message.
 
         Raises:
@@ -77,9 +91,37 @@ class ScriptGraph:
         self.engine.check_open()
         self.communication.publish(topic, message)
 
+    @overload
     def subscribe(
-        self, topic: str, callback: Callback | None = None, keep: int | None = None, on_error: CallbackPolicy = "stop"
-    ) -> Subscription:
+        self,
+        topic: str,
+        callback: Callable[[M], object] | None = None,
+        keep: int | None = None,
+        on_error: CallbackPolicy = "stop",
+        *,
+        type: type[M],
+    ) -> Subscription[M]: ...
+
+    @overload
+    def subscribe(
+        self,
+        topic: str,
+        callback: Callback | None = None,
+        keep: int | None = None,
+        on_error: CallbackPolicy = "stop",
+        *,
+        type: str | None = None,
+    ) -> Subscription[Any]: ...
+
+    def subscribe(
+        self,
+        topic: str,
+        callback: Callback | None = None,
+        keep: int | None = None,
+        on_error: CallbackPolicy = "stop",
+        *,
+        type: str | type | None = None,
+    ) -> Subscription[Any]:
         """Receive a topic; its publisher may be opened later.
 
         Args:
@@ -88,9 +130,14 @@ class ScriptGraph:
             keep: number of newest messages to keep; None for a million.
             on_error: policy for a callback that raises: "stop" ends the run with a SubscriberError, "drop" closes the
                 subscription.
+            type: class that the messages must have, such as `msgs.LaserScan`, or its type name; None for any. Type
+                checkers then know the class of `latest` and `messages`.
+
+        Raises:
+            MessageError: the type is unknown, or the topic has another type. A publisher of another type that is opened
+                later gets the same error.
         """
-        self.engine.check_open()
-        return self.communication.bus.subscribe(topic, callback, keep, on_error)
+        return self.communication.subscribe(topic, callback, keep, on_error, type)
 
     def topics(self) -> dict[str, str]:
         """Return the ROS type names by topic, sorted; "" for a topic that only has subscriptions."""
@@ -127,12 +174,21 @@ class ScriptGraph:
         """
         return self.communication.services.call(service, request, timeout, on_done)
 
-    def offer(self, service: str, type_name: str, handler: ServiceHandler) -> Service:
+    @overload
+    def offer(
+        self, service: str, type_name: type[M], handler: Callable[[M], Message | DeferredResponse]
+    ) -> Service: ...
+
+    @overload
+    def offer(self, service: str, type_name: str, handler: ServiceHandler) -> Service: ...
+
+    def offer(self, service: str, type_name: str | type, handler: ServiceHandler) -> Service:
         """Open a service.
 
         Args:
             service: name of the service; a missing leading slash is added.
-            type_name: service type, such as `std_srvs/srv/Trigger`.
+            type_name: service type, such as `std_srvs/srv/Trigger`, or the class of its requests:
+                `msgs.Trigger_Request`.
             handler: function that receives a request and returns the response: a message, a dict of its fields, None
                 for a message whose fields are all zero, or a `simkit.DeferredResponse` to answer in a later step.
 
@@ -144,10 +200,28 @@ class ScriptGraph:
 
     # ------------------------------------------------------------------ actions
 
+    @overload
+    def act(
+        self,
+        action: str,
+        type_name: type[M],
+        callback: Callable[[GoalHandle[M]], Any],
+        on_cancel: Callable[[GoalHandle[M]], bool | None] | None = None,
+    ) -> Action: ...
+
+    @overload
     def act(
         self,
         action: str,
         type_name: str,
+        callback: Callable[[GoalHandle[Any]], Any],
+        on_cancel: CancelCallback | None = None,
+    ) -> Action: ...
+
+    def act(
+        self,
+        action: str,
+        type_name: str | type,
         callback: Callable[[GoalHandle], Any],
         on_cancel: CancelCallback | None = None,
     ) -> Action:
@@ -155,7 +229,8 @@ class ScriptGraph:
 
         Args:
             action: name of the action; a missing leading slash is added.
-            type_name: action type, such as `example_interfaces/action/Fibonacci`.
+            type_name: action type, such as `example_interfaces/action/Fibonacci`, or the class of its goals:
+                `msgs.Fibonacci_Goal`.
             callback: function that receives each new goal between two steps. It may reject the goal, or return the
                 result: a message or a dict of its fields. Otherwise the goal is active until its method `succeed`,
                 `abort` or `canceled` is called.

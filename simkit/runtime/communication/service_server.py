@@ -30,6 +30,7 @@ from simkit.errors import (
 from simkit.in_process import InProcess
 from simkit.msgs import Message
 from simkit.msgs.message_arguments import checked_message
+from simkit.msgs.message_types import interface_type
 from simkit.msgs.topic_names import absolute_name
 from simkit.runtime.communication.endpoint_table import EndpointTable
 from simkit.runtime.communication.script_callback import ScriptCallback
@@ -185,7 +186,7 @@ class ServiceTable(EndpointTable[Service]):
         self._waiting: dict[int, ServiceCall] = {}
 
     def offer(
-        self, name: str, type_name: str, handler: ServiceHandler, *, remote: RemoteServer | None = None
+        self, name: str, type_name: str | type, handler: ServiceHandler, *, remote: RemoteServer | None = None
     ) -> Service:
         """Open a service. A service that is opened within `bus.owned_by(owner)` belongs to that owner.
 
@@ -202,6 +203,7 @@ class ServiceTable(EndpointTable[Service]):
         self._engine.check_open()
         name = self._bus.name_of(name)
         check_function(handler, "handler")
+        type_name = interface_type(type_name, self.part)
         self._check_type(type_name)
         is_last = self._report_clash(name)
         service = Service(self, name, type_name, handler, self._bus.owner, remote)

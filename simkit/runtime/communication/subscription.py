@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Final, Literal, Protocol
+from typing import TYPE_CHECKING, Any, Final, Generic, Literal, Protocol
 
 from simkit import msgs
 from simkit.errors import (
@@ -21,6 +21,7 @@ from simkit.in_process import InProcess
 from simkit.msgs import Message
 from simkit.msgs.cdr_template import PACKERS
 from simkit.msgs.data_frames import DataFrame, to_dataframe
+from simkit.msgs.message_types import M
 from simkit.runtime.communication.journal import JournalKeeper
 from simkit.runtime.engine.plugin_faults import is_guarded
 
@@ -142,8 +143,8 @@ class TopicReaders:
         return max((reader.keeps for reader in self.readers), default=0)
 
 
-class Subscription(InProcess):
-    """Received messages of a topic.
+class Subscription(InProcess, Generic[M]):
+    """Received messages of a topic; the type parameter is the class of the messages.
 
     Attributes:
         messages: messages received so far: the last `keep` of them, or the last million if `keep` is None.
@@ -155,10 +156,11 @@ class Subscription(InProcess):
         node: name of the node of a program that subscribes; empty for any other subscription.
         type_name: ROS 2 type of the program's messages; empty for any other subscription.
         owner: plugin that subscribes; None for any other subscription.
+        expected: ROS 2 type that the topic must have; empty for any type.
         active: False while the owner is removed or disabled; nothing is received then.
     """
 
-    node = type_name = ""
+    node = type_name = expected = ""
     owner: object = None
     active = True
 
@@ -172,7 +174,7 @@ class Subscription(InProcess):
         self.receive: Callback = self._messages.append if callback is None else self._keep_and_call
 
     @property
-    def messages(self) -> list[Message]:
+    def messages(self) -> list[M]:
         self._bus.gather(self.topic)
         if len(self._messages) == MAX_KEPT_MESSAGES and self.keeps == math.inf:
             self._bus.failures.report_full(self.topic)
@@ -180,7 +182,7 @@ class Subscription(InProcess):
         return [m for m in messages if m is not NO_MESSAGE]
 
     @property
-    def latest(self) -> Message:
+    def latest(self) -> M | Any:  # `Any` stands for None, so that a type checker asks for no check
         """Newest message, or None before the first. A reset or a restore returns it to that of the restored state."""
         self._bus.gather(self.topic)
         last, restored = self._restored

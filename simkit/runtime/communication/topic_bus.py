@@ -17,7 +17,7 @@ from simkit.msgs.topic_names import absolute_name
 from simkit.runtime.communication.command_queue import CommandQueue
 from simkit.runtime.communication.journal import Journal
 from simkit.runtime.communication.name_remapping import NameRemapping
-from simkit.runtime.communication.publisher import Check, ExternalPublisher, Listener, Publisher, TopicSides
+from simkit.runtime.communication.publisher import Check, ExternalPublisher, Listener, Publisher, Tally, TopicSides
 from simkit.runtime.communication.subscription import (
     MAX_KEPT_MESSAGES,
     Callback,
@@ -276,6 +276,11 @@ class TopicBus:
             clash = find_conflict(self.endpoints(topic), topic, end)
             if clash:
                 raise MessageError(clash)
+        if isinstance(end, Publisher):
+            for reader in self._readers_of(topic).readers:
+                if reader.expected not in ("", end.type_name) and reader.active:
+                    text = f"topic {topic!r} has a subscription of type {reader.expected}, got {end.type_name}"
+                    raise MessageError(text)
 
     # ------------------------------------------------------------------ lists
 
@@ -320,12 +325,21 @@ class TopicBus:
             check()
         return bool(checks)
 
+    def tally_of(self, topic: str) -> Callable[[], Tally | None] | None:
+        """Return the `tally` of the only publisher of a topic; None for several publishers."""
+        publishers = self._publishers.get(topic, ())
+        return publishers[0].tally if len(publishers) == 1 else None
+
     def wanted(self, topic: str) -> bool:
         """Check whether a topic has subscribers."""
         return bool(self._readers_of(absolute_name(topic)).readers)
 
     def on_topic(self, callback: Callable[[str, str], None]) -> None:
-        """Call `callback(topic, type_name)` for every present and future topic."""
+        """Call `callback(topic, type_name)` for every present and future topic.
+
+        The call is repeated for each further publisher or command input of the topic, and for a message from outside on
+        a topic whose own messages follow from the time alone.
+        """
         self._watchers.append(callback)
         for topic, type_name in self.all_topics().items():
             callback(topic, type_name)
@@ -391,6 +405,8 @@ class TopicBus:
         message = checked_message(message, types, repr(topic))
         with self.passing("publish", topic=topic, message=message):
             self.gather(topic)
+            if self.tally_of(topic) is not None:
+                self._announce(topic, types[0])
             readers = self._readers_of(topic)
             for receive in readers.receivers:
                 receive(message)

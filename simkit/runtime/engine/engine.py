@@ -88,7 +88,7 @@ class Engine(EngineState):
         self.render_thread = render_thread
         super().__init__(world, structure, clock, reports, log, callbacks)
         self.streams = RandomStreams(seed)
-        self.loop = StepLoop(self.physics, commands, callbacks.fill, callbacks.basis)
+        self.loop = StepLoop(self.physics, commands, callbacks.fill, callbacks.schedule_inputs)
         self.faults = PluginFaults(self, self.loop.reschedule, on_error)
         self.numbers = NumberChanges(self, lambda: self.velocity_servos.renew())
         self.velocity_servos = VelocityServos(self, self.numbers)

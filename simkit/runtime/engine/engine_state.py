@@ -33,8 +33,8 @@ class EngineCallbacks:
 
     Attributes:
         fill: function that adds every task to the scheduler, in document order.
-        basis: function that returns what `fill` reads and a restored state may change; None if the tasks have states
-            of their own.
+        schedule_inputs: function that returns what `fill` reads and a restored state may change; None if the tasks
+            have states of their own.
         velocity_limit: function that returns the limit of a joint's axis [rad/s or m/s] by scoped name and axis number.
         set_active: function that enables the interfaces of these plugins and sensors, and disables all others.
         abandon: function that aborts the requests and goals that a plugin is processing, for a reason.
@@ -42,7 +42,7 @@ class EngineCallbacks:
     """
 
     fill: Callable[[Scheduler], None]
-    basis: Callable[[], object]
+    schedule_inputs: Callable[[], object]
     velocity_limit: Callable[[str, int], float]
     set_active: Callable[[Sequence[object]], None]
     abandon: Callable[[object, str], None]

@@ -13,7 +13,7 @@ from simkit.runtime.engine.physics_step import Physics
 from simkit.runtime.engine.scheduler import Scheduler
 
 ScheduleFiller = Callable[[Scheduler], None]
-ScheduleReader = Callable[[], object]
+ScheduleInputs = Callable[[], object]
 
 _LONGEST_WAIT = 5.0  # [s] of wall time that the program waits for the loops of other threads when it exits
 
@@ -40,13 +40,13 @@ class StepLoop:
         physics: physics to advance.
         commands: source of the commands that are delivered between two steps.
         fill: function that adds every task to the scheduler, in document order.
-        basis: function that returns what `fill` reads and a restored state may change; None if the tasks have states
+        inputs: function that returns what `fill` reads and a restored state may change; None if the tasks have states
             of their own.
     """
 
-    def __init__(self, physics: Physics, commands: CommandSource, fill: ScheduleFiller, basis: ScheduleReader) -> None:
+    def __init__(self, physics: Physics, commands: CommandSource, fill: ScheduleFiller, inputs: ScheduleInputs) -> None:
         self.scheduler = Scheduler(physics.clock)
-        self._physics, self._commands, self._fill, self._basis = physics, commands, fill, basis
+        self._physics, self._commands, self._fill, self._inputs = physics, commands, fill, inputs
         self._filled_from: object = None
         self.jumped = self._target = 0
         self._readers = -1  # revision of the readers that the scheduler considers
@@ -152,10 +152,10 @@ class StepLoop:
         for call in deferred:
             call()
         self._is_outdated = False
-        if self._filled_from is None or self._basis() != self._filled_from:
+        if self._filled_from is None or self._inputs() != self._filled_from:
             self.scheduler.clear()
             self._fill(self.scheduler)
-            self._filled_from = self._basis()
+            self._filled_from = self._inputs()
         self.scheduler.rewind(self._physics.tick)
         self._readers = self._commands.revision
 

@@ -140,7 +140,7 @@ class StepTasks:
         self._is_repeatable = False
         self._limits: list[object] = []
 
-    def basis(self, limits: list[object], wanted: list[bool]) -> tuple[object, ...] | None:
+    def inputs(self, limits: list[object], wanted: list[bool]) -> tuple[object, ...] | None:
         """Return what the schedule depends on and a restored state of the same structure may change.
 
         Args:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from simkit.sensors.base import Product
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
 from simkit.sensors.cameras.rendered_sampler import camera_rule
 from simkit.sensors.measured_rows import MeasuredRows
 
+if TYPE_CHECKING:
+    from simkit import msgs  # noqa: F401 (in the type parameter)
 
-class Camera(RenderedCamera):
+
+class Camera(RenderedCamera["msgs.Image"]):
     """Camera, `camera`: colour or grey images with their `CameraInfo`."""
 
     kinds: ClassVar[tuple[str, ...]] = ("camera",)

@@ -80,7 +80,7 @@ class Frustum:
         return inside
 
 
-class LogicalCamera(Sensor):
+class LogicalCamera(Sensor["msgs.LogicalCameraImage"]):
     """Logical camera, `logical_camera`: name and pose of every model with its origin in the frustum, hidden or not.
 
     gz-sensors has the same rule; Gazebo Classic uses bounding boxes instead. Nested models and the sensor's own model

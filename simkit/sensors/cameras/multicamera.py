@@ -85,7 +85,7 @@ class CameraUnit:
         return self._pictures.perturb(picture, index)
 
 
-class MultiCamera(RenderedCamera):
+class MultiCamera(RenderedCamera["msgs.Image"]):
     """Multicamera, `multicamera`: an image and a `CameraInfo` of each `<camera name="…"><pose>`, at the same instant.
 
     The reference is the camera with `left` in its name, or else the first. For cameras parallel to the reference, P's

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from simkit import msgs
 from simkit.compiler import Compiled
 from simkit.diagnostics import Diagnostics
-from simkit.msgs.message_types import Message
+from simkit.msgs.message_types import M, Message
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
@@ -121,7 +121,7 @@ class PictureMaker:
         return picture if self.noise.is_silent else NoisyCameraReading(picture, self.noise, index)
 
 
-class RenderedCamera(RenderedSampler):
+class RenderedCamera(RenderedSampler[M]):
     """Camera that looks along its x axis, with y to its left and z up.
 
     This class contains options, optics, trigger, noise and messages; `RenderedSampler` draws.

@@ -5,12 +5,13 @@ from __future__ import annotations
 import abc
 import functools
 from collections.abc import Callable, Iterator, Sequence
+from typing import Any
 
 import mujoco
 
 from simkit.diagnostics import Diagnostics
 from simkit.errors import RenderError
-from simkit.msgs.message_types import Message
+from simkit.msgs.message_types import M, Message
 from simkit.runtime import Publisher
 from simkit.runtime.array_rules import CannotBatchError
 from simkit.runtime.communication.subscription import NO_MESSAGE, LazyMessage
@@ -29,7 +30,7 @@ from simkit.sensors.particle_echoes import drawer_of_particles
 from simkit.sensors.sample import Memory, Reading
 
 
-class RenderedSampler(Sensor):
+class RenderedSampler(Sensor[M]):
     """Sensor whose readings are made of drawn images.
 
     The scene is composed from the state when a sample is due. The render thread draws it and processes the images, if
@@ -217,7 +218,7 @@ class RenderedSampler(Sensor):
             return NO_MESSAGE  # the reason was already reported
 
     @property
-    def latest(self) -> Message:
+    def latest(self) -> M | Any:
         """Newest image, or None before the first.
 
         Raises:
@@ -228,7 +229,7 @@ class RenderedSampler(Sensor):
         return super().latest
 
     @property
-    def truth(self) -> Message:
+    def truth(self) -> M | Any:
         """Newest image without noise, or None before the first.
 
         Raises:

@@ -73,7 +73,7 @@ class NoisyDepths(NoisyCameraReading):
         return self._depths
 
 
-class RgbdCamera(RenderedCamera):
+class RgbdCamera(RenderedCamera["msgs.Image"]):
     """Camera with colour, depth along the optical axis, and an organised cloud of the same pixels, drawn in one pass.
 
     Depth is +inf where nothing is in range and -inf for an object nearer than the range. Noise is in metres for depths

@@ -42,7 +42,7 @@ class ContactOptions:
     topic: str
 
 
-class Contact(Sensor):
+class Contact(Sensor["msgs.Contacts"]):
     """Contact sensor, `contact`: the contacts of some collisions of its link; without contacts it publishes nothing.
 
     The sensor has no noise; `truth` is the same message.

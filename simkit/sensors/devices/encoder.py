@@ -55,7 +55,7 @@ class JointReading:
     velocity: Vector
 
 
-class Encoder(Sensor):
+class Encoder(Sensor["msgs.JointState"]):
     """Joint encoder, `encoder` (`<sensor type="custom" gz:type="encoder">`), under a joint: its position and velocity.
 
     The measured position is the true position with noise, rounded to the nearest count. The velocity is computed from

@@ -36,7 +36,7 @@ class ForceTorqueOptions:
     torque: ThreeAxes
 
 
-class ForceTorque(VectorSensor):
+class ForceTorque(VectorSensor["msgs.WrenchStamped"]):
     """Force and torque sensor, `force_torque`, under a joint: the wrench that the parent link exerts on the child link.
 
     `<measure_direction>` can reverse the wrench. The torque is about the sensor's origin. Gazebo's formula for the

@@ -28,7 +28,7 @@ class AirPressureOptions:
     pressure: NoiseModel
 
 
-class AirPressure(AirSensor):
+class AirPressure(AirSensor["msgs.FluidPressure"]):
     """Barometer, `air_pressure`: the pressure of the world's `<atmosphere>` at the height of the sensor's origin."""
 
     kinds = ("air_pressure",)

@@ -5,13 +5,14 @@ from __future__ import annotations
 import mujoco
 
 from simkit.linear_algebra import matmul
+from simkit.msgs.message_types import M
 from simkit.scene import Atmosphere
 from simkit.sensors.base import report_once
 from simkit.sensors.environment.atmosphere import MAX_ALTITUDE, MIN_ALTITUDE, AirColumn, air_column
 from simkit.sensors.vector_sensor import VectorSensor
 
 
-class AirSensor(VectorSensor):
+class AirSensor(VectorSensor[M]):
     """Sensor of the surrounding air.
 
     The sensor's height above sea level is its z in the world plus the height of the world's origin, which the sensor's

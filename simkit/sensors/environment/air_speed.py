@@ -24,7 +24,7 @@ class AirSpeedOptions:
     pressure: NoiseModel
 
 
-class AirSpeed(AirSensor):
+class AirSpeed(AirSensor["msgs.AirSpeed"]):
     """Air-speed sensor, `air_speed`: ½ρv·|v| with the air speed v along the sensor's x axis and the air density ρ.
 
     The air moves with the world's wind, including the gusts of a wind plugin. The sensor's velocity is the velocity

@@ -25,7 +25,7 @@ class AltimeterOptions:
     velocity: NoiseModel
 
 
-class Altimeter(VectorSensor):
+class Altimeter(VectorSensor["msgs.Altimeter"]):
     """Altimeter, `altimeter`: height and climb rate of the sensor's own origin, along the world's z axis.
 
     The reference is the height [m] of the sensor when it was loaded or spawned. A reset or a new pose does not change

@@ -61,7 +61,7 @@ def _read_year(block: Params) -> float:
     return DEFAULT_DATE
 
 
-class Magnetometer(VectorSensor):
+class Magnetometer(VectorSensor["msgs.MagneticField"]):
     """Magnetometer, `magnetometer`: the world's `<magnetic_field>`, or the Earth's field if the world has a location.
 
     The reading is in tesla, in the sensor's axes; `<spherical_coordinates>` give the location. Gazebo's Magnetometer

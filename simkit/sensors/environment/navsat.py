@@ -65,7 +65,7 @@ class NavSatReading:
     satellites: int = 0
 
 
-class NavSat(Sensor):
+class NavSat(Sensor["msgs.NavSatFix"]):
     """Satellite receiver, `navsat` or `gps`; without `<spherical_coordinates>` in the world it publishes nothing.
 
     Noise of the position is in metres. Gazebo differs in three ways: it adds the noise to latitude and longitude in

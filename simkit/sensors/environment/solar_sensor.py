@@ -41,7 +41,7 @@ class SolarSensorOptions:
     noise: NoiseModel
 
 
-class SolarSensor(Sensor):
+class SolarSensor(Sensor["msgs.Imu"]):
     """Solar sensor, `solar`: the direction of a light as an orientation whose x axis points at the light.
 
     Attributes:

@@ -207,8 +207,8 @@ class Imu(ImuMeasurement):
         covariances, frame = self.covariances(), self.frame_id
         if self._template_of[0] is not covariances or self._template_of[1] != frame:
             message = self._message_of(ImuReading(NO_ROTATION, (0.0,) * 6), 0)
-            self._templates, self._template_of = CdrTemplate(message, _VARIABLE_FIELDS), (covariances, frame)
-        return self._templates
+            self._stored_template, self._template_of = CdrTemplate(message, _VARIABLE_FIELDS), (covariances, frame)
+        return self._stored_template
 
     def products(self) -> dict[str, Product]:
         return {"imu": Product(_TYPES[0], self._message_of)}

@@ -27,6 +27,7 @@ from simkit.sensors.noise import Noise, NoiseModel, ThreeAxes, read_axes, read_n
 from simkit.sensors.sample import Memory
 
 if TYPE_CHECKING:
+    from simkit import msgs  # noqa: F401 (in the type parameter)
     from simkit.runtime.state_arrays import StateArrays
 
 unpack_numbers = struct.Struct("=31d").unpack  # captured numbers
@@ -78,7 +79,7 @@ def _read_axis_noise(quantity: Params) -> ThreeAxes:
     return read_axes(quantity, read_noise(quantity))
 
 
-class ImuMeasurement(Sensor):
+class ImuMeasurement(Sensor["msgs.Imu"]):
     """Base of `imu`: specific force, angular rate and attitude with noise and covariances, without messages.
 
     Attributes:

@@ -123,9 +123,9 @@ class Lidar(LidarMeasurement):
         """Return the serialised scan whose numbers are replaced; it changes with the rate and the frame."""
         constants = self.frame_id, self.update_rate, self.time_increment
         if self._template_of != constants:
-            self._templates = CdrTemplate(self._scan_message(reading, 0), _VARIABLE_FIELDS)
+            self._stored_template = CdrTemplate(self._scan_message(reading, 0), _VARIABLE_FIELDS)
             self._template_of = constants
-        return self._templates
+        return self._stored_template
 
     def _scan_message(self, reading: LidarReading, time_ns: int) -> msgs.LaserScan:
         """Make a scan of all rays, or of the middle layer if there are several layers."""

@@ -42,6 +42,7 @@ from simkit.sensors.sample import Sample
 from simkit.sensors.visibility_mask import ALL_VISIBLE, hidden_geoms, read_visibility_mask
 
 if TYPE_CHECKING:
+    from simkit import msgs  # noqa: F401 (in the type parameter)
     from simkit.runtime.state_arrays import StateArrays
 
 _MAX_RAYS = 4_000_000
@@ -118,7 +119,7 @@ class LidarReading:
     probed: Mapping[str, Any] | None = None
 
 
-class LidarMeasurement(Sensor):
+class LidarMeasurement(Sensor["msgs.LaserScan"]):
     """Base of the lidars: a fan of rays, cast at one instant or in a sweep, with noise, without messages.
 
     A reading beyond the maximum is +inf. The rays of `lidar` and `ray` start at the minimum range, so that they pass

@@ -252,11 +252,8 @@ class RayFan:
             self._parts, self._pieces = _parts_of(self.numpy_directions, self.grid, pieces), pieces
 
         def cast_part(part: FanPart) -> None:
-            rays, best, hits = (
-                self.rays_from(origin, rotation, start, part),
-                self.distances[part.rays],
-                self.hits[part.rays],
-            )
+            rays = self.rays_from(origin, rotation, start, part)
+            best, hits = self.distances[part.rays], self.hits[part.rays]
             self.cast_on_static_triangles(origin, rays.columns, start, best, hits)
             self.movers.cast(data, rays, best, hits)
             self.cast_on_planes(data, rays, best, hits)
@@ -363,10 +360,8 @@ def _parts_of(whole: FanDirections, grid: tuple[Vector, Vector] | None, count: i
     parts = []
     for first, last in pairwise(ends):
         if last > first:
-            rays, own_grid = (
-                slice(first * length, last * length),
-                None if grid is None else (grid[0][first:last], grid[1]),
-            )
+            rays = slice(first * length, last * length)
+            own_grid = None if grid is None else (grid[0][first:last], grid[1])
             parts.append(FanPart(rays, FanDirections(whole.directions[rays], own_grid), _bounds(own_grid)))
     return parts
 
@@ -386,7 +381,7 @@ class RayFanRows:
         self._casters: list[ReducedModelCaster | None] = [None] * states.count
         self._triangles: list[list[TriangleBody]] = [[]] * states.count
         self._batch: Any = None
-        self.movers: Any = None
+        self._movers: Any = None
 
     def take(self, row: int) -> None:
         """Copy the surroundings of the fan to one row."""
@@ -408,10 +403,10 @@ class RayFanRows:
         self._batch = Batch(models[0], states.count, states.threads)
         if any(model is not models[0] for model in models):
             self._batch.set_models(models)
-        self.movers = None
+        self._movers = None
         if has_movers:
             places = self._batch.bind("mocap_pos"), self._batch.bind("mocap_quat")
-            self.movers = (*places, *shapes.mover_bodies(fan.carrier))
+            self._movers = (*places, *shapes.mover_bodies(fan.carrier))
 
     def cast(self, origins: Vector, rotations: Vector, start: float) -> Vector:
         """Return the distances in all simulations [m], shape (n, rays); infinite for no hit within the reach.
@@ -428,8 +423,8 @@ class RayFanRows:
         directions = np.nan_to_num(matmul(fan.directions, rotations.transpose(0, 2, 1)))
         distances = np.full(directions.shape[:2], np.inf)
         if self._batch is not None:
-            if self.movers is not None:
-                places, quaternions, bodies, is_kept = self.movers
+            if self._movers is not None:
+                places, quaternions, bodies, is_kept = self._movers
                 places[:], quaternions[:] = states.field("xpos")[:, bodies], states.field("xquat")[:, bodies]
                 places[:, ~is_kept] = ENDLESS
             distances = self._cast_on_shapes(origins, directions, start)

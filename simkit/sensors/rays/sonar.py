@@ -64,7 +64,7 @@ def _read_axis(block: Params) -> tuple[float, float, float]:
     return (x / length, y / length, z / length)
 
 
-class Sonar(Sensor):
+class Sonar(Sensor["msgs.Range"]):
     """Sonar, `sonar`: the distance to the nearest collision in a cone (or sphere) from the sensor's origin.
 
     The cone opens along the sensor's -z axis, as in Gazebo Classic, or along `<axis>`. Rays sample the cone: one on its

@@ -15,15 +15,13 @@ from simkit.extend import boolean, listens, number, publishes, text
 from simkit.float_sum import float_sum
 from simkit.plugins.classic.diff_drive import CommonDiffDriveOptions, GazeboRosDiffDrive, Pair
 from simkit.plugins.drives.odometry import COMMAND_TYPES, DeadReckoning
-from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, BodyTwist
+from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, BodyTwist, LatePose
 from simkit.plugins.find_entities import find_joint
 from simkit.plugins.joint_states import JOINT_STATE
 from simkit_robots.plugins.classic.kobuki_sensors import PACKAGES, PREFIX, KobukiSensorOptions, KobukiSensors
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from simkit import Model, Pose
+    from simkit import Model
     from simkit.extend import SceneModel, SpecBuilder
     from simkit.msgs import Empty, MotorPower, Twist, TwistStamped
 
@@ -155,7 +153,7 @@ class GazeboRosKobuki(KobukiSensors, GazeboRosDiffDrive):
         self._angles = angles
         self._reckoning.go(ahead, 0.0, self._turn_rate * elapsed)
 
-    def _measured(self) -> tuple[Pose | Callable[[], Pose], BodyTwist]:
+    def _measured(self) -> tuple[LatePose, BodyTwist]:
         pose, twist = super()._measured()
         if self._imu is not None and self._erring is None:
             twist = BodyTwist(twist.linear, (0.0, 0.0, self._turn_rate))

@@ -1,0 +1,66 @@
+"""Hooks of MkDocs for `mkdocs.yml`: the site has the pages of docs, packs and labs, and the generated reference."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from reference import generated_pages
+from site_pages import (
+    ROOT,
+    generated_nav,
+    github_anchor,
+    in_python_markdown,
+    repository_pages,
+    repository_pictures,
+    with_site_links,
+)
+
+if TYPE_CHECKING:
+    from mkdocs.config.defaults import MkDocsConfig
+    from mkdocs.structure.files import Files
+    from mkdocs.structure.pages import Page
+
+_pages = cache(generated_pages)
+
+
+def on_config(config: MkDocsConfig) -> MkDocsConfig:
+    """Replace each entry of the navigation that names a folder by the generated pages in it."""
+    _pages.cache_clear()
+    titles = {path: title for path, (title, _) in _pages().items()}
+    config.nav = _filled(config.nav, titles)
+    config.mdx_configs["toc"]["slugify"] = github_anchor
+    return config
+
+
+def _filled(entry: Any, titles: dict[str, str]) -> Any:
+    if isinstance(entry, list):
+        return [_filled(each, titles) for each in entry]
+    if isinstance(entry, dict):
+        return {title: _filled(each, titles) for title, each in entry.items()}
+    return generated_nav(entry, titles) if entry.endswith("/") else entry
+
+
+def on_files(files: Files, config: MkDocsConfig) -> Files:
+    """Replace the files of the folder docs by those of the repository, under their paths there."""
+    from mkdocs.structure.files import File, Files
+
+    theme = [file for file in files if file.inclusion.is_included() and file.src_dir != config.docs_dir]
+    own = [
+        File(path, str(ROOT), config.site_dir, config.use_directory_urls)
+        for path in (*repository_pages(), *repository_pictures())
+    ]
+    made = [File.generated(config, path, content=text) for path, (_, text) in _pages().items()]
+    return Files([*theme, *own, *made])
+
+
+def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:  # noqa: ARG001 - MkDocs passes it
+    """Convert links and lists of a page."""
+    path = page.file.src_uri
+    if path == "CHANGELOG.md":
+        page.meta["search"] = {"exclude": True}  # it names everything once more
+    if path.endswith(".fr.md") or path == "docs/cours.md":
+        page.meta["search"] = {"boost": 0.5}  # most queries are English
+    if not path.startswith("reference/"):
+        markdown = in_python_markdown(with_site_links(markdown, path, files.src_uris))
+    return markdown

@@ -1,0 +1,198 @@
+"""Pages of the reference that are made from the code: public names of Python, commands, diagnostic codes."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from site_pages import ROOT, repository_pages
+
+_HANDLES = {
+    "Simulation": ("A running simulation, which `simkit.load` returns.", ("simkit.Simulation",)),
+    "Models, links, joints": (
+        "Handles of a simulation: `sim.model(…)`, `sim.link(…)`, `sim.joint(…)`, `sim.light(…)`, `sim.visual(…)`.",
+        ("simkit.Model", "simkit.Link", "simkit.Joint", "simkit.Light", "simkit.Visual"),
+    ),
+    "Sensors: sim.sensor": (
+        "`sim.sensor(name)` returns a sensor. Its class depends on the kind; each has the names below, for example "
+        "`sensor.latest`, `sensor.truth` and `sensor.capture`. [The pages of the kinds](../../docs/sensors/index.md) "
+        "show their readings.",
+        ("simkit.sensors.base.Sensor",),
+    ),
+    "World and contacts: sim.world, sim.contacts": (
+        "`sim.world` describes the world as it was read. `sim.contacts()` returns the present contacts.",
+        ("simkit.scene.world.SceneWorld", "simkit.runtime.contact.collision_contacts.Contact"),
+    ),
+    "Topics and frames: sim.subscribe, sim.tf": (
+        "`sim.advertise(…)` returns a publisher, `sim.subscribe(…)` a subscription, `sim.tf` the frames.",
+        (
+            "simkit.Publisher",
+            "simkit.Subscription",
+            "simkit.DeferredResponse",
+            "simkit.runtime.communication.transform_buffer.TransformBuffer",
+        ),
+    ),
+}
+"""Pages for objects of a simulation: title -> introduction and names."""
+
+_MODULES = (
+    *("msgs", "testing", "recording", "live", "gym", "extend", "errors", "pose", "progress"),
+    *("elementary_functions", "float_sum", "linear_algebra", "matrix_decompositions"),
+)
+
+
+def public_names(module: str) -> list[str]:
+    """Return the public names of a module of simkit: `__all__`, else its classes and functions."""
+    tree = ast.parse(_module_file(module).read_text(encoding="utf-8"))
+    for node in tree.body:
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
+            names: list[str] = ast.literal_eval(node.value)
+            return names
+    kinds = (ast.ClassDef, ast.FunctionDef)
+    found = [node.name for node in tree.body if isinstance(node, kinds) and not node.name.startswith("_")]
+    return list(dict.fromkeys(found))  # overloads have one name
+
+
+def _module_file(module: str) -> Path:
+    path = ROOT.joinpath(*module.split("."))
+    return path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+
+
+def python_pages() -> dict[str, tuple[str, str]]:
+    """Return title and text of each page of public names by its path."""
+    pages = {}
+    shown: set[str] = set()
+    for title, (introduction, names) in _HANDLES.items():
+        pages[_path("python", title.partition(":")[0])] = (
+            title.partition(":")[0],
+            _python_page(title, introduction, names),
+        )
+        shown.update(names)
+    rest = [f"simkit.{name}" for name in public_names("simkit") if f"simkit.{name}" not in shown]
+    rest = [name for name in rest if not name.endswith("__")]
+    text = _python_page("simkit", "Functions, base classes of plugins and values that `import simkit` gives.", rest)
+    first = {_path("python", "simkit"): ("simkit", text)}
+    for module in _MODULES:
+        name = f"simkit.{module}"
+        docstring = ast.get_docstring(ast.parse(_module_file(name).read_text(encoding="utf-8"))) or ""
+        introduction = _with_blocks(docstring)
+        names = tuple(f"{name}.{each}" for each in public_names(name))
+        pages[_path("python", name)] = (module, _python_page(name, introduction, names))
+    return {**first, **pages}
+
+
+def _python_page(title: str, introduction: str, names: Iterable[str]) -> str:
+    return "\n\n".join([f"# {title}", introduction, *map(_directive, names)]) + "\n"
+
+
+def _directive(name: str) -> str:
+    """Return the line of mkdocstrings for a name. A class that users get only from a handle has no module before it."""
+    if name.count(".") < 3:
+        return f"::: {name}"
+    return f"::: {name}\n    options:\n      heading: {name.rpartition('.')[2]}"
+
+
+def _with_blocks(docstring: str) -> str:
+    """Return a module's docstring with its lines of Python, indented or not, as blocks of code."""
+    paragraphs = []
+    for paragraph in re.split(r"\n\s*\n", docstring):
+        lines = paragraph.splitlines()
+        is_code = lines[0].startswith("    ") or re.match(r"(from|import) \w|with |\w+ = |.*\.\w+\(.*\)$", lines[0])
+        text = "\n".join(line.removeprefix("    ") for line in lines) if lines[0].startswith("    ") else paragraph
+        paragraphs.append(f"```python\n{text}\n```" if is_code else paragraph)
+    return "\n\n".join(paragraphs)
+
+
+def command_pages() -> dict[str, tuple[str, str]]:
+    """Return title and text of a page for each command, with the texts of `--help`, by its path."""
+    import typer
+
+    from simkit.cli import app
+
+    root: Any = typer.main.get_command(app)
+    context = root.context_class(root, info_name="simkit")
+    narrative = {Path(page).stem: page for page in repository_pages() if "/commands/" in page}
+    pages = {}
+    for name in root.list_commands(context):
+        command = root.get_command(context, name)
+        text = "\n".join(_command_lines(getattr(command, "real", command), name, context, 1))
+        if name in narrative:
+            text = text.replace("\n\n", f"\n\n[Description and examples](../../{narrative[name]})\n\n", 1)
+        pages[_path("commands", name)] = (f"simkit {name}", text)
+    return pages
+
+
+def _command_lines(command: Any, name: str, parent: Any, level: int) -> Iterator[str]:
+    """Yield the lines of Markdown for a command and the commands of its group."""
+    context = command.context_class(command, info_name=name, parent=parent)
+    yield f"{'#' * level} {context.command_path}\n"
+    usage = command.get_usage(context).removeprefix("Usage: ")
+    yield f"```text\n{' '.join(usage.split())}\n```\n"
+    for paragraph in (command.help or "").replace("\b", "").split("\n\n"):
+        yield f"{_plain(paragraph)}\n"
+    records = [(parameter, parameter.get_help_record(context)) for parameter in command.get_params(context)]
+    rows = [
+        f"| {_code(record[0])} | {_plain(_one_line(record[1]))} |"
+        for _, record in records
+        if record is not None and not record[0].startswith("--help")
+    ]
+    if rows:
+        yield "| argument or option | meaning |\n|---|---|"
+        yield from rows
+        yield ""
+    if hasattr(command, "commands"):
+        for each in command.list_commands(context):
+            yield from _command_lines(command.get_command(context, each), each, context, level + 1)
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())
+
+
+def _code(text: str) -> str:
+    """Return the names of an option as code; `|` would end the cell of a table."""
+    return f"`{text}`".replace("|", "¦")
+
+
+def _plain(text: str) -> str:
+    """Return a text for a terminal as Markdown that shows it unchanged."""
+    parts = re.split(r"(`[^`]+`)", text)
+    return "".join(part if part.startswith("`") else re.sub(r"([\\*_<>|\[\]])", r"\\\1", part) for part in parts)
+
+
+def diagnostic_pages() -> dict[str, tuple[str, str]]:
+    """Return title and text of a page for each area of diagnostic codes by its path; the first is the introduction."""
+    from simkit.cli.diagnostic_catalogue import page
+
+    introduction, *areas = re.split(r"^## ", page(), flags=re.MULTILINE)
+    pages = {}
+    rows = ["| area | codes |", "|---|---|"]
+    for area in areas:
+        title, _, text = area.partition("\n")
+        codes = re.findall(r"^### (SK-\S+)$", text, flags=re.MULTILINE)
+        path = _path("diagnostics", title)
+        text = re.sub(r"\]\((?!#|https?:)", "](../../docs/", text)  # links are relative to the folder docs
+        pages[path] = (title, f"# {title}\n" + text.replace("\n### ", "\n## "))
+        rows.append(f"| [{title}](../{path}) | {_range_of(codes)} |")
+    first = introduction.replace("This page is generated", "These pages are generated")
+    return {"docs/diagnostics.md": ("Diagnostics", first + "\n" + "\n".join(rows) + "\n"), **pages}
+
+
+def _range_of(codes: list[str]) -> str:
+    """Return the first and the last code of each prefix as text."""
+    by_prefix: dict[str, list[str]] = {}
+    for code in codes:
+        by_prefix.setdefault(code.rpartition("-")[0], []).append(code)
+    return ", ".join(f"`{c[0]}`" + (f" to `{c[-1]}`" if len(c) > 1 else "") for c in by_prefix.values())
+
+
+def generated_pages() -> Mapping[str, tuple[str, str]]:
+    """Return title and text of all generated pages by their paths."""
+    return {**python_pages(), **command_pages(), **diagnostic_pages()}
+
+
+def _path(folder: str, title: str) -> str:
+    return f"reference/{folder}/{re.sub(r'[^a-z0-9.]+', '_', title.lower()).strip('_')}.md"
