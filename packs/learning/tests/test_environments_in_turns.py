@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import re
+import select
+import subprocess
+import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,12 +15,14 @@ import pytest
 
 gymnasium = pytest.importorskip("gymnasium", reason="pip install 'simkit-robotics[experiments]'")
 
+import sweep_worlds  # noqa: E402
 from rover_worlds import ACCELERATION, COMMAND_AND_ODOMETRY, RATE, assert_same_bits, rover, world  # noqa: E402
 from sweep_worlds import CART, SLIDE  # noqa: E402
 
 import simkit.gym  # noqa: E402
 from simkit import Pose  # noqa: E402
 from simkit.errors import InputError  # noqa: E402
+from simkit_learning.environments import shared_vector  # noqa: E402
 
 TURNS = (("processes", 1),)
 OBSERVATION: dict[str, Any] = {"scan": "/rover/scan", "imu": "/rover/imu", "pose": "rover"}
@@ -133,3 +140,56 @@ def test_an_error_in_a_process_is_raised_with_its_code() -> None:
     with pytest.raises(InputError, match="SK-GYM-005"):
         envs.step(np.zeros((2, 1)))
     envs.close()
+
+
+def test_a_process_that_has_ended_is_named_in_each_call() -> None:
+    envs: Any = simkit.gym.make_vec(CART, num_envs=2, processes=2, observation=SLIDE, action=SLIDE)
+    envs.reset(seed=1)
+    envs._processes[0].kill()
+    envs._processes[0].join()
+    for _ in range(2):
+        with pytest.raises(InputError, match="a process of the environments has ended"):
+            envs.step(np.zeros((2, 1)))
+    envs.close()
+
+
+def test_a_call_after_an_interrupted_one_gets_its_own_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    envs = simkit.gym.make_vec(CART, num_envs=2, processes=2, observation=SLIDE, action=SLIDE)
+    first, _ = envs.reset(seed=1)
+
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(shared_vector, "_received", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            envs.step(np.ones((2, 1)))
+    assert np.array_equal(envs.reset(seed=1)[0], first)
+    envs.close()
+
+
+CALLER = """
+import sys
+sys.path.insert(0, {folder!r})
+import simkit.gym
+from sweep_worlds import CART, SLIDE
+if __name__ == "__main__":
+    envs = simkit.gym.make_vec(CART, num_envs=3, processes=3, observation=SLIDE, action=SLIDE)
+    envs.reset(seed=1)
+    print("ready", flush=True)
+    sys.stdin.read()
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="the system has no fork")
+def test_the_processes_end_with_a_caller_that_is_killed() -> None:
+    program = CALLER.format(folder=str(Path(sweep_worlds.__file__).parent))
+    read, write = os.pipe()  # closed when the last process that has its end has ended
+    with subprocess.Popen(
+        [sys.executable, "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, pass_fds=[write]
+    ) as caller:
+        os.close(write)
+        assert caller.stdout is not None and caller.stdout.readline() == b"ready\n"
+        caller.kill()
+        assert select.select([read], [], [], 60)[0]
+    os.close(read)

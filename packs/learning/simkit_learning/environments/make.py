@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import logging
 import multiprocessing
 import os
@@ -165,6 +166,7 @@ def _start_method() -> str | None:
 
     A process with other threads must not be copied: a lock that one of them holds would stay locked in the copy.
     """
+    gc.collect()  # a copy that deleted an unused batch would wait for ever for the batch's threads
     if threading.active_count() == 1:
         return None
     return "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"

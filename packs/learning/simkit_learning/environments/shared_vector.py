@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import gc
 import itertools
 import pickle
 from collections.abc import Sequence
@@ -85,6 +86,7 @@ class SharedVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
         self._observation: Any = create_empty_array(env.observation_space, num_envs)
         bounds = [num_envs * part // processes for part in range(processes + 1)]
         self._places = [slice(low, high) for low, high in itertools.pairwise(bounds)]
+        self._calls = 0
         self._pipes: list[Connection] = []
         self._processes: list[Any] = []
         for place in self._places:
@@ -92,7 +94,7 @@ class SharedVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
             count = place.stop - place.start
             make = partial(turns_in_this_process, spec, count, autoreset, render_mode, size, place.start)
             process = context.Process(  # type: ignore[attr-defined]
-                target=_serve, args=(CloudpickleWrapper(cast(Any, make)), other), daemon=True
+                target=_serve, args=(CloudpickleWrapper(cast(Any, make)), other, mine), daemon=True
             )
             process.start()
             other.close()
@@ -148,24 +150,26 @@ class SharedVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
         """End the processes."""
         for pipe in self._pipes:
             with contextlib.suppress(OSError):
-                pipe.send(("close", {}))
-        for pipe, process in zip(self._pipes, self._processes, strict=True):
+                pipe.send((0, "close", {}))
+            pipe.close()
+        for process in reversed(self._processes):  # a fork also has the pipes of the processes before it
             process.join(_PATIENCE)
             if process.is_alive():
                 process.terminate()
                 process.join()
-            pipe.close()
 
     def _call(self, name: str, calls: Sequence[dict[str, Any] | None]) -> list[Any]:
         """Call a method in the processes, and return their results; None for a process without a call."""
         if self.closed:
             raise invalid("the environment is closed", "make it again with simkit.gym.make_vec", "SK-GYM-005")
+        self._calls += 1
         for pipe, arguments in zip(self._pipes, calls, strict=True):
             if arguments is not None:
-                pipe.send((name, arguments))
+                with contextlib.suppress(OSError):  # of a process that has ended, as `_received` reports
+                    pipe.send((self._calls, name, arguments))
         results, failure = [], None
         for pipe, arguments in zip(self._pipes, calls, strict=True):
-            error, result = (None, None) if arguments is None else _received(pipe)
+            error, result = (None, None) if arguments is None else _received(pipe, self._calls)
             failure = failure or error
             results.append(result)
         if failure is not None:
@@ -209,29 +213,33 @@ def _merged(parts: Sequence[tuple[slice, Info]], count: int) -> Info:
 # ---------------------------------------------------------------------- the processes
 
 
-def _received(pipe: Connection) -> tuple[BaseException | None, Any]:
-    """Return the error or the result of a call."""
+def _received(pipe: Connection, number: int) -> tuple[BaseException | None, Any]:
+    """Return the error or the result of a call; answers to earlier calls, which Ctrl-C has interrupted, are dropped."""
     try:
-        error, result = pipe.recv()
+        while True:
+            answered, error, result = pipe.recv()
+            if answered == number:
+                return error, result
     except (EOFError, OSError):
         return invalid("a process of the environments has ended", "look at its last output"), None
-    return error, result
 
 
-def _serve(make: CloudpickleWrapper[Any], pipe: Connection) -> None:
-    """Serve calls of the methods of a vector environment, until it is closed."""
+def _serve(make: CloudpickleWrapper[Any], pipe: Connection, callers_end: Connection) -> None:
+    """Serve calls of the methods of a vector environment, until it is closed or its process has ended."""
+    gc.freeze()  # objects of the caller are not deleted here, because their threads are not in this process
+    callers_end.close()  # else the pipe would stay open after the end of the caller
     envs: SyncVectorEnv | None = None
     try:
         while True:
-            name, arguments = pipe.recv()
+            number, name, arguments = pipe.recv()
             if name == "close":
                 return
             try:
                 envs = make() if envs is None else envs
-                answer: tuple[BaseException | None, Any] = None, getattr(envs, name)(**arguments)
+                answer: tuple[int, BaseException | None, Any] = number, None, getattr(envs, name)(**arguments)
                 pipe.send(answer)
             except Exception as error:  # noqa: BLE001 - raised again by the caller
-                pipe.send((_portable(error), None))
+                pipe.send((number, _portable(error), None))
     except (EOFError, OSError, KeyboardInterrupt):
         return
     finally:
