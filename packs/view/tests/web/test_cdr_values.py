@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import itertools
 import json
+import keyword
 import math
 from typing import Any
 
@@ -27,7 +28,7 @@ def example(node: Any, numbers: Any, special: float) -> Any:
     kind, detail = int(node[0]), node[1]
     number = next(numbers)
     if kind == NAME:
-        return {name: example(each, numbers, special) for name, each in field_nodes(detail)}
+        return examples(detail, numbers, special)
     if kind == BASE and detail[0] in ("string", "wstring"):
         return 'é"\\𝄞'[: number % 5]
     if kind == BASE and detail[0].startswith("float"):
@@ -36,6 +37,12 @@ def example(node: Any, numbers: Any, special: float) -> Any:
         return bool(number % 2) if detail[0] == "bool" else number % 120
     length = detail[1] if kind == ARRAY else min(number % 4, detail[1] or 3)
     return [example(detail[0], numbers, special) for _ in range(length)]
+
+
+def examples(type_name: str, numbers: Any, special: float) -> dict[str, Any]:
+    """Values of all fields; a field named like a Python keyword is an argument with a trailing `_`."""
+    fields = field_nodes(type_name)
+    return {n + "_" * keyword.iskeyword(n): example(node, numbers, special) for n, node in fields}
 
 
 def plain(value: Any, is_binary: bool) -> Any:
@@ -67,8 +74,7 @@ def test_the_values_of_every_type_are_those_of_the_decoded_message(special: floa
     pytest.importorskip("cbor2")
     numbers = itertools.count()
     for name in sorted(type_store().fielddefs):
-        fields = {field: example(node, numbers, special) for field, node in field_nodes(name)}
-        data = msgs.serialize(msgs.from_dict((name,), fields))
+        data = msgs.serialize(msgs.from_dict((name,), examples(name, numbers, special)))
         decoded = msgs.deserialize(data, name)
         assert json.dumps(read_values(data, name)) == json.dumps(plain(decoded, False)), name
         assert repr(untagged(read_values(data, name, is_binary=True))) == repr(plain(decoded, True)), name
