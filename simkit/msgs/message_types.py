@@ -19,6 +19,7 @@ from simkit.errors import MessageError
 from simkit.msgs import own_interfaces
 from simkit.msgs.definition_parser import PARTS, MessageDefinition, interface_of
 from simkit.msgs.message_repr import attribute_names, with_readable_text
+from simkit.msgs.notebook_pictures import with_notebook_pictures
 from simkit.msgs.shipped_interfaces import (
     PACKAGES_WITH_LONG_NAMES,
     definition_files,
@@ -65,6 +66,7 @@ def type_store() -> Typestore:
 
     store = get_typestore(Stores.ROS2_JAZZY)
     with_readable_text(store.types.values())
+    with_notebook_pictures(store.types)
     return with_wide_strings(store, _ReadOnDemand(store.fielddefs), _ReadOnDemand(store.types))
 
 
