@@ -172,6 +172,7 @@ def test_a_missing_file_is_reported_by_its_name_with_the_most_similar_one(saved:
         load("nothing_like_it.yaml")
 
 
+@pytest.mark.needs_packs
 def test_ideal_removes_each_own_element_of_a_sensor_that_is_an_error() -> None:
     kept = {"encoder", "phase", "point_layout", "preset", "scan_pattern", "set_rate_topic", "solar"}
     names = sorted(OWN_ELEMENTS["sensor"])
