@@ -46,7 +46,7 @@ MANY_RAYS: Final = 2048
 """Number of rays from which NumPy is faster on shapes than the engine."""
 
 _RAYS_PER_CHUNK = 1 << 18  # rays traced at a time, which limits the memory besides the result
-RAYS_PER_THREAD: Final = 1 << 13
+RAYS_PER_THREAD: Final = 1 << 14
 """Fewest rays for which a thread saves time."""
 _LARGEST = float(np.finfo(np.float64).max)
 _LARGEST_SINGLE = 3e38  # of float32, with a margin

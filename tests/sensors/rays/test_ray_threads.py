@@ -14,6 +14,7 @@ import pytest
 import trimesh
 
 import simkit
+from simkit.sensors.rays import lidar_batch, ray_fan
 from simkit.sensors.rays.embree_rays import has_embree
 from simkit.sensors.rays.ray_fan import RayFan, fan_directions
 from simkit.sensors.rays.ray_threads import RayThreads, ray_threads
@@ -53,6 +54,13 @@ def world() -> str:
     return f'<sdf version="1.9"><world name="w">{"".join(parts)}</world></sdf>'
 
 
+@pytest.fixture(autouse=True)
+def small_parts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Fans of a test are smaller than those for which threads are faster."""
+    for module in (ray_fan, lidar_batch):
+        monkeypatch.setattr(module, "RAYS_PER_THREAD", 1 << 12)
+
+
 def cast(sim: simkit.Simulation, grid: Any, threads: int) -> tuple[bytes, bytes]:
     fan = RayFan(fan_directions(AZIMUTHS, ELEVATIONS), GROUPS, 30.0, grid=grid)
     fan.bind(sim.mj_model, sim.engine.names, 0, ())
@@ -86,7 +94,9 @@ LIDAR = """<sensor name="s" type="lidar"><update_rate>20</update_rate><lidar><sc
 
 
 @pytest.mark.parametrize("threads", [1, 3])
-def test_lidars_that_cast_together_have_the_bits_of_each_alone(threads: int, tmp_path: pathlib.Path) -> None:
+def test_lidars_that_cast_together_have_the_bits_of_each_alone(
+    threads: int, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     trimesh.creation.icosphere(2, 0.4).export(tmp_path / "ball.stl")
     text = world()
     for i in (0, 1, 4, 5, 8):  # balls of triangles and boxes carry a lidar
@@ -100,7 +110,11 @@ def test_lidars_that_cast_together_have_the_bits_of_each_alone(threads: int, tmp
         sim.run(0.0501)
         assert len({id(lidar.batch) for lidar in lidars}) == 1
         assert lidars[0].batch is not None
+        jobs: list[int] = []
+        run = ray_threads.run
+        monkeypatch.setattr(ray_threads, "run", lambda parts: (jobs.append(len(parts)), run(parts)))
         lidars[0].batch.capture_all(lidars[0].computed_data())
+        assert jobs == [threads]
         together = [lidar.batch.captured(lidar.batch_index) for lidar in lidars]
         for lidar, reading in zip(lidars, together, strict=True):
             alone = lidar.measure_now()
