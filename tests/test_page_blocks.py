@@ -65,7 +65,9 @@ LEFT_OUT: Final = {
     ),
     r"^ros2 |^simkit ros$|--ros(?: |$)": LeftOut("ROS 2", 0),
     r"ray start|--cluster|SLURM": LeftOut("a cluster", 0),
-    r"contact-nets|--quick|benchmarks/history|train_turtlebot3|toss1": LeftOut("hours, or recordings of a real cube", 0),
+    r"contact-nets|--quick|benchmarks/history|train_turtlebot3|toss1": LeftOut(
+        "hours, or recordings of a real cube", 0
+    ),
     r"arena\.world|robot\.sdf --score|check my_robots|finger\.urdf|harbour": LeftOut("an example of a message", 0),
 }
 SHORTER: Final = {"samples: 64": "samples: 4", "--trials 200": "--trials 2"}
@@ -175,7 +177,7 @@ class Reader:
     def _begin(self, command: str) -> None:
         terminal = Terminal("bash", "-c", command, cwd=self._folder, size=(40, 160), environment=self._environment)
         self._running[program_of(command)] = self._stack.enter_context(terminal)
-        started = r"t = |http://|running until" if WORLD.search(command) else r"\n"
+        started = r"t = (?:[1-9]|0\.0?[1-9])|paused|http://.*\n.*$" if WORLD.search(command) else r"\n"
         assert "error" not in terminal.wait_for(rf"{started}|error.*\n.*")[0]
 
     def _end_of(self, command: str) -> None:
@@ -210,7 +212,7 @@ def copy_clone(folder: Path, programs: Path) -> None:
     """Copy the folders of this repository, with the programs as its virtual environment."""
     ignored = shutil.ignore_patterns("node_modules", "__pycache__", ".*_cache")
     for name in ("assets", "benchmarks", "examples", "golden", "packs", "simkit", "worlds"):
-        shutil.copytree(ROOT / name, folder / name, ignore=ignored)
+        shutil.copytree(ROOT / name, folder / name, ignore=ignored, dirs_exist_ok=True)
     (folder / ".venv").mkdir()
     (folder / ".venv" / "bin").symlink_to(programs)
 
@@ -230,11 +232,11 @@ def test_the_commands_of_a_page_run(page: Path, tmp_path: Path) -> None:
     parts = blocks(page, *SHELL, "python", "text")
     while parts[-1].language == "python":  # files of programs that no command uses
         parts.pop()
+    write_files(page, folder)
     if page.name == "README.md" and "examples" in page.parts:
-        shutil.copytree(page.parent, folder)
+        shutil.copytree(page.parent, folder, dirs_exist_ok=True)
     elif any(IN_CLONE.search(part.text) for part in parts if part.language in SHELL):
         copy_clone(folder, programs)
-    write_files(page, folder)
     for file in folder.glob("*.yaml"):
         file.write_text(file.read_text("utf-8").replace(*next(iter(SHORTER.items()))), encoding="utf-8")
     with ExitStack() as stack:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import re
 import tomllib
@@ -97,7 +98,13 @@ URDF: Final = (
     '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>%s{}</robot>'
 )
 CHILD: Final = '<joint name="of_%s" type="fixed"><parent link="base"/><child link="%s"/></joint>'
+ARM: Final = "".join(
+    f'<link name="{name}"/><joint name="left_{name}" type="continuous"><parent link="{parent}"/>'
+    f'<child link="{name}"/></joint>'
+    for parent, name in itertools.pairwise(("base", "s0", "s1", "e0", "e1", "w0", "w1", "w2"))
+)
 ROBOTS: Final = {  # robot for a piece of URDF, by the name of its first element
+    "packs/robots/docs/baxter.md gazebo": URDF % ARM,
     "gazebo": URDF % "".join(f'<link name="{name}"/>' + CHILD % (name, name) for name in ("left", "right")),
     "xacro:macro": URDF % (CHILD % ("left_leg", "left_leg")),
 }
@@ -190,7 +197,8 @@ def test_xml_of_a_page_is_valid_where_it_belongs(page: Path, block: Block, tmp_p
         found = problems(file, tmp_path)
     elif name in ROBOTS:
         file = tmp_path / "page.urdf.xacro"
-        file.write_text(ROBOTS[name].format(block.text), encoding="utf-8")
+        robot = ROBOTS.get(f"{page_name(page)} {name}", ROBOTS[name])
+        file.write_text(robot.format(block.text), encoding="utf-8")
         found = problems(file, tmp_path)
     else:
         file.write_text(world_with(page, elements, plugins_in_world=False), encoding="utf-8")
