@@ -224,6 +224,7 @@ DOMINO_WAVE = Table(
     steps=(0.002, 0.001, 0.0005, 0.00025),
     quick_steps=(0.001, 0.0005),
     by_step=True,
+    is_on_page=False,
 )
 DICE = Table(
     "dice",
@@ -236,6 +237,7 @@ DICE = Table(
     steps=(0.002, 0.001, 0.0005, 0.00025),
     quick_steps=(0.001,),
     by_step=True,
+    is_on_page=False,
 )
 PYRAMIDS = Table(
     "logs",
@@ -245,7 +247,7 @@ PYRAMIDS = Table(
     {key: PILE_QUANTITIES[key] for key in ("rest_us", "creep", "asleep")},
     _pyramids,
     engines=BESIDE,
-    headline=("rest_us", "creep"),
+    is_on_page=False,
 )
 FALLING_HEAPS = Table(
     "heaps",

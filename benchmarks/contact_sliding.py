@@ -278,7 +278,7 @@ SLIDING_SHAPES = Table(
     _sliding_shapes,
     engines=BESIDE,
     timed=True,
-    headline=("hop",),
+    is_on_page=False,
 )
 PUSHED = Table(
     "pushed",

@@ -260,6 +260,7 @@ DISC = Table(
     steps=(0.002, 0.001, 0.0005, 0.00025),
     quick_steps=(0.001,),
     by_step=True,
+    is_on_page=False,
 )
 PRECESSIONS = Table(
     "precession",
@@ -282,6 +283,7 @@ TURNTABLE = Table(
     quick_steps=(0.001,),
     engines=("simkit", "MuJoCo's law", "PyBullet"),
     by_step=True,
+    is_on_page=False,
 )
 EDGES = Table(
     "edge",
@@ -293,6 +295,7 @@ EDGES = Table(
     steps=(0.002, 0.001, 0.0005, 0.00025),
     quick_steps=(0.001,),
     by_step=True,
+    is_on_page=False,
 )
 PENDULUMS = Table(
     "pendulums",
