@@ -10,7 +10,7 @@ from simkit import msgs
 from simkit.msgs.interface_definitions import interface_names
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "services.md"
-ROW = re.compile(r"^\| `(/[^`]+)` \| `([\w/]+/srv/\w+)` \| (.+) \|$", re.MULTILINE)
+ROW = re.compile(r"^\| `(/[^`]+)` \| `([\w/]+/srv/\w+)` \| (.*)\|$", re.MULTILINE)
 WORLD = (
     """<sdf version="1.9"><world name="w"><plugin name="api" filename="libgazebo_ros_api_plugin.so"/></world></sdf>"""
 )
