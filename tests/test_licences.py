@@ -16,7 +16,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = "packs/view/simkit_view/view/page"
-ASSETS = ("assets", "worlds", "labs", "examples", "packs/*/simkit_*", "packs/*/examples")
+ASSETS = ("assets", "worlds", "labs", "examples", "simkit", "packs/*/simkit_*", "packs/*/examples")
 """Folders with files that a world can show."""
 SUFFIXES = {
     ".bmp",
