@@ -1,8 +1,9 @@
-"""The tables of the pages docs/from: each name of simkit in them exists, with the arguments that the tables show."""
+"""Pages docs/from and docs/troubleshooting.md: each command, name, element and code in them exists."""
 
 from __future__ import annotations
 
 import ast
+import functools
 import inspect
 import re
 import shlex
@@ -15,9 +16,11 @@ import typer
 
 import simkit
 from simkit.cli import app
+from simkit.cli.diagnostic_catalogue import catalogue
 from simkit.sensors.base import Sensor
 
 ROOT = Path(__file__).resolve().parents[1]
+TROUBLESHOOTING = (ROOT / "docs" / "troubleshooting.md").read_text("utf-8")
 PAGES = sorted((ROOT / "docs" / "from").glob("*.md"))
 OBJECTS: dict[str, Any] = {
     "simkit": simkit,
@@ -56,9 +59,14 @@ SPANS = [
 ]
 
 
+@functools.cache
+def root_command() -> Any:
+    return typer.main.get_command(app)
+
+
 def unknown_options(words: list[str]) -> list[str]:
     """Return the options in the words of a command line that its command does not have; fail for an unknown command."""
-    command: Any = typer.main.get_command(app)
+    command = root_command()
     context = command.context_class(command, info_name="simkit")
     while words and hasattr(command, "list_commands"):
         assert words[0] in command.list_commands(context), words
@@ -105,6 +113,20 @@ def test_a_name_of_simkit_in_the_tables_exists(span: str, is_simkit: bool) -> No
         find_entry(span)
     elif is_simkit:
         assert span in SENSORS, "no command, option, element, plugin, sensor or expression of simkit"
+
+
+@pytest.mark.needs_packs
+@pytest.mark.parametrize("span", sorted(set(re.findall(r"`((?:simkit |--)[^`]+)`", TROUBLESHOOTING))))
+def test_a_command_of_the_page_of_symptoms_exists(span: str) -> None:
+    words = shlex.split(span)
+    assert unknown_options(words[1:] if words[0] == "simkit" else ["run", *words]) == []
+
+
+@pytest.mark.needs_packs
+def test_the_codes_of_the_page_of_symptoms_exist() -> None:
+    codes = set(re.findall(r"SK-[A-Z]+-\d{3}", TROUBLESHOOTING))
+    assert len(codes) > 20
+    assert codes <= set(catalogue())
 
 
 @pytest.mark.needs_packs

@@ -14,25 +14,7 @@ FOLDER = Path(__file__).resolve().parent
 DOCS = FOLDER.parents[1] / "docs"
 Entry = Mapping[str, Any]
 
-_HEAD = """# Speed
-
-## What costs time
-
-`simkit bench WORLD` compares a world with MuJoCo alone. A step of the TurtleBot3 world takes about 15 µs. If a run is too
-slow, switch off in this order:
-
-| cost | remedy |
-|---|---|
-| **Images**: an RGB-D picture of 640 × 480 takes as long as 500 steps. Unread cameras cost nothing | `--skip '/camera/*'` with `--record`; a smaller `<image>`, a lower `<update_rate>`, [`fast`](rendering.md) quality |
-| **Real time**: `--web`, `--view`, `--teleop` and `--rtf 1` hold a run at real time | `--rtf inf` |
-| **Contacts**: heaps, mesh on mesh | boxes and cylinders as `<collision>`; models at rest [sleep](sleeping.md), unless they have a sensor or a plugin |
-| **Steps**: twice the step, half the time | `--set physics.max_step_size=0.002`, as long as [contacts](physics.md) and gains allow it |
-| **Dense lidars**: 16 × 900 rays take 3 ms | a lower `<update_rate>`; a lidar that nobody reads costs nothing |
-| **Python in each step**: 2 µs and more for a hook, as much for a callback for each message of 200 Hz | [`before_step_rate`](writing_a_plugin.md) in a plugin; `keep=1` and `latest` in place of a callback |
-| **Loading**: the first load decomposes meshes | the second takes them from the [cache](meshes.md#the-cache) |
-| **Many runs** | [`simkit sweep`](../packs/learning/docs/sweeps.md) uses one process for each core |
-
-## Against MuJoCo alone
+_HEAD = """## Against MuJoCo alone
 
 How fast simkit is, version by version, as the ratio to MuJoCo alone on the same compiled model. Both take turns in one
 process. A ratio of 1 is the speed of MuJoCo; less is faster. In a ratio of 2, half of the time is the physics, and half
@@ -69,7 +51,10 @@ def write_page() -> None:
 def page_text(entries: Sequence[Entry]) -> str:
     """Return the text of the page."""
     figures = tomllib.loads((FOLDER / "figures.toml").read_text(encoding="utf-8"))
-    return "\n".join((_HEAD, last_entry(entries), history(entries), peers(figures), memory(figures)))
+    costs = (FOLDER / "costs.md").read_text(encoding="utf-8")
+    return "\n".join(
+        ("# Speed\n", costs, _HEAD, last_entry(entries), history(entries), peers(figures), memory(figures))
+    )
 
 
 def amount(name: str, value: float) -> str:

@@ -19,8 +19,8 @@ _HANDLES = {
     ),
     "Sensors: sim.sensor": (
         "`sim.sensor(name)` returns a sensor. Its class depends on the kind; each has the names below, for example "
-        "`sensor.latest` and `sensor.truth`. [The pages of the kinds](../../docs/sensors/index.md) show their readings. "
-        "`sensor.capture` is for authors of sensors: [Sensor](simkit.extend.sensors.md) has all methods of the class.",
+        "`sensor.latest` and `sensor.truth`. [The pages of the kinds](../../docs/sensors/index.md) show their "
+        "readings. `sensor.capture` is for authors of sensors: [Sensor](simkit.extend.sensors.md) has all methods.",
         ("simkit.sensors.base.Sensor",),
     ),
     "World and contacts: sim.world, sim.contacts": (
@@ -28,8 +28,8 @@ _HANDLES = {
         ("simkit.scene.world.SceneWorld", "simkit.runtime.contact.collision_contacts.Contact"),
     ),
     "Plugins": (
-        "Base classes of plugins ([writing a plugin](../../docs/writing_a_plugin.md)), and the elements of a `<plugin>`. "
-        "All have the names of `simkit.Plugin`.",
+        "Base classes of plugins ([writing a plugin](../../docs/writing_a_plugin.md)), and the elements of a "
+        "`<plugin>`. All have the names of `simkit.Plugin`.",
         (
             *("simkit.Plugin", "simkit.ModelPlugin", "simkit.WorldPlugin", "simkit.SensorPlugin"),
             *("simkit.VisualPlugin", "simkit.Params"),
@@ -52,18 +52,15 @@ _MODULES = (
     *("elementary_functions", "float_sum", "linear_algebra", "matrix_decompositions"),
 )
 
-_OPTIONS = {
-    "simkit.sensors.base.Sensor": {
-        "members": ["topic", "topics", "latest", "truth", "pose", "set_rate", "noise", "options", "capture"],
-    },
-    **dict.fromkeys(
-        (
-            *("simkit.ModelPlugin", "simkit.WorldPlugin", "simkit.SensorPlugin", "simkit.VisualPlugin"),
-            *("simkit.extend.VectorSensor", "simkit.extend.LidarMeasurement", "simkit.extend.ImuMeasurement"),
-            *("simkit.extend.NavSat", "simkit.extend.MessageArtefact"),
-        ),
-        {"inherited_members": False},
-    ),
+_WITHOUT_INHERITED_NAMES = (
+    *("simkit.ModelPlugin", "simkit.WorldPlugin", "simkit.SensorPlugin", "simkit.VisualPlugin"),
+    *("simkit.extend.VectorSensor", "simkit.extend.LidarMeasurement", "simkit.extend.ImuMeasurement"),
+    *("simkit.extend.NavSat", "simkit.extend.MessageArtefact"),
+)
+_NAMES_OF_A_SENSOR = ["topic", "topics", "latest", "truth", "pose", "set_rate", "noise", "options", "capture"]
+_OPTIONS: dict[str, dict[str, object]] = {
+    "simkit.sensors.base.Sensor": {"members": _NAMES_OF_A_SENSOR},
+    **{name: {"inherited_members": False} for name in _WITHOUT_INHERITED_NAMES},
 }
 """Options of mkdocstrings for names whose base class has its own entry, or whose other names are not for scripts."""
 
@@ -118,7 +115,9 @@ def _extend_pages() -> dict[str, tuple[str, str]]:
         rows = re.findall(r"^\| (.+?) \|", text, flags=re.MULTILINE)
         shown = [name for row in rows for name in re.findall(r"`(\w+)`", row) if name in names]
         if shown:
-            introduction = f"Names of `simkit.extend`: {title[0].lower()}{title[1:]} ([examples](../../docs/extend.md))."
+            introduction = (
+                f"Names of `simkit.extend`: {title[0].lower()}{title[1:]} ([examples](../../docs/extend.md))."
+            )
             path = _path("python", f"simkit.extend.{title}")
             pages[path] = (
                 f"extend: {title[0].lower()}{title[1:]}",

@@ -9,9 +9,9 @@ function searchQuery(typed) {
   const rare = words.filter((parts) => parts.length > 1 || (parts.length && !COMMON_WORDS.has(parts[0])));
   return (rare.length ? rare : words).flatMap((parts) => {
     const last = parts[parts.length - 1];
-    if (parts.length < 2) return parts.flatMap((word) => [`${word}^4`, `${stem(word)}*`]);
+    if (parts.length < 2) return parts.flatMap((word) => [`${word}^10`, `${stem(word)}*`]);
     const whole = parts.slice(0, -1).map((part) => COMMON_WORDS.has(part) ? part : `+${part}`);
-    return [...whole, `+${last}*`, `${last}^4`]; // the last part may be unfinished
+    return [...whole, `+${last}*`, `${last}^10`]; // the last part may be unfinished
   }).join(" ");
 }
 
