@@ -41,7 +41,8 @@ def test_the_workflow_tests_each_python_that_the_classifiers_name() -> None:
 
 def test_the_citation_names_the_version_and_the_licence_of_the_code() -> None:
     citation = read("CITATION.cff")
-    assert (citation["version"], citation["license"]) == (simkit.__version__, project()["license"])
+    assert citation["version"] == simkit.__version__
+    assert project()["license"].split(" AND ")[0] == citation["license"]
 
 
 def options_of(command: list[str]) -> set[str]:
