@@ -175,12 +175,32 @@ def test_a_joint_moves_within_its_limits(stage: Stage) -> None:
 def test_goals_and_initial_poses_are_published_as_rviz_does(stage: Stage) -> None:
     page = stage.page()
     goals, estimates = stage.sim.subscribe("/goal_pose"), stage.sim.subscribe("/initialpose")
-    assert page.ask("pose", kind="goal", x=1.5, y=-2.0, yaw=np.pi / 2)["ok"] == "/goal_pose"
+    answer = page.ask("pose", kind="goal", x=1.5, y=-2.0, yaw=np.pi / 2)["ok"]
+    assert answer == {"topic": "/goal_pose", "missing": ""}
     page.ask("pose", kind="initial", x=0.5, y=0.0)
     goal = goals.latest
     assert (goal.header.frame_id, goal.pose.position.x, goal.pose.position.y) == ("map", 1.5, -2.0)
     assert goal.pose.orientation.z == pytest.approx(np.sqrt(0.5))
     assert estimates.latest.pose.covariance[0] == 0.25
+
+
+def test_a_pose_that_only_a_recorder_receives_needs_a_navigator(stage: Stage, tmp_path: Path) -> None:
+    page = stage.page()
+    with Recorder(stage.sim, tmp_path / "a.mcap", topics=["*"]):
+        goal = page.ask("pose", kind="goal", x=1.0, y=0.0)["ok"]
+        assert "no navigator subscribes to /goal_pose" in goal["missing"] and "--nav" in goal["missing"]
+        estimate = page.ask("pose", kind="initial", x=1.0, y=0.0)["ok"]
+        assert "no localisation subscribes to /initialpose" in estimate["missing"]
+
+
+def test_the_present_command_is_sent_until_it_is_stopped(stage: Stage) -> None:
+    page = stage.page()
+    page.want(driving={})
+    page.ask("drive", topic="/cmd_vel", ahead=0.3, turn=0.2)
+    commands = lambda: page.packets["driving"][0]["commands"]  # noqa: E731 - short
+    page.until(lambda: commands() == {"/cmd_vel": [[0.3, 0.0, 0.2], False]})
+    page.ask("key", topic="/cmd_vel", key="s")
+    page.until(lambda: commands() == {"/cmd_vel": [[0.0, 0.0, 0.0], False]})
 
 
 NONSENSE: tuple[str | bytes, ...] = (
