@@ -109,7 +109,9 @@ def test_a_client_that_names_another_type_gets_an_error(court: simkit.Simulation
         with pytest.raises(LiveError, match="'/words' has type") as error:
             early.get(5.0)
         assert error.value.code == "SK-MSG-001"
-        with pytest.raises(LiveError, match="needs example_interfaces/srv/AddTwoInts_Request, got std_srvs/srv/Trigger"):
+        with pytest.raises(
+            LiveError, match="needs example_interfaces/srv/AddTwoInts_Request, got std_srvs/srv/Trigger"
+        ):
             client.call("/add", type=msgs.Trigger_Request)
 
 

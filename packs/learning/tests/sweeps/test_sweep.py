@@ -147,8 +147,11 @@ def test_a_wrong_sweep_is_refused_before_its_first_run(arguments: Any, messages:
 
 # ---------------------------------------------------------------------- commands
 
-BALL = BOX.replace("</link></model>", """</link><plugin filename="gz-sim-velocity-control-system"
-name="gz::sim::systems::VelocityControl"><topic>/cmd_vel</topic></plugin></model>""")
+BALL = BOX.replace(
+    "</link></model>",
+    """</link><plugin filename="gz-sim-velocity-control-system"
+name="gz::sim::systems::VelocityControl"><topic>/cmd_vel</topic></plugin></model>""",
+)
 """A box that moves as `/cmd_vel` says."""
 X = {"x": "pose('box').x"}
 
