@@ -212,7 +212,7 @@ LOADS = Table(
     },
     _loads,
     engines=BESIDE,
-    headline=("sink", "stands"),
+    is_on_page=False,
 )
 DOMINO_WAVE = Table(
     "dominoes",

@@ -94,15 +94,6 @@ def x3_table(values: dict[str, dict[str, Any]]) -> Iterator[str]:
     yield from lines
 
 
-def wall_table(walls: dict[float, dict[str, Any]]) -> Iterator[str]:
-    """Yield the lines of the table of the depth camera in front of a wall."""
-    yield "| wall at [m] | σ, real [mm] | σ, simkit [mm] | valid, real [%] | valid, simkit [%] |"
-    yield "|---|---|---|---|---|"
-    for distance, wall in walls.items():
-        share = SHARES.get(distance, "")
-        yield f"| {distance} | {SIGMAS[distance]} | {1e3 * wall['sigma']:.1f} | {share} | {wall['valid']:.1f} |"
-
-
 def command_table() -> Iterator[str]:
     """Yield the lines of the table of commands and the speeds that the odometry shows."""
     yield "| command | real X3 | simkit, ideal | simkit, rosmaster_x3 |"
@@ -129,7 +120,6 @@ def main(arguments: list[str]) -> None:
     real = x3_values(X3_SET)
     parts = {
         "X3 rows": list(x3_table({"ideal": ideal[0], X3_SET: real[0]})),
-        "X3 walls": list(wall_table(real[2])),
         "X3 commands": list(command_table()),
         "TurtleBot3 rows": list(realism_turtlebot3.table()),
     }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import re
 import subprocess
@@ -167,8 +166,6 @@ def test_the_lock_has_the_dependencies_of_the_project() -> None:
 
 @pytest.mark.slow  # builds the wheel
 def test_the_wheel_has_its_licences_and_notices(tmp_path: Path) -> None:
-    if importlib.util.find_spec("hatchling") is None:
-        pytest.skip("there is no hatchling; pip install hatchling")
     subprocess.run([sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", tmp_path], cwd=ROOT, check=True)
     (wheel,) = tmp_path.glob("*.whl")
     names = zipfile.ZipFile(wheel).namelist()
