@@ -109,6 +109,12 @@ def test_no_entry_of_the_changelog_is_there_twice() -> None:
     assert sorted(long) == sorted(set(long))
 
 
+def test_what_is_not_released_is_short() -> None:
+    """A merge of branches keeps the lines of both sides: lines that one side removed must not come back."""
+    unreleased = CHANGELOG.partition("## Unreleased")[2].partition("\n## ")[0]
+    assert len(unreleased.split()) < 1500
+
+
 def test_every_entry_of_a_version_is_short() -> None:
     released = CHANGELOG.partition(f"## {simkit.__version__}")[2]
     assert not [entry for entry in re.split(r"^- ", released, flags=re.MULTILINE)[1:] if len(entry.split()) > 60]
