@@ -22,7 +22,7 @@ export class Views {
     this.sensor = null; // camera whose view is shown
     this.flight = null; // from where to where the camera flies
     app.stage.before.push(() => this.update());
-    app.stage.limit = () => this.stayAboveFloor();
+    app.stage.limit = () => this.limitOrbit();
     app.stage.controls.addEventListener('start', () => { this.flight = null; });
   }
 
@@ -190,18 +190,26 @@ export class Views {
     camera.lookAt(controls.target);
   }
 
-  /** Limits the angle of the orbit, and lifts what the camera looks at, so that the camera stays above the floor. */
-  stayAboveFloor() {
+  /** Returns the level of the floor below the camera; null without a floor, and where a camera of the robot looks. */
+  floorLevel() {
     const { stage: { camera, controls }, world, scene } = this.app;
-    controls.maxPolarAngle = Math.PI;
-    if (!scene || this.sensor) return;
-    const level = world.floorAt(camera.position, controls.target.z + STOREY);
-    if (level === null) return;
-    const lift = Math.max(0, level - controls.target.z);
-    controls.target.z += lift;
-    camera.position.z += lift;
-    const distance = camera.position.distanceTo(controls.target), height = (level + CLEARANCE - controls.target.z) / distance;
+    return scene && !this.sensor ? world.floorAt(camera.position, controls.target.z + STOREY) : null;
+  }
+
+  /** Ends the orbit just above the floor. */
+  limitOrbit() {
+    const { camera, controls } = this.app.stage, level = this.floorLevel();
+    const height = level === null ? -1 : (level + CLEARANCE - controls.target.z) / camera.position.distanceTo(controls.target);
     controls.maxPolarAngle = Math.acos(Math.min(Math.max(height, -1), 1));
+  }
+
+  /** Lifts the camera and what it looks at above the floor, below which they can be moved. */
+  liftAboveFloor() {
+    const { camera, controls } = this.app.stage, level = this.floorLevel();
+    if (level === null) return;
+    const lift = Math.max(0, level + CLEARANCE - camera.position.z, level - controls.target.z);
+    camera.position.z += lift;
+    controls.target.z += lift;
   }
 
   /** Flies to a model from the present direction, or from one where no wall hides it; a floor alone is already seen. */
@@ -254,6 +262,7 @@ export class Views {
     const { stage } = this.app;
     if (this.followed !== null) this.keepFollowing();
     if (this.flight) this.fly();
+    this.liftAboveFloor();
     if (this.sensor) {
       this.aim(stage.camera, this.sensor, stage.camera.aspect);
       stage.controls.target.copy(stage.camera.position).add(new T.Vector3(0, 0, -1).applyQuaternion(stage.camera.quaternion));

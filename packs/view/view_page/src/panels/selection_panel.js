@@ -7,7 +7,8 @@ export function makeSelectionPanel(app) {
   const text = element('div', { class: 'selection' }), follow = element('button', { onclick: () => app.views.follow(body) }, 'Follow');
   const box = panel('selection', 'Selected', text, follow);
   const outline = new T.Box3Helper(new T.Box3(), 0xffd23e);
-  outline.material.depthTest = false;
+  Object.assign(outline.material, { depthTest: false, transparent: true, fog: false }); // drawn after everything that would cover it
+  outline.renderOrder = 6;
   outline.visible = false;
   app.stage.helpers.add(outline);
   let body = null;
