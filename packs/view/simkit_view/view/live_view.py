@@ -22,7 +22,7 @@ from simkit_view.view.packet import Stream, make_packet
 from simkit_view.view.page_calls import PageCalls
 from simkit_view.view.page_requests import execute_request
 from simkit_view.view.page_server import PageRequest, PageServer
-from simkit_view.view.streams import LASTING, UNTIL_RESET, StreamMaker, make_stream
+from simkit_view.view.streams import CLEARED, LASTING, StreamMaker, make_stream
 from simkit_view.web.access import is_loopback
 
 if TYPE_CHECKING:
@@ -128,7 +128,7 @@ class LiveView:
             self._close_streams()
             return
         if self.sim.tick < self._tick:
-            self._close_streams(lambda kind: kind in UNTIL_RESET)
+            self._clear_streams()
         self._tick = self.sim.tick
         if self.sim.mj_model is not self._model:
             self._set_scene()
@@ -204,6 +204,13 @@ class LiveView:
             stream = self._streams.pop(name)
             if stream is not None:
                 stream.close()
+
+    def _clear_streams(self) -> None:
+        """Clear what pages show of messages and samples of before a reset."""
+        for name in self._streams:
+            if cleared := CLEARED.get(name.partition(":")[0]):
+                self._packets[name] = make_packet({"kind": name, **cleared[0]}, cleared[1])
+        self._close_streams(lambda kind: kind in CLEARED)
 
     # ------------------------------------------------------------------ scene
 

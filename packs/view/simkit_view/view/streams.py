@@ -13,10 +13,11 @@ from simkit import msgs
 from simkit.errors import SimkitError
 from simkit.linear_algebra import matmul
 from simkit.msgs import Message
+from simkit.run_spec import JsonObject
 from simkit.runtime.communication.transform_buffer import TransformBuffer
 from simkit_view.displays.frame_poses import FramePoses
 from simkit_view.view.graph_streams import GRAPH_STREAMS
-from simkit_view.view.packet import Stream, make_packet
+from simkit_view.view.packet import Arrays, Stream, make_packet
 from simkit_view.view.series_stream import SERIES_STREAMS
 from simkit_view.view.topic_display import DisplayList, TopicDisplay
 from simkit_view.view.topic_streams import TOPIC_STREAMS
@@ -29,7 +30,6 @@ _MOST_POINTS: Final = 60_000  # points of a cloud; of a larger one every n-th is
 _MOST_CONTACTS: Final = 500
 _JPEG_QUALITY: Final = 80
 _SINGLE_LAYER: Final = 1
-_NOTHING: Final = object()  # what a stream has sent that had no message yet
 
 
 StreamMaker = Callable[[str], Stream]
@@ -43,17 +43,16 @@ class LidarStream:
     """Ends of the rays of lidars, in the world at the time of their samples.
 
     Options: names of the lidars. A lidar with several layers sends only the rays that hit something; the rays of a
-    single layer without a range are NaN, so that neighbours stay neighbours. The first packet comes without samples, too,
-    because the page may still show those of before a reset.
+    single layer without a range are NaN, so that neighbours stay neighbours.
     """
 
     def __init__(self, sim: Simulation, name: str) -> None:
-        self._sim, self._has_sent = sim, False
+        self._sim = sim
         self._seen: dict[str, tuple[int, npt.NDArray[np.generic], npt.NDArray[np.generic]]] = {}
 
     def packet(self, options: Sequence[object]) -> bytes | None:
         names = dict.fromkeys(name for option in options for name in _texts(option))
-        sensors, is_new = self._sim.contents.sensors, not self._has_sent
+        sensors, is_new = self._sim.contents.sensors, False
         for name in list(names)[:_MOST_LIDARS]:
             sensor: Any = sensors.get(name)
             if sensor is not None and hasattr(sensor, "ray_ends"):
@@ -63,7 +62,6 @@ class LidarStream:
         self._seen = {name: self._seen[name] for name in shown}
         if not is_new:
             return None
-        self._has_sent = True
         rows = [[name, len(self._seen[name][2])] for name in shown]
         points = [self._seen[name][2] for name in shown]
         arrays = {
@@ -175,9 +173,7 @@ class ImageStream:
             if self._seen is None:
                 sensor.check_available()
             message = sensor.latest
-            if message is None:
-                return self._error(stream, "the camera has not taken a picture yet")
-            if message is self._seen:
+            if message is None or message is self._seen:
                 return None
             pixels = _as_bytes(msgs.image(message))
         except SimkitError as error:
@@ -209,9 +205,6 @@ class CloudStream:
 
     def packet(self, options: Sequence[object]) -> bytes | None:
         message: Message = self._subscription.latest
-        if message is None and self._seen is None:
-            self._seen = _NOTHING
-            return make_packet({"kind": f"cloud:{self._topic}"}, {"points": np.zeros((0, 3))})
         if message is None or message is self._seen:
             return None
         self._seen = message
@@ -253,8 +246,14 @@ LASTING: Final = ("display",)
 """Streams that go on when the structure changes, because they keep messages that do not come again."""
 
 
-UNTIL_RESET: Final = ("lidar", "cloud", "image", "display")
-"""Streams that begin anew after a reset, because they show messages and samples of before it."""
+_NO_POINTS: Final = np.zeros((0, 3))
+CLEARED: Final[dict[str, tuple[JsonObject, Arrays]]] = {
+    "lidar": ({"lidars": []}, {"points": _NO_POINTS, "origins": _NO_POINTS}),
+    "cloud": ({}, {"points": _NO_POINTS}),
+    "image": ({"error": "the camera has not taken a picture yet"}, {}),
+    "display": ({"problems": [], "groups": []}, {}),
+}
+"""Streams that begin anew after a reset, with the packet that clears what the page shows of before it."""
 
 
 def make_stream(sim: Simulation, name: str) -> Stream | None:

@@ -103,7 +103,6 @@ class TopicDisplay:
         if type_name not in DISPLAYS:
             return False
         self._display = DISPLAYS[type_name](self._topic, SimulationTools(self._sim, self._frames))
-        self._display.has_changed = True  # the page may still show what was drawn before a reset
         self._tree.open()
         topics = [self._topic, *([self._topic + UPDATES] if isinstance(self._display, GridDisplay) else [])]
         self._taps = [bus.tap(topic, self._receive) for topic in topics]
