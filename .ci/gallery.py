@@ -343,14 +343,13 @@ def write_page(results: dict[str, Any]) -> None:
         "Worlds": ("world",),
     }
     for title, kinds in groups.items():
-        lines += [f"\n## {title}\n", "| | name and file | result | approximated | load |", "|---|---|---|---|---|"]
+        lines += [f"\n## {title}\n", "| | name and file | result |", "|---|---|---|"]
         for entry, result in rows.items():
             if entry.kind in kinds:
-                warned = ", ".join(f"{c} × {n}" if n > 1 else c for c, n in sorted(result["warnings"].items()))
                 text = motion(result)
-                image = f"![{entry.name}](images/gallery/{entry.slug}.webp)"
+                image = f"![](images/gallery/{entry.slug}.webp)"
                 text += f"; {NOTES[entry.slug]}" if entry.slug in NOTES else ""
-                cells = [image, f"**{entry.name}** `{entry.file}`", text, warned or "–", f"{result['load']:.1f} s"]
+                cells = [image, f"**{entry.name}** `{entry.file}`", text]
                 lines.append(f"| {' | '.join(cells)} |")
     PAGE.write_text("\n".join(lines) + "\n")
 

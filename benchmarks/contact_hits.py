@@ -269,4 +269,5 @@ BOUNCES_AND_DROPS = Table(
     },
     _bounces,
     engines=("simkit", "MuJoCo's law", "PyBullet"),
+    headline=("restitution", "bounce_gain", "rebound", "rest"),
 )

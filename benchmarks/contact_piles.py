@@ -212,6 +212,7 @@ LOADS = Table(
     },
     _loads,
     engines=BESIDE,
+    headline=("sink", "stands"),
 )
 DOMINO_WAVE = Table(
     "dominoes",
@@ -246,6 +247,7 @@ PYRAMIDS = Table(
     {key: PILE_QUANTITIES[key] for key in ("rest_us", "creep", "asleep")},
     _pyramids,
     engines=BESIDE,
+    headline=("rest_us", "creep"),
 )
 FALLING_HEAPS = Table(
     "heaps",
@@ -256,4 +258,5 @@ FALLING_HEAPS = Table(
     PILE_QUANTITIES,
     _heaps,
     engines=BESIDE,
+    headline=("rest_us", "creep"),
 )

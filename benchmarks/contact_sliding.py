@@ -269,6 +269,7 @@ SLIDING_BOXES = Table(
     steps=(0.0005, 0.001, 0.002, 0.004),
     engines=BESIDE,
     timed=True,
+    headline=("hop", "way"),
 )
 SLIDING_SHAPES = Table(
     "sliding_shapes",
@@ -279,6 +280,7 @@ SLIDING_SHAPES = Table(
     _sliding_shapes,
     engines=BESIDE,
     timed=True,
+    headline=("hop",),
 )
 PUSHED = Table(
     "pushed",
@@ -296,4 +298,5 @@ PUSHED = Table(
     _pushed_and_driven,
     engines=BESIDE,
     timed=True,
+    headline=("speed", "creep", "yaw"),
 )

@@ -85,9 +85,11 @@ def x3_table(values: dict[str, dict[str, Any]]) -> Iterator[str]:
             cells.append(f"**{text}**" if is_good else text)
         note = row.get("missing", "")
         published = f"{value_text(row['real'])} | {value_text(row['gazebo'])}"
-        lines.append(f"| {row['name']} | {published} | {' | '.join(cells)} | {note} |")
+        if not row.get("is_setting"):
+            lines.append(f"| {row['name']} | {published} | {' | '.join(cells)} | {note} |")
     counts = ", ".join(f"{count} with {name}" for name, count in reached.items())
-    yield f"Of {len(rows)} rows, these are within the tolerance: {counts} (bold).\n"
+    yield f"Of {len(rows)} rows, these are within the tolerance: {counts} (bold). Rows that a file can set, such as"
+    yield "rates, sizes and frames, are left out.\n"
     yield f"| row | real X3 | Gazebo | {' | '.join(f'simkit, {name}' for name in values)} | remark |"
     yield "|---|---|---|" + "---|" * len(values) + "---|"
     yield from lines

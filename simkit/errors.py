@@ -19,6 +19,8 @@ SimkitError                 exit 1
 ├── RegressionError         exit 5   a regression check failed
 ├── RenderError             exit 2   there is no renderer, or it failed
 └── InstallationError       exit 1   MuJoCo is missing, damaged, or has another version
+
+SimkitDeprecationWarning is the class of all warnings about deprecated names.
 """
 
 from __future__ import annotations
@@ -29,6 +31,8 @@ from collections.abc import Sequence
 from typing import ClassVar, Final
 
 from simkit import hidden_text
+from simkit.deprecation import SimkitDeprecationWarning as SimkitDeprecationWarning
+from simkit.deprecation import warn_deprecated
 from simkit.diagnostic_record import NOWHERE, Diagnostic, Where
 
 if not hasattr(sys.modules["simkit"], "_DISTRIBUTION"):
@@ -83,7 +87,9 @@ class SimkitError(Exception):
     def __init__(self, code: str, message: str | None = None, *, help: str = "", shows_code: bool = True) -> None:
         if message is None:
             code, message, shows_code = self.code, code, self._shows_class_code
-        elif _CODE.fullmatch(message) and not _CODE.fullmatch(code):  # as in version 0.1.0
+        elif _CODE.fullmatch(message) and not _CODE.fullmatch(code):
+            name = type(self).__name__
+            warn_deprecated(f"{name}(message, code)", f"{name}(code, message)", since="0.3")
             code, message, shows_code = message, code, False
         text = f"{code} {message}" if shows_code else message
         text += f"\n    help: {help}" if help else ""

@@ -1,55 +1,55 @@
-"""Modules that moved from the core to a pack: an import by the old name works for one version, with a warning.
+"""Modules that moved from the core to a pack: an import by the old name works for two minor versions, with a warning.
 
 The file `moved_modules.txt` in the package of a shipped pack has a line for each old name that the documents named: the
-old and the new name. The finder is asked only for modules of simkit that Python does not find.
+old name, the new one, and the version of the move. The finder is asked only for modules that Python does not find.
 """
 
 from __future__ import annotations
 
 import importlib
 import sys
-import warnings
 from functools import cache
 from importlib.machinery import ModuleSpec
 from types import CodeType, ModuleType
+
+from simkit.deprecation import warn_deprecated
 
 _FILE = "moved_modules.txt"
 _PROGRAM = ".__main__"  # module of a package that `python -m` runs
 
 
 @cache
-def _new_names() -> dict[str, str]:
-    """Return the new name of each moved module by its old name."""
+def _moves() -> dict[str, tuple[str, str]]:
+    """Return the new name of each moved module, and the version of its move, by the old name."""
     from simkit.packs import shipped_packs
 
-    names: dict[str, str] = {}
+    moves: dict[str, tuple[str, str]] = {}
     for pack in shipped_packs():
         try:
             with open(f"{pack.folder}/{_FILE}", encoding="utf-8") as file:
-                names.update((old, new) for old, new in map(str.split, file))
+                moves.update((old, (new, since)) for old, new, since in map(str.split, file))
         except FileNotFoundError:
             continue
-    return names
+    return moves
 
 
 def first_name(module: str) -> str:
     """Return the name that a module had before it moved to a pack; the same name for all other modules."""
-    return next((old for old, new in _new_names().items() if new == module), module)
+    return next((old for old, (new, _) in _moves().items() if new == module), module)
 
 
 class _Loader:
     """Loader of a module with the names of the moved one."""
 
-    def __init__(self, new: str) -> None:
-        self._new = new
+    def __init__(self, new: str, since: str) -> None:
+        self._new, self._since = new, since
 
     def create_module(self, spec: ModuleSpec) -> None:
         """Leave the creation of an empty module to Python."""
 
     def exec_module(self, module: ModuleType) -> None:
         """Import the module by its new name, and copy its names."""
-        text = f"{module.__name__} has moved to {self._new}; the old name will be removed"
-        warnings.warn(text, DeprecationWarning, stacklevel=2)
+        warn_deprecated(module.__name__, self._new, since=self._since)
         moved = vars(importlib.import_module(self._new))
         vars(module).update({name: value for name, value in moved.items() if not name.startswith("__")})
 
@@ -67,12 +67,13 @@ class _Finder:
     def find_spec(name: str, *_: object) -> ModuleSpec | None:
         """Return how to load a module by its old name, or the package of one; None for all others."""
         package = name.removesuffix(_PROGRAM)
-        if not name.startswith("simkit.") or not any(f"{old}.".startswith(f"{package}.") for old in _new_names()):
+        if not name.startswith("simkit.") or not any(f"{old}.".startswith(f"{package}.") for old in _moves()):
             return None
         is_package = package == name
-        if package not in _new_names():
+        if package not in _moves():
             return ModuleSpec(name, None, is_package=True) if is_package else None
-        loader = _Loader(_new_names()[package] + ("" if is_package else _PROGRAM))
+        new, since = _moves()[package]
+        loader = _Loader(new + ("" if is_package else _PROGRAM), since)
         return ModuleSpec(name, loader, is_package=is_package)  # type: ignore[arg-type]  # a loader has no base class
 
 

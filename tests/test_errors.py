@@ -37,7 +37,6 @@ def test_an_error_is_the_same_after_pickling(error: SimkitError) -> None:
         (InputError("SK-CLI-016", "no file", help="write it"), "SK-CLI-016 no file\n    help: write it", "SK-CLI-016"),
         (InputError("SK-NAME-002", "link 'a' was removed", shows_code=False), "link 'a' was removed", "SK-NAME-002"),
         (InputError("no such file"), "no such file", "SK-INPUT-001"),
-        (InputError("mine", "SK-X-001"), "mine", "SK-X-001"),
         (RenderError("no display"), "SK-RENDER-001 no display", "SK-RENDER-001"),
         (
             RenderError("SK-RENDER-002", "no image", Where("w.sdf", 3)),

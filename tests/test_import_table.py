@@ -28,6 +28,7 @@ SMALL_MODULES = frozenset(
         "child_process",
         "code_requests",
         "deferred_response",
+        "deprecation",
         "diagnostic_record",
         "diagnostics",
         "early_interrupts",

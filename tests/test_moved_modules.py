@@ -9,21 +9,27 @@ from pathlib import Path
 
 import pytest
 
+from simkit.deprecation import SimkitDeprecationWarning, removal_version
+
 ROOT = Path(__file__).resolve().parents[1]
 FILES = sorted(ROOT.glob("packs/*/simkit_*/moved_modules.txt"))
 NAMES = [line.split() for file in FILES for line in file.read_text(encoding="utf-8").splitlines()]
 
 
-@pytest.mark.parametrize(("old", "new"), NAMES)
-def test_an_old_name_has_the_same_classes_and_a_warning(old: str, new: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    for name, _ in NAMES:
+@pytest.mark.parametrize(("old", "new", "since"), NAMES)
+def test_an_old_name_has_the_same_classes_and_a_warning(
+    old: str, new: str, since: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name, _, _ in NAMES:
         monkeypatch.delitem(sys.modules, name, raising=False)
-    with pytest.warns(DeprecationWarning, match=f"^{old} has moved to {new}; the old name will be removed$"):
+    expected = f"^{old} is deprecated since simkit {since} and will be removed in {removal_version(since)}: use {new}$"
+    with pytest.warns(SimkitDeprecationWarning, match=expected) as warned:
         found = importlib.import_module(old)
+    assert warned[0].filename == importlib.__file__  # `importlib.import_module`: the caller, as for an `import`
     names = vars(importlib.import_module(new))
     assert {name for name in names if not name.startswith("__")} <= set(vars(found))
     assert all(vars(found)[name] is value for name, value in names.items() if isinstance(value, type))
-    for name, _ in NAMES:
+    for name, _, _ in NAMES:
         sys.modules.pop(name, None)
 
 

@@ -69,8 +69,8 @@ def check_golden(
         folder: Folder of the golden run.
         scenario: Scenario to run. If None, the file of the scenario is read again; without a file, the scenario
             stored in the golden run is used.
-        bless: Reason why the differences are correct; the new run then becomes golden. Without differences, nothing is
-            written.
+        bless: Reason why the differences are correct; the new run then becomes golden. Without
+            differences of outputs and of the version of simkit, nothing is written.
         other_renderer: Allow a blessing of pictures that come from another renderer.
         causes: Search for the causes of differences.
         budget_s: Wall-clock limit of the search for causes [s].

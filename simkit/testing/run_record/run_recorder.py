@@ -10,11 +10,12 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
 from operator import attrgetter
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from simkit import msgs
+from simkit.deprecation import warn_deprecated
 from simkit.errors import NodeError, PluginError, SimulationDiverged, SubscriberError
 from simkit.msgs import Message
 from simkit.recording.bags.bag_contents import matches_topic
@@ -290,5 +291,9 @@ def _environment(sim: Simulation) -> dict[str, str]:
     return {name: os.environ.get(name, "") for name in ENVIRONMENT_VARIABLES if is_relevant}
 
 
-run_record = record_run
-"""Name of version 0.1."""
+def __getattr__(name: str) -> Any:
+    """Return `record_run` by its deprecated name."""
+    if name != "run_record":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    warn_deprecated(f"{__name__}.run_record", "simkit.testing.record_run", since="0.3")
+    return record_run

@@ -14,6 +14,7 @@ from simkit.cli import app
 from simkit.errors import InputError
 from simkit.testing.golden.check import check_golden
 from simkit.testing.golden.store import read_golden, read_history
+from simkit.version import __version__
 
 HEAVY = ("<radius>0.1</radius>", "<radius>0.101</radius>")
 
@@ -124,6 +125,14 @@ def test_a_blessing_without_a_difference_changes_nothing(golden: Path) -> None:
     before = {path.name: path.read_bytes() for path in golden.iterdir()}
     assert simkit("golden", "check", golden, "--bless", "for the sake of it")[0] == 0
     assert {path.name: path.read_bytes() for path in golden.iterdir()} == before
+
+
+def test_a_blessing_of_the_same_outputs_stores_another_version(golden: Path) -> None:
+    file = golden / "golden.json"
+    file.write_text(file.read_text().replace(f'"simkit": "{__version__}"', '"simkit": "0.0.1"'))
+    assert simkit("golden", "check", golden, "--bless", "a new version")[0] == 0
+    assert read_golden(golden).fingerprint["simkit"] == __version__
+    assert [one["reason"] for one in read_history(golden)] == ["recorded", "a new version"]
 
 
 def test_an_existing_golden_run_is_not_overwritten(golden: Path, tmp_path: Path) -> None:

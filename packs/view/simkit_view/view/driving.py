@@ -1,12 +1,16 @@
-"""Commands that pages send to robots: speeds, goals and initial poses, and joint positions."""
+"""Commands that pages send to robots: speeds, goals and initial poses."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
+from simkit.bridges.live.topic_feed import TopicFeed
 from simkit.bridges.teleop import Teleop, TeleopTarget, find_targets
 from simkit.run_spec import JsonObject
+from simkit.runtime.communication.subscription import StreamSubscription, Subscription
+from simkit_view.view.packet import make_packet
 
 if TYPE_CHECKING:
     from simkit import Publisher, Simulation
@@ -15,19 +19,23 @@ _POSES: Final = {
     "goal": ("/goal_pose", "geometry_msgs/msg/PoseStamped"),
     "initial": ("/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped"),
 }
+_RECEIVERS: Final = {
+    "goal": "no navigator subscribes to {topic}, so no robot drives there; `simkit run WORLD --web --nav` starts one",
+    "initial": "no localisation subscribes to {topic}; `simkit run WORLD --web --nav MAP.yaml` starts one",
+}
 _FRAME: Final = "map"  # frame of goals, as in RViz; the map of a world has the world's origin
 _POSITION_VARIANCE, _YAW_VARIANCE = 0.25, (math.pi / 12) ** 2  # [m²], [rad²]: those of RViz
 
 
 class Driving:
-    """Robots that pages drive; the run sends the commands that are due.
+    """Robots that pages drive; the run sends the commands that are due. Also the stream `driving` of the commands.
 
     Args:
         sim: simulation with the robots.
     """
 
     def __init__(self, sim: Simulation) -> None:
-        self._sim = sim
+        self._sim, self._sent = sim, b""
         self._drivers: dict[str, tuple[Teleop, object]] = {}
         self._publishers: dict[str, Publisher] = {}
 
@@ -57,14 +65,34 @@ class Driving:
         self._drivers[topic] = (driver[0], client)
         return driver[0]
 
+    def packet(self, options: Sequence[object]) -> bytes | None:
+        """Return the present command of each topic that a page drives, and whether it is the stop of the timeout.
+
+        A command has the forward speed, the speed to the left [m/s] and the yaw rate to the left [rad/s].
+        """
+        rows = {topic: [driver.speeds, driver.is_expired] for topic, (driver, _) in self._drivers.items()}
+        packet = make_packet({"kind": "driving", "commands": rows}, {})
+        if packet == self._sent:
+            return None
+        self._sent = packet
+        return packet
+
+    def close(self) -> None:
+        """Forget what the stream has sent, because no page shows it."""
+        self._sent = b""
+
     def release(self, client: object) -> None:
         """Stop what a page drives, because the page has closed."""
         for driver, driven_by in self._drivers.values():
             if driven_by is client:
                 driver.release_keys()
 
-    def send_pose(self, kind: str, x: float, y: float, yaw: float, topic: str = "") -> str:
-        """Publish a goal (`goal`) or the estimate of the robot's own pose (`initial`); return the topic."""
+    def send_pose(self, kind: str, x: float, y: float, yaw: float, topic: str = "") -> JsonObject:
+        """Publish a goal (`goal`) or the estimate of the robot's own pose (`initial`).
+
+        Returns:
+            `topic`, and `missing`: what the user must start because nothing uses the topic; empty if something does.
+        """
         default, type_name = _POSES[kind]
         topic, sim = topic or default, self._sim
         if topic not in self._publishers:
@@ -78,7 +106,20 @@ class Driving:
             covariance[35] = _YAW_VARIANCE
             pose = {"pose": pose, "covariance": covariance}
         self._publishers[topic].publish({"header": {"stamp": stamp, "frame_id": _FRAME}, "pose": pose})
-        return topic
+        return {"topic": topic, "missing": "" if self._is_used(topic) else _RECEIVERS[kind].format(topic=topic)}
+
+    def _is_used(self, topic: str) -> bool:
+        """Check whether a plugin, a program or another process receives a topic, besides recorders and displays."""
+        bus = self._sim.communication.bus
+        ends = (end for _, end, _, role in bus.endpoints(topic) if role == "takes")
+        return any(end.active for end in ends) or any(map(_is_program, bus.readers(topic)))
+
+
+def _is_program(reader: Subscription) -> bool:
+    """Check whether a subscription belongs to a plugin, a program, a script or another process."""
+    is_tap = isinstance(reader, StreamSubscription)
+    of_process = isinstance(getattr(reader.callback, "__self__", None), TopicFeed)
+    return reader.active and (not is_tap or of_process or bool(reader.node))
 
 
 def _target_dict(target: TeleopTarget) -> JsonObject:

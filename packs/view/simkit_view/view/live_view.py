@@ -84,7 +84,11 @@ class LiveView:
         if recording:
             self.server.set_recording(compress_packet(recording))
         self._streams: dict[str, Stream | None] = {}
-        self._own_streams: dict[str, StreamMaker] = {"calls": lambda _: self.calls, **(streams or {})}
+        self._own_streams: dict[str, StreamMaker] = {
+            "calls": lambda _: self.calls,
+            "driving": lambda _: self.driving,
+            **(streams or {}),
+        }
         self._last = self._looked = 0.0
         self._tick = sim.tick
         self._sent: tuple[object, ...] = ()

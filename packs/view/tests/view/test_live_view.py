@@ -175,7 +175,8 @@ def test_a_joint_moves_within_its_limits(stage: Stage) -> None:
 def test_goals_and_initial_poses_are_published_as_rviz_does(stage: Stage) -> None:
     page = stage.page()
     goals, estimates = stage.sim.subscribe("/goal_pose"), stage.sim.subscribe("/initialpose")
-    assert page.ask("pose", kind="goal", x=1.5, y=-2.0, yaw=np.pi / 2)["ok"] == "/goal_pose"
+    answer = page.ask("pose", kind="goal", x=1.5, y=-2.0, yaw=np.pi / 2)["ok"]
+    assert answer == {"topic": "/goal_pose", "missing": ""}
     page.ask("pose", kind="initial", x=0.5, y=0.0)
     goal = goals.latest
     assert (goal.header.frame_id, goal.pose.position.x, goal.pose.position.y) == ("map", 1.5, -2.0)

@@ -2,13 +2,14 @@
 import * as T from 'three';
 import { Connection } from './connection.js';
 import { Displays } from './displays.js';
-import { element } from './dom.js';
+import { element, narrow } from './dom.js';
 import { Layers } from './layers.js';
 import { PANELS } from './panels/index.js';
 import { Player, loadRecording } from './player.js';
 import { Sensors } from './sensors.js';
 import { Stage } from './stage.js';
 import { makeToolbar } from './toolbar.js';
+import { makeTour } from './tour.js';
 import { Views } from './views.js';
 import { World } from './world.js';
 
@@ -173,6 +174,11 @@ try {
     const made = make(app);
     if (made) document.getElementById(side).append(made);
   }
+  const sides = ['left', 'right'].map(side => document.getElementById(side)), fromLeft = [...sides[0].children];
+  const arrange = () => sides[narrow.matches ? 1 : 0].append(...fromLeft);
+  narrow.addEventListener('change', arrange);
+  arrange();
+  makeTour(app);
   pickOnClick(app.stage.canvas);
   await loadScene();
   app.connection.open();
