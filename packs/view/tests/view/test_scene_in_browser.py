@@ -7,13 +7,15 @@ from typing import Any
 
 import pytest
 
+import simkit
 from packs.view.tests.view.conftest import YARD
 from packs.view.tests.view.test_browser import Session, browser, session  # noqa: F401 - fixtures
 
 pytestmark = pytest.mark.browser
 Open = Callable[..., Session]
 
-SLIDE = """<sdf version="1.9"><model name="slide"><pose>-2 1 0.1 0 0 0</pose><link name="rail"><inertial><mass>5</mass></inertial>
+SLIDE = """<sdf version="1.9"><model name="slide"><pose>-2 1 0.1 0 0 0</pose>
+<link name="rail"><inertial><mass>5</mass></inertial>
 <visual name="v"><geometry><box><size>0.5 0.1 0.1</size></box></geometry></visual></link>
 <link name="car"><pose>0 0 0.1 0 0 0</pose><inertial><mass>0.1</mass></inertial></link>
 <joint name="travel" type="prismatic"><parent>rail</parent><child>car</child>
@@ -28,7 +30,8 @@ def test_a_reset_while_paused_clears_scans_and_arrows_and_fills_the_joints(sessi
     found.page.evaluate("simkitView.send('drive', {topic: '/cmd_vel', ahead: 0.3, turn: 0.3})")
     found.do(lambda: found.sim.spawn(SLIDE))
     found.until("app.models.has('slide') && document.querySelectorAll('[data-joint]').length === 2")
-    arrows = "(() => { let n = 0; app.displays.shown.get('/odom')?.root.traverse(o => { n += o.count ?? 0; }); return n; })()"
+    arrows = """(() => { let n = 0;
+      app.displays.shown.get('/odom')?.root.traverse(o => { n += o.count ?? 0; }); return n; })()"""
     found.until(f"{arrows} > 2 && app.sensors.fan.geometry.attributes.position?.count > 2")
     found.page.locator("#play").click()
     found.until("app.state.paused")
@@ -65,6 +68,14 @@ def test_a_click_on_the_name_of_a_model_selects_it_and_flies_to_it(session: Open
     found.picture("fly")
 
 
+PIXELS = """const app = window.simkitView, c = document.createElement('canvas'), s = app.stage.canvas;
+  c.width = s.width; c.height = s.height; app.stage.draw(); c.getContext('2d').drawImage(s, 0, 0);
+  const { data } = c.getContext('2d').getImageData(0, 0, c.width, c.height);"""
+YELLOW = f"""(() => {{ {PIXELS} let n = 0;
+  for (let i = 0; i < data.length; i += 4) n += data[i] > 180 && data[i + 1] > 140 && data[i + 2] < 130; return n; }})()"""
+COLOURS = f"""(() => {{ {PIXELS} const found = new Set();
+  for (let i = 0; i < data.length; i += 4) found.add(data[i] * 65536 + data[i + 1] * 256 + data[i + 2]);
+  return found.size; }})()"""
 CENTRE = """(() => { const b = app.stage.canvas.getBoundingClientRect();
   return [b.left + b.width / 2, b.top + b.height / 2]; })()"""
 
@@ -92,7 +103,8 @@ def test_a_camera_that_follows_comes_closer_or_rises_where_a_wall_would_hide_the
     assert found.page.evaluate(SEEN)
     near = "app.stage.camera.position.distanceTo(app.stage.controls.target)"
     assert found.get(near) < found.get("app.views.wanted.length()")  # a corridor of 1.1 m leaves no room for it
-    hidden = "(() => { const { world, stage, views } = app, d = views.wanted; return world.sight(stage.controls.target, d.clone().normalize(), d.length(), 'rover') < d.length(); })()"
+    hidden = """(() => { const d = app.views.wanted, reach = d.length();
+      return app.world.sight(app.stage.controls.target, d.clone().normalize(), reach, 'rover') < reach; })()"""
     assert found.get(hidden)
     found.page.evaluate("simkitView.send('drive', {topic: '/cmd_vel', ahead: 0.5, turn: 0.2})")
     for place in (0.2, 0.4, 0.6):
@@ -100,7 +112,7 @@ def test_a_camera_that_follows_comes_closer_or_rises_where_a_wall_would_hide_the
         found.get("app.stage.draw()")
         assert found.page.evaluate(SEEN)
     found.picture("follow_in_corridor")
-    found.do(lambda: found.sim.model("rover").set_pose(found.sim.model("rover").pose.__class__((0.0, 3.0, 0.1))))
+    found.do(lambda: found.sim.model("rover").set_pose(simkit.Pose((0.0, 3.0, 0.1))))
     found.until("app.world.bodies[app.bodyOf.get('rover')].elements[13] > 2")
     found.get("app.stage.draw()")
     assert found.page.evaluate(SEEN)
@@ -110,7 +122,8 @@ def test_a_camera_that_follows_comes_closer_or_rises_where_a_wall_would_hide_the
 def test_the_orbit_ends_at_the_floor(session: Open) -> None:  # noqa: F811
     found = session(paused=True)
     found.until("app.stage.draws > 1 && app.state")
-    found.get("(app.lowest = 1e9, app.stage.after.push(() => { app.lowest = Math.min(app.lowest, app.stage.camera.position.z); }), 1)")
+    found.get("(app.lowest = 1e9, 1)")
+    found.get("app.stage.after.push(() => { app.lowest = Math.min(app.lowest, app.stage.camera.position.z); })")
     box = found.page.locator("#canvas").bounding_box()
     middle = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     start = found.get("app.stage.camera.position.z")
@@ -129,7 +142,8 @@ def test_the_orbit_ends_at_the_floor(session: Open) -> None:  # noqa: F811
     found.picture("orbit_at_floor")
 
 
-ROBOT = """<robot name="cart"><link name="base"><visual><origin xyz="0 0 -0.2"/><geometry><box size="1 0.6 0.2"/></geometry></visual>
+ROBOT = """<robot name="cart"><link name="base">
+<visual><origin xyz="0 0 -0.2"/><geometry><box size="1 0.6 0.2"/></geometry></visual>
 <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>"""
 
 
@@ -151,26 +165,18 @@ def test_a_robot_without_a_world_has_a_floor_that_only_the_page_draws(session: O
     assert bare.errors == [] and in_world.errors == []
 
 
-YELLOW = """(() => { const app = window.simkitView, c = document.createElement('canvas'), s = app.stage.canvas;
-  c.width = s.width; c.height = s.height; app.stage.draw(); c.getContext('2d').drawImage(s, 0, 0);
-  const { data } = c.getContext('2d').getImageData(0, 0, c.width, c.height);
-  let n = 0; for (let i = 0; i < data.length; i += 4) n += data[i] > 180 && data[i + 1] > 140 && data[i + 2] < 130;
-  return n; })()"""
-GREYS = """(() => { const app = window.simkitView, c = document.createElement('canvas'), s = app.stage.canvas;
-  c.width = s.width; c.height = s.height; app.stage.draw(); c.getContext('2d').drawImage(s, 0, 0);
-  const { data } = c.getContext('2d').getImageData(0, 0, c.width, c.height), found = new Set();
-  for (let i = 0; i < data.length; i += 4) found.add(data[i] * 65536 + data[i + 1] * 256 + data[i + 2]);
-  return found.size; })()"""
-
-
 def test_what_is_at_rest_is_drawn_in_full_and_what_moves_is_drawn_fast(session: Open) -> None:  # noqa: F811
     found = session(YARD.replace("<diffuse>0.8", "<cast_shadows>true</cast_shadows><diffuse>0.8", 1), paused=True)
     assert found.page.locator("#quality").is_visible()
     found.until("app.stage.isFull")
     pixels = "app.stage.canvas.width / app.stage.canvas.clientWidth"
-    assert found.get(f"[app.stage.isSoftware, {pixels}, app.stage.lights.children.some(l => l.castShadow)]") == [True, 1, True]
+    assert found.get(f"[app.stage.isSoftware, {pixels}, app.stage.lights.children.some(l => l.castShadow)]") == [
+        True,
+        1,
+        True,
+    ]
     assert found.page.locator("#quality-now").inner_text() == "now full"
-    at_rest = found.page.evaluate(GREYS)
+    at_rest = found.page.evaluate(COLOURS)
     found.picture("quality_full")
     box = found.page.locator("#canvas").bounding_box()
     found.page.mouse.move(box["x"] + 300, box["y"] + 300)
@@ -185,7 +191,7 @@ def test_what_is_at_rest_is_drawn_in_full_and_what_moves_is_drawn_fast(session: 
     found.until("app.stage.isFull === false")
     assert found.get(pixels) == pytest.approx(0.75, abs=0.01)
     assert not found.get("app.stage.lights.children.some(l => l.castShadow)")
-    assert found.page.evaluate(GREYS) < 0.7 * at_rest  # no shadows and no smooth edges
+    assert found.page.evaluate(COLOURS) < 0.7 * at_rest  # no shadows and no smooth edges
     found.picture("quality_fast")
     found.page.locator("#quality").select_option("full")
     found.until("app.stage.isFull")
@@ -202,10 +208,12 @@ def test_frames_have_their_names_where_they_are(session: Open) -> None:  # noqa:
     names = "[...document.querySelectorAll('#labels .frame')].map(box => [box.dataset.frame, box.textContent]).sort()"
     assert found.get(names) == [["rover::base", "base"], ["rover::mast", "mast"], ["stone::l", "l"]]
     offsets = """[...document.querySelectorAll('#labels .frame')].map(box => {
-      const body = app.scene.frames.find(([name]) => name === box.dataset.frame)[1], m = app.world.bodies[body].elements;
+      const body = app.scene.frames.find(([name]) => name === box.dataset.frame)[1];
+      const m = app.world.bodies[body].elements;
       const p = app.stage.camera.position.clone().set(m[12], m[13], m[14]).project(app.stage.camera);
       const c = app.stage.canvas.getBoundingClientRect(), b = box.getBoundingClientRect();
-      return [b.left - c.left - (p.x + 1) / 2 * c.width, (b.top + b.bottom) / 2 - c.top - (1 - p.y) / 2 * c.height]; })"""
+      return [b.left - c.left - (p.x + 1) / 2 * c.width, 
+        (b.top + b.bottom) / 2 - c.top - (1 - p.y) / 2 * c.height]; })"""
     for across, down in found.get(offsets):
         assert across == pytest.approx(5.0, abs=1.0) and down == pytest.approx(0.0, abs=1.0)
     found.picture("frames")
@@ -215,7 +223,8 @@ def test_frames_have_their_names_where_they_are(session: Open) -> None:  # noqa:
 
 
 PERSON = """<actor name="walker"><simkit:person/><script><trajectory id="0" type="walk">
-<waypoint><time>0</time><pose>-2 -2 0 0 0 0</pose></waypoint><waypoint><time>4</time><pose>2 -2 0 0 0 0</pose></waypoint>
+<waypoint><time>0</time><pose>-2 -2 0 0 0 0</pose></waypoint>
+<waypoint><time>4</time><pose>2 -2 0 0 0 0</pose></waypoint>
 </trajectory></script></actor></world>"""
 
 
