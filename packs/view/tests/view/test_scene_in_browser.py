@@ -72,7 +72,8 @@ PIXELS = """const app = window.simkitView, c = document.createElement('canvas'),
   c.width = s.width; c.height = s.height; app.stage.draw(); c.getContext('2d').drawImage(s, 0, 0);
   const { data } = c.getContext('2d').getImageData(0, 0, c.width, c.height);"""
 YELLOW = f"""(() => {{ {PIXELS} let n = 0;
-  for (let i = 0; i < data.length; i += 4) n += data[i] > 180 && data[i + 1] > 140 && data[i + 2] < 130; return n; }})()"""
+  for (let i = 0; i < data.length; i += 4) n += data[i] > 180 && data[i + 1] > 140 && data[i + 2] < 130;
+  return n; }})()"""
 COLOURS = f"""(() => {{ {PIXELS} const found = new Set();
   for (let i = 0; i < data.length; i += 4) found.add(data[i] * 65536 + data[i + 1] * 256 + data[i + 2]);
   return found.size; }})()"""
@@ -212,7 +213,7 @@ def test_frames_have_their_names_where_they_are(session: Open) -> None:  # noqa:
       const m = app.world.bodies[body].elements;
       const p = app.stage.camera.position.clone().set(m[12], m[13], m[14]).project(app.stage.camera);
       const c = app.stage.canvas.getBoundingClientRect(), b = box.getBoundingClientRect();
-      return [b.left - c.left - (p.x + 1) / 2 * c.width, 
+      return [b.left - c.left - (p.x + 1) / 2 * c.width,
         (b.top + b.bottom) / 2 - c.top - (1 - p.y) / 2 * c.height]; })"""
     for across, down in found.get(offsets):
         assert across == pytest.approx(5.0, abs=1.0) and down == pytest.approx(0.0, abs=1.0)
