@@ -246,6 +246,7 @@ class Table:
         by_step: a column for each step, instead of a column for each quantity.
         timed: whether the time of a step is measured as well, the engines in turn.
         headline: quantities that the page shows, of a table without `by_step`; without any, it shows all.
+        is_on_page: whether the page has the table.
     """
 
     name: str
@@ -259,3 +260,4 @@ class Table:
     by_step: bool = False
     timed: bool = False
     headline: tuple[str, ...] = ()
+    is_on_page: bool = True

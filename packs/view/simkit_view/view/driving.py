@@ -6,14 +6,12 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
-from simkit.bridges.live.topic_feed import TopicFeed
 from simkit.bridges.teleop import Teleop, TeleopTarget, find_targets
 from simkit.run_spec import JsonObject
-from simkit.runtime.communication.subscription import StreamSubscription, Subscription
 from simkit_view.view.packet import make_packet
 
 if TYPE_CHECKING:
-    from simkit import Publisher, Simulation
+    from simkit import Publisher, Simulation, Subscription
 
 _POSES: Final = {
     "goal": ("/goal_pose", "geometry_msgs/msg/PoseStamped"),
@@ -116,10 +114,13 @@ class Driving:
 
 
 def _is_program(reader: Subscription) -> bool:
-    """Check whether a subscription belongs to a plugin, a program, a script or another process."""
-    is_tap = isinstance(reader, StreamSubscription)
-    of_process = isinstance(getattr(reader.callback, "__self__", None), TopicFeed)
-    return reader.active and (not is_tap or of_process or bool(reader.node))
+    """Check whether a subscription belongs to a plugin, a program, a script or another process.
+
+    Recorders and displays keep no messages; the feed of other processes keeps none either, but knows its readers.
+    """
+    feed = getattr(reader.callback, "__self__", None)
+    is_own = reader.keeps > 0 or reader.owner is not None or bool(reader.node)
+    return reader.active and (is_own or bool(getattr(feed, "has_readers", False)))
 
 
 def _target_dict(target: TeleopTarget) -> JsonObject:

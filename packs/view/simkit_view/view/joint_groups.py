@@ -14,8 +14,7 @@ import numpy as np
 from simkit.linear_algebra import matmul
 
 if TYPE_CHECKING:
-    from simkit import Simulation
-    from simkit.runtime.handles.joint import Joint
+    from simkit import Joint, Simulation
 
 _MOST_WHEEL_JOINTS: Final = 2  # from the base to a wheel: a suspension or the fork of a caster, and the axle
 _LEVEL: Final = 0.7  # largest vertical part of the axis of a wheel; it is 1 for a mast that turns

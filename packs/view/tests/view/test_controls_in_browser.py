@@ -108,10 +108,10 @@ def test_values_of_axes_are_multiples_of_1_2_or_5(session: Callable[..., Session
     found.page.evaluate("simkitView.send('drive', {topic: '/cmd_vel', ahead: 0.5, turn: 0.4})")
     found.until("app.plots.all[0].chart?.data[0].length > 60")
     found.page.locator(".plot .pause").click()
-    for height in (190, 230, 270, 310):
-        found.get(f"app.plots.all[0].chart.setSize({{width: {3 * height}, height: {height}}})")
-        found.until(f"app.plots.all[0].chart.height === {height}")
-        found.page.wait_for_timeout(50)
+    for most in range(1, 25):
+        ends = f"{{min: 0, max: {most}}}"
+        found.get(f"['x', 'u0'].map(name => app.plots.all[0].chart.setScale(name, {ends}))")
+        found.until(f"app.plots.all[0].chart.scales.x.max === {most}")
         for texts in found.get(TEXTS):
             values = [float(text) for text in texts]
             steps = [round(b - a, 9) for a, b in pairwise(values)]

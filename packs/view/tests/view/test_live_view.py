@@ -184,6 +184,25 @@ def test_goals_and_initial_poses_are_published_as_rviz_does(stage: Stage) -> Non
     assert estimates.latest.pose.covariance[0] == 0.25
 
 
+def test_a_pose_that_only_a_recorder_receives_needs_a_navigator(stage: Stage, tmp_path: Path) -> None:
+    page = stage.page()
+    with Recorder(stage.sim, tmp_path / "a.mcap", topics=["*"]):
+        goal = page.ask("pose", kind="goal", x=1.0, y=0.0)["ok"]
+        assert "no navigator subscribes to /goal_pose" in goal["missing"] and "--nav" in goal["missing"]
+        estimate = page.ask("pose", kind="initial", x=1.0, y=0.0)["ok"]
+        assert "no localisation subscribes to /initialpose" in estimate["missing"]
+
+
+def test_the_present_command_is_sent_until_it_is_stopped(stage: Stage) -> None:
+    page = stage.page()
+    page.want(driving={})
+    page.ask("drive", topic="/cmd_vel", ahead=0.3, turn=0.2)
+    commands = lambda: page.packets["driving"][0]["commands"]  # noqa: E731 - short
+    page.until(lambda: commands() == {"/cmd_vel": [[0.3, 0.0, 0.2], False]})
+    page.ask("key", topic="/cmd_vel", key="s")
+    page.until(lambda: commands() == {"/cmd_vel": [[0.0, 0.0, 0.0], False]})
+
+
 NONSENSE: tuple[str | bytes, ...] = (
     '{"do": "pace", "value": ' + "9" * 400 + "}",
     *("", "{", "[]", "null", '"x"', "{}", '{"do": 1}', '{"do": "fly"}', '{"do": "step", "count": -1}', "[" * 5000),
