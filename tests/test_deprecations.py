@@ -92,6 +92,8 @@ def test_versions_of_the_changelog_descend_from_the_present_one() -> None:
     assert versions[0] == PRESENT
     assert versions == sorted(set(versions), reverse=True)
     assert days == sorted(days, reverse=True)
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert f"\nversion: {simkit.__version__}\ndate-released: {days[0]}\n" in citation
 
 
 def test_sections_of_the_changelog_are_those_of_keep_a_changelog() -> None:
