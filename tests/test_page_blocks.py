@@ -7,6 +7,8 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
+import time
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -22,7 +24,7 @@ PYTHON: Final = [
     pytest.param(page, block, id=f"{page_name(page)}:{block.line}")
     for page in pages()
     for block in blocks(page, "python")
-    if "labs" not in page.relative_to(ROOT).parts  # pieces of programs, which the tests of the labs complete
+    if not block.title  # a program for ROS, which another test runs
 ]
 SHELL: Final = ("sh", "bash", "prompt")
 
@@ -56,19 +58,19 @@ class LeftOut(NamedTuple):
 
 
 LEFT_OUT: Final = {
-    r"pip (un)?install|git clone|podman|-m venv |simkit fetch": LeftOut("network", 0),
-    r"articubot_one/|vectored|pal\b|tiago_gazebo|go2_desc|burger\.urdf|depot\.sdf|ros2_ws|baxter_sim": LeftOut(
-        "files of public repositories", 0
+    r"pip (un)?install|git clone|podman|-m venv |simkit fetch|simkit fleet": LeftOut("network", 0),
+    r"articubot_one/|vectored|pal\b|tiago_gazebo|go2_desc|burger\.urdf|depot\.sdf|~/|baxter_sim": LeftOut(
+        "robots of public repositories", 0
     ),
-    r"pytest -n auto|-m pytest|ruff|\.ci/|golden record golden/sensor_bench|lab grade|> docs/": LeftOut(
+    r"base\.yaml|controllers\.yaml|bow|arena\.wo|\.sdf --score|my_robots|finger\.urdf|harbour|map_saver/": LeftOut(
+        "worlds and robots that the page does not show", 0
+    ),
+    r"pytest -n auto|-m pytest|ruff|\.ci/|golden record golden/sensor_bench|lab (?:start|grade)|^cd |> docs/": LeftOut(
         "other tests run it, or it changes the repository", 0
     ),
     r"^ros2 |^simkit ros$|--ros(?: |$)": LeftOut("ROS 2", 0),
     r"ray start|--cluster|SLURM": LeftOut("a cluster", 0),
-    r"contact-nets|--quick|benchmarks/history|train_turtlebot3|toss1": LeftOut(
-        "hours, or recordings of a real cube", 0
-    ),
-    r"arena\.world|robot\.sdf --score|check my_robots|finger\.urdf|harbour": LeftOut("an example of a message", 0),
+    r"contact-nets|--quick|benchmarks/history|train_turtlebot3|toss1": LeftOut("hours, or data of a real cube", 0),
 }
 SHORTER: Final = {"samples: 64": "samples: 4", "--trials 200": "--trials 2"}
 LONGEST: Final = 3.0  # [s] of simulated time
@@ -157,17 +159,25 @@ class Reader:
                 command = re.sub(
                     r"--duration (\S+)", lambda found: f"--duration {min(float(found[1]), LONGEST)}", command
                 )
-            if command.startswith("cd "):
-                self._folder /= command[3:]
-                continue
-            done = subprocess.run(
-                ["bash", "-c", command], cwd=self._folder, env={**os.environ, **self._environment}, timeout=250,
-                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-            )  # fmt: skip
-            self._output += done.stdout
+            output, code = self._run(command)
+            self._output += output
             codes = {0, *map(int, re.findall(r"exit code (\d+)", comment))}
-            assert done.returncode in codes, f"line {block.line}: $ {command}\n{done.stdout}\nexit {done.returncode}"
+            assert code in codes, f"line {block.line}: $ {command}\n{output}\nexit code {code}"
             self._compare(shown)
+
+    def _run(self, command: str) -> tuple[str, int]:
+        """Run a command to its end; return its output and its exit code."""
+        with tempfile.TemporaryFile("w+", encoding="utf-8") as output:
+            process = subprocess.Popen(
+                ["bash", "-c", command], cwd=self._folder, env={**os.environ, **self._environment},
+                stdin=subprocess.DEVNULL, stdout=output, stderr=output,
+            )  # fmt: skip
+            while process.poll() is None:
+                for terminal in self._running.values():
+                    terminal.read(0.02)
+                time.sleep(0.02)
+            output.seek(0)
+            return output.read(), process.returncode
 
     def _compare(self, lines: list[str]) -> None:
         for line in lines:
@@ -242,7 +252,7 @@ def test_the_commands_of_a_page_run(page: Path, tmp_path: Path) -> None:
     with ExitStack() as stack:
         reader = Reader(folder, programs, stack)
         for part in parts:
-            if part.language in (*SHELL, "text") or WRITES_FILES.search(part.text):
+            if part.language in (*SHELL, "text") or (not part.title and WRITES_FILES.search(part.text)):
                 reader.paste(part)
         reader.end()
 
