@@ -263,7 +263,7 @@ def test_a_script_that_steps_updates_the_page_and_keeps_its_bits() -> None:
             if has_view:
                 address = sim.view()
                 assert address == sim.view() and address.startswith("http://127.0.0.1:")
-                assert f'src="{address}"' in address._repr_html_()
+                assert f'page = "{address}"' in address._repr_html_()
             sim.publish("/cmd_vel", {"linear": {"x": 0.3}})
             sim.run(0.5)
             sim.step(3)
@@ -289,8 +289,8 @@ def test_a_script_that_steps_updates_the_page_and_keeps_its_bits() -> None:
         ("/../pyproject.toml", {}, 403),
         ("/../page_server.py?token=TOKEN", {}, 404),
         ("/page_server.py?token=TOKEN", {}, 404),
-        ("/?token=TOKEN", {"Host": "evil.example"}, 403),
-        ("/app.js", {"Host": "evil.example:80"}, 403),
+        ("/scene", {"Host": "evil.example"}, 403),
+        ("/scene?token=TOKEN", {"Host": "proxy.example", "Origin": "https://proxy.example"}, 200),
         ("/?token=TOKEN", {"Origin": "http://evil.example"}, 403),
         ("/?token=TOKEN", {"Origin": "null"}, 403),
         ("/ws?token=TOKEN", {"Origin": "http://127.0.0.1:1"}, 403),

@@ -39,8 +39,10 @@ export function makeJointPanel(app) {
     list.replaceChildren(...groups.flatMap(([heading, numbers]) => {
       const made = numbers.slice(0, MOST - rows.length).map(number => make(scene.joints[number], number));
       rows.push(...made);
-      return made.length ? [element('h4', {}, heading), ...made.map(({ row }) => row)] : [];
+      return made.length ? [...(groups.length > 1 ? [element('h4', {}, heading)] : []), ...made.map(({ row }) => row)] : [];
     }));
+    const more = groups.flatMap(([, numbers]) => numbers).length - rows.length;
+    if (more) list.append(element('p', { class: 'dim' }, `and ${more} more`));
     box.hidden = rows.length === 0 || scene.recording;
     if (app.state) enable(app.state);
     show(); // a paused world sends no further positions
