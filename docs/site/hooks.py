@@ -63,8 +63,8 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
         page.meta["search"] = {"boost": 0.5}  # most queries are English
     if path == "docs/troubleshooting.md":
         page.meta["search"] = {"boost": 2}  # who searches for a symptom wants its remedy
-    if path.startswith("reference/python/"):
-        page.meta["search"] = {"boost": 0.5}  # each of its 700 names is a title
+    if path.startswith(("reference/python/", "reference/messages/", "reference/diagnostics/")):
+        page.meta["search"] = {"boost": 0.5}  # each of their 2000 names is a title
     if not path.startswith("reference/"):
         markdown = in_python_markdown(with_site_links(markdown, path, files.src_uris))
     return markdown
