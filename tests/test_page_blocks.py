@@ -180,12 +180,19 @@ class Reader:
                 ["bash", "-c", command], cwd=self._folder, env={**os.environ, **self._environment},
                 stdin=subprocess.DEVNULL, stdout=output, stderr=output,
             )  # fmt: skip
-            while process.poll() is None:
-                for terminal in self._running.values():
-                    terminal.read(0.02)
-                time.sleep(0.02)
+            self._wait_for(process)
             output.seek(0)
             return output.read(), process.returncode
+
+    def _wait_for(self, process: subprocess.Popen[bytes]) -> None:
+        """Wait for the end of a process, and read what the terminals show: a program that nobody reads waits."""
+        end = time.monotonic() + 250.0
+        while process.poll() is None:
+            for terminal in self._running.values():
+                terminal.read(0.02)
+            time.sleep(0.02)
+            if time.monotonic() > end:
+                process.kill()
 
     def _compare(self, lines: list[str]) -> None:
         output = re.sub(" +", " ", self._output)  # columns are as wide as the lines that a page shows
@@ -201,8 +208,10 @@ class Reader:
         assert "error" not in terminal.wait_for(rf"{started}|error.*\n.*")[0]
 
     def _end_of(self, command: str) -> None:
-        if terminal := self._running.pop(program_of(command), None):
+        if terminal := self._running.get(program_of(command)):
             terminal.press("\x03")
+            self._wait_for(terminal.process)
+            del self._running[program_of(command)]
             assert terminal.wait() in (0, 130), terminal.seen
 
     def end(self) -> None:
