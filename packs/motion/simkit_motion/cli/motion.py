@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Sequence
 from contextlib import ExitStack
@@ -14,7 +13,7 @@ from typer import Argument, Option
 
 from simkit.cli.run_options import NONE_GIVEN
 from simkit.cli.terminal import completion, options
-from simkit.cli.terminal.output import print_diagnostics, stdout_console
+from simkit.cli.terminal.output import print_diagnostics, print_json, stdout_console
 from simkit.errors import InputError
 from simkit.extend import Diagnostics, GivenOptions, argument, option, report_errors, with_run_options
 from simkit.run_fields import LoadArguments
@@ -56,7 +55,7 @@ def list_motions(
             motion_list = list(choose_player(motion_players(sim), model).motions.values())
     if json_:
         shown = [{**m.as_message(), "duration": m.duration, "file": m.where.file} for m in motion_list]
-        stdout_console().file.write(json.dumps(shown, indent=2) + "\n")
+        print_json(shown, indent=2)
         return
     rows = [
         (m.key, f"{m.duration:g} s", f"{len(m.times)} point{'s' * (len(m.times) > 1)}", _joint_ranges(m.joints))
@@ -133,7 +132,7 @@ def play(
         if picture is not None:
             _draw(sim, picture)
     if json_:
-        stdout_console().file.write(json.dumps(shown, indent=2) + "\n")
+        print_json(shown, indent=2)
 
 
 def _scale_speed(sim: Simulation, factor: float) -> None:
