@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, cast
 import typer
 from typer import Argument, Option
 
+from simkit import progress
 from simkit.cli.run_options import NONE_GIVEN
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.output import print_diagnostics, print_json, stdout_console
@@ -123,7 +124,10 @@ def play(
             check_available(sim)
         if record is not None:
             stack.enter_context(recorder.Recorder(sim, record, overwrite=force))
-        for played in play_motions(sim, choose_player(motion_players(sim), model), names, skip_planning=skip_planning):
+        motions_played = play_motions(
+            sim, choose_player(motion_players(sim), model), names, skip_planning=skip_planning
+        )
+        for played in progress.report_each("playing motions", motions_played, len(names)):
             joint, off = played.furthest
             key = played.motion.key
             shown.append({"motion": key, "duration": round(played.duration, 6), "joint": joint, "off": off})

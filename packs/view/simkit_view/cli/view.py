@@ -13,6 +13,7 @@ from typing import Annotated
 import typer
 from typer import Option
 
+from simkit import progress
 from simkit.cli.plot_sources import is_bag
 from simkit.cli.run import execute
 from simkit.cli.run_loop import Interrupts
@@ -134,7 +135,9 @@ def _show_bag(path: Path, world: str | None, loading: LoadOptions, page: PageOpt
         recording, panels = make_recording(sim, bag), BagPanels(bag, sim)
         if html is not None:
             scene = make_scene_packet(sim, 1, {"seed": sim.seed, "recording": True})
-            write_atomically(html, html_file(f"{path.name} – simkit", scene, recording, panels.file_packet()).encode())
+            with progress.task(f"writing {html.name}"):
+                page_text = html_file(f"{path.name} – simkit", scene, recording, panels.file_packet())
+                write_atomically(html, page_text.encode())
             add_to_report(html=str(html), bytes=html.stat().st_size)
             print_line(f"wrote {html} ({html.stat().st_size / 1e6:.2f} MB)")
             return 0
