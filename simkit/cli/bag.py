@@ -43,7 +43,11 @@ _LOSSES_LISTED = 20
 def plot(
     arguments: Annotated[
         list[str],
-        argument("One or more bags, then fields: /odom.pose.pose.position.x, /scan.ranges[0].", "BAG... FIELD..."),
+        argument(
+            "One or more bags, then fields: /odom.pose.pose.position.x, /scan.ranges[0].",
+            "BAG... FIELD...",
+            completion.sources_and_fields,
+        ),
     ],
     output: options.ChartFile = Path("plot.svg"),
     against: options.Against = None,

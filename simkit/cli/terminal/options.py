@@ -97,8 +97,11 @@ Sim = Annotated[
         autocompletion=completion.simulations,
     ),
 ]
-Bag = Annotated[Path | None, option("Read a bag instead: an .mcap file or a rosbag2 folder.", "BAG", "--bag")]
-Recording = Annotated[Path, argument("Bag: an .mcap or .db3 file, or a rosbag2 folder.", "BAG")]
+Bag = Annotated[
+    Path | None,
+    option("Read a bag instead: an .mcap file or a rosbag2 folder.", "BAG", "--bag", complete=completion.bags),
+]
+Recording = Annotated[Path, argument("Bag: an .mcap or .db3 file, or a rosbag2 folder.", "BAG", completion.bags)]
 ShowTypes = Annotated[bool, Option("--show-types", "-t", help="Show the types, too.")]
 Topic = Annotated[str, argument("Name of the topic, such as /odom.", "TOPIC", completion.topics)]
 ChartFile = Annotated[Path, option("Chart to write: .svg or .png.", "OUT", "--output", "-o")]

@@ -9,7 +9,7 @@ import typer
 from typer import Option
 
 from simkit.cli.run_options import NONE_GIVEN
-from simkit.cli.terminal import options
+from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.output import (
     JsonObject,
     absolute_name,
@@ -29,7 +29,16 @@ _PROCESS = "SK-NODE-070"
 _WORDS = {"ignore_unknown_options": True, "allow_interspersed_args": False}
 
 node = typer.Typer()
-Name = Annotated[str, argument("Name of the node.", "NODE")]
+
+
+@completion.silent
+def _complete_nodes(ctx: typer.Context) -> list[str]:
+    """Complete nodes of the running simulation."""
+    with completion.connect_client(ctx) as client:
+        return list(client.ask("nodes"))
+
+
+Name = Annotated[str, argument("Name of the node.", "NODE", _complete_nodes)]
 
 
 @node.command(context_settings=_WORDS)
@@ -105,7 +114,7 @@ def ping(
 @node.command()
 @report_errors_quietly
 def kill(
-    nodes: Annotated[list[str], argument("Names of the nodes.", "NODE...")],
+    nodes: Annotated[list[str], argument("Names of the nodes.", "NODE...", _complete_nodes)],
     sim: options.Sim = None,
     json_: options.Json = False,  # noqa: ARG001 (`report_errors` reads it)
 ) -> None:
