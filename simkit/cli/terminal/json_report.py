@@ -12,7 +12,14 @@ from typing import IO, NoReturn
 
 import typer
 
-from simkit.cli.terminal.output import JsonObject, P, errors_in_words, json_written_to, print_json
+from simkit.cli.terminal.output import (
+    JsonObject,
+    P,
+    errors_in_words,
+    json_written_to,
+    print_json,
+    set_json_runner,
+)
 from simkit.diagnostics import Diagnostic
 from simkit.errors import InputError, LoadError, SimkitError
 
@@ -147,6 +154,9 @@ def report_errors_and_json(command: Callable[P, int | None]) -> Callable[P, None
 def run_with_report(command: Callable[P, int | None], *args: P.args, **kwargs: P.kwargs) -> None:
     """Run a command; print its report if it has values or failed, and has printed no other JSON."""
     _run_with_report(command, False, *args, **kwargs)
+
+
+set_json_runner(run_with_report)
 
 
 def _run_with_report(command: Callable[P, int | None], has_report: bool, /, *args: P.args, **kwargs: P.kwargs) -> None:

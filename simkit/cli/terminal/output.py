@@ -233,14 +233,21 @@ def report_errors(command: Callable[P, int | None]) -> Callable[P, None]:
 
     @functools.wraps(command)
     def run(*args: P.args, **kwargs: P.kwargs) -> None:
-        if not kwargs.get("json_"):
+        if kwargs.get("json_") and _json_runner is not None:
+            _json_runner(command, *args, **kwargs)
+        else:
             in_words(*args, **kwargs)
-            return
-        from simkit.cli.terminal.json_report import run_with_report
-
-        run_with_report(command, *args, **kwargs)
 
     return run
+
+
+_json_runner: Callable[..., None] | None = None
+
+
+def set_json_runner(runner: Callable[..., None]) -> None:
+    """Set the function that runs a command with `--json`: `json_report`, which itself needs this module."""
+    global _json_runner
+    _json_runner = runner
 
 
 def errors_in_words(command: Callable[P, int | None]) -> Callable[P, None]:
