@@ -119,12 +119,12 @@ def is_plain() -> bool:
 
 
 def print_status(text: str) -> None:
-    """Print a status line as `print_warning`, unless `--quiet` is given."""
+    """Print a status line as `print_message`, unless `--quiet` is given."""
     if not is_quiet():
-        print_warning(text)
+        print_message(text)
 
 
-def print_warning(text: str) -> None:
+def print_message(text: str) -> None:
     """Print a line on standard error, above the progress of a run.
 
     The progress display intercepts only `sys.stderr`, so this function does not use the console.
@@ -261,7 +261,7 @@ def errors_in_words(command: Callable[P, int | None]) -> Callable[P, None]:
             with verbosity, running_command(), displayed_tasks(stderr_console, quiet=is_quiet()):
                 code = command(*args, **kwargs)
         except KeyboardInterrupt as stopped:
-            print_warning(f"interrupted {stopped}".rstrip())
+            print_message(f"interrupted {stopped}".rstrip())
             raise typer.Exit(interrupt_exit_code(stopped)) from None
         except SimkitError as error:
             print_error(error)
@@ -344,7 +344,7 @@ def output_failure_exit_code(error: OSError) -> int:
         sys.stderr = None
         return _hang_up_exit_code()
     try:
-        print_warning(f"error: cannot write the output: {error.strerror}")
+        print_message(f"error: cannot write the output: {error.strerror}")
     except OSError:
         sys.stderr = None
     return 1

@@ -9,7 +9,7 @@ from typer.core import TyperCommand
 
 from simkit.cli.run_loop import Interrupts
 from simkit.cli.terminal import completion, options
-from simkit.cli.terminal.output import print_status, report_errors_quietly
+from simkit.cli.terminal.output import print_message, report_errors_quietly
 from simkit.extend import add_to_report, argument
 from simkit_ros.cli.run_parts import ros as ros_options
 
@@ -48,7 +48,7 @@ def ros(
     bridge_options = ros_options.ros_options(ros_python, ros_domain, ros_namespace, ros_network, ros_args)
     socket = find_socket(simulation or sim)
     add_to_report(socket=str(socket))
-    with Interrupts() as interrupts, RosBridge(bridge_options, print_status) as bridge:
+    with Interrupts() as interrupts, RosBridge(bridge_options, print_message) as bridge:
         bridge.start(socket)
         code = bridge.wait(lambda: bool(interrupts.exit_code))
     return interrupts.exit_code or code

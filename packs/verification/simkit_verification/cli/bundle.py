@@ -9,7 +9,7 @@ from typer import Option
 
 from simkit.cli.run_options import NONE_GIVEN, scenario_spec
 from simkit.cli.terminal import options
-from simkit.cli.terminal.output import print_diagnostics, print_warning, stdout_console
+from simkit.cli.terminal.output import print_diagnostics, print_message, stdout_console
 from simkit.errors import InputError, SimkitError
 from simkit.extend import GivenOptions, add_to_report, option, report_errors, with_run_options
 from simkit.writers.atomic_output import check_file
@@ -56,12 +56,12 @@ def bundle(
             ended = run_scenario(scenario, sim)
             failure = failure_from_checks(ended.results, was_given_up=ended.reason == "wall_timeout")
             if failure is not None:
-                print_warning(f"the run failed; the bundle contains the failure: {failure.text}")
+                print_message(f"the run failed; the bundle contains the failure: {failure.text}")
         except InputError:
             raise
         except SimkitError as error:
             failure = failure_from_error(error)
-            print_warning(f"the run failed; the bundle contains the failure: {error}")
+            print_message(f"the run failed; the bundle contains the failure: {error}")
         name = scenario.name or ("" if scenario.file is None else scenario.file.stem)
         write_bundle(recorder, output, failure, name=name, overwrite=force, with_code=not no_code)
         state, size = recorder.end().state, output.stat().st_size

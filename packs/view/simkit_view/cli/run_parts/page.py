@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Final
 import typer
 
 from simkit.cli.run_part import fill_in_value
-from simkit.cli.terminal.output import print_warning
+from simkit.cli.terminal.output import print_message
 from simkit.extend import OpenRun, RunPart, add_to_report, option
 
 if TYPE_CHECKING:
@@ -143,7 +143,7 @@ def open_page(
     show_address(view.address, opens=options.opens and view.is_local)
     if not view.is_local:
         text = "other machines reach the page; whoever has its address may drive, spawn, reset and call services"
-        print_warning(f"warning SK-WEB-007: {text}; without --host only this machine reaches it")
+        print_message(f"warning SK-WEB-007: {text}; without --host only this machine reaches it")
     return view
 
 
