@@ -316,14 +316,14 @@ def motion(result: dict[str, Any]) -> str:
     if "drive" in result:
         texts = []
         for part, r in sorted(result["drive"].items(), reverse=True):
-            (asked, turn), (got, turned) = r["asked"], r["got"]
-            metres = f"{got:.2f} of {asked:.2f} m, " if asked else ""
-            texts.append(f"{part}: {metres}{turned:.0f}° of {turn:.0f}°")
+            got, turned = r["got"]
+            metres = f"{got:.2f} m, " if r["asked"][0] else ""
+            texts.append(f"{part} {metres}{turned:.0f}°")
         return "; ".join(texts)
     if "error" not in result:
         return f"{result['joints']} joints"
     error = 1000 * result["error"]
-    return f"{result['joints']} joints, largest final error {f'{error:.2g}' if error > 0.01 else '< 0.01'} mrad or mm"
+    return f"{result['joints']} joints, error {f'{error:.2g}' if error > 0.01 else '< 0.01'} mrad or mm"
 
 
 def write_page(results: dict[str, Any]) -> None:
@@ -343,14 +343,13 @@ def write_page(results: dict[str, Any]) -> None:
         "Worlds": ("world",),
     }
     for title, kinds in groups.items():
-        lines += [f"\n## {title}\n", "| | name and file | result | approximated | load |", "|---|---|---|---|---|"]
+        lines += [f"\n## {title}\n", "| | name and file | result |", "|---|---|---|"]
         for entry, result in rows.items():
             if entry.kind in kinds:
-                warned = ", ".join(f"{c} × {n}" if n > 1 else c for c, n in sorted(result["warnings"].items()))
                 text = motion(result)
-                image = f"![{entry.name}](images/gallery/{entry.slug}.webp)"
+                image = f"![](images/gallery/{entry.slug}.webp)"
                 text += f"; {NOTES[entry.slug]}" if entry.slug in NOTES else ""
-                cells = [image, f"**{entry.name}** `{entry.file}`", text, warned or "–", f"{result['load']:.1f} s"]
+                cells = [image, f"**{entry.name}** `{entry.file}`", text]
                 lines.append(f"| {' | '.join(cells)} |")
     PAGE.write_text("\n".join(lines) + "\n")
 

@@ -10,10 +10,13 @@ import math
 import runpy
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+import av
 import numpy as np
 from PIL import Image
 
@@ -35,6 +38,16 @@ def run(*words: str) -> Callable[[Path], None]:
 
     def draw(path: Path) -> None:
         command = [sys.executable, "-m", "simkit", "run", *words, "--quiet", "--picture", str(path)]
+        subprocess.run(command, cwd=ROOT, check=True)
+
+    return draw
+
+
+def motion(*words: str) -> Callable[[Path], None]:
+    """Return a function that draws the end of a motion by name."""
+
+    def draw(path: Path) -> None:
+        command = [sys.executable, "-m", "simkit", "motion", "play", *words, "--picture", str(path)]
         subprocess.run(command, cwd=ROOT, check=True)
 
     return draw
@@ -78,6 +91,42 @@ def baxter(path: Path) -> None:
         draw_three_views(sim, path, Look(400, 500))
 
 
+CLIPS: list[tuple[int, list[str]]] = [  # how many times faster than simulated time, and the run
+    (4, ["turtlebot3_world", "--script", "worlds/turtlebot3_world_drive.yaml", "--duration", "36"]),
+    (2, ["baxter_table", "--script", "worlds/baxter_table_pick.yaml", "--duration", "11"]),
+    (
+        2,
+        [
+            "simple_office_with_people",
+            "--spawn",
+            "tiago:-3.5,0,0",
+            "--cmd-vel",
+            "0.4,0",
+            "--duration",
+            "11",
+            "--camera",
+            "follow",
+        ],
+    ),
+]
+FRAMES_PER_SECOND = 10
+
+
+def moving_picture(path: Path) -> None:
+    """Write the runs of `CLIPS` one after another as an animated WebP file."""
+    frames: list[Image.Image] = []
+    with tempfile.TemporaryDirectory() as folder:
+        for number, (speed, words) in enumerate(CLIPS):
+            video = Path(folder) / f"{number}.mp4"
+            options = ["--video", str(video), "--resolution", "640x400", "--fps", str(FRAMES_PER_SECOND / speed)]
+            command = [sys.executable, "-m", "simkit", "run", *words, "--quiet", *options]
+            subprocess.run(command, cwd=ROOT, check=True)
+            with av.open(video) as film:
+                frames += [frame.to_image() for frame in film.decode(video=0)]
+    milliseconds = int(Fraction(1000, FRAMES_PER_SECOND))
+    frames[0].save(path, save_all=True, append_images=frames[1:], duration=milliseconds, loop=0, quality=60, method=6)
+
+
 def draw_three_views(sim: simkit.Simulation, path: Path, look: Look) -> None:
     """Draw the robot from three sides, at one scale."""
     views: list[Any] = []
@@ -92,10 +141,11 @@ def draw_three_views(sim: simkit.Simulation, path: Path, look: Look) -> None:
 
 
 PICTURES: dict[str, Callable[[Path], None]] = {
+    "simkit.webp": moving_picture,
     "first_run.png": run("turtlebot3_world", "--script", "worlds/turtlebot3_world_drive.yaml", "--duration", "36"),
     "house.png": run("turtlebot3_house", "--script", "worlds/turtlebot3_house_drive.yaml", "--duration", "72"),
-    "office.png": run("simple_office_with_people", "--spawn", "tiago:0,0,0", "--duration", "20"),
-    "tiago_table.png": run("tiago_table", "--duration", "2"),
+    "office.png": motion("home", "--world", "simple_office_with_people", "--spawn", "tiago:0.5,0.1,0"),
+    "tiago_table.png": motion("home", "--world", "tiago_table"),
     "tiago.png": three_views("tiago", 400, 500),
     "baxter.png": baxter,
     "baxter_table.png": run("baxter_table", "--script", "worlds/baxter_table_pick.yaml", "--duration", "11"),
@@ -125,10 +175,12 @@ def shrink(path: Path) -> None:
 
 def main(names: list[str]) -> None:
     for name in names or PICTURES:
-        PICTURES[name](IMAGES / name)
-    for path in sorted(IMAGES.rglob("*.png")):
-        shrink(path)
-        print(f"{path.stat().st_size:8d} {path.relative_to(ROOT)}")
+        path = IMAGES / name
+        PICTURES[name](path)
+        for drawn in sorted(path.glob("*.png")) if path.is_dir() else [path]:
+            if drawn.suffix == ".png":
+                shrink(drawn)
+            print(f"{drawn.stat().st_size:8d} {drawn.relative_to(ROOT)}")
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ python benchmarks/contact.py [--list] [--case GLOB] [--steps MS,MS] [--engines N
 
 Each case is data and one measure, in the file of its table. The same cases run in simkit, in simkit with MuJoCo's own
 contact law, and in PyBullet, Drake and DART where they are installed (extra `compare`). `--write` replaces the tables
-in a page, which is docs/accuracy.md. Times are processor times; the engines take turns.
+of a page, which is docs/accuracy.md. Times are processor times; the engines take turns.
 """
 
 from __future__ import annotations
@@ -154,7 +154,7 @@ def main() -> None:
     if args.json:
         args.json.write_text(json.dumps(as_json(done), indent=1).replace("NaN", "null") + "\n", encoding="utf-8")
     if args.write:
-        sections = {results.table.name: section(results) for results in done}
+        sections = {results.table.name: section(results) for results in done if results.table.is_on_page}
         write_page(args.write, {"engines": provenance(list(makers)), **sections})
     if args.plot:
         from contact_plot import draw

@@ -245,12 +245,10 @@ Measure = Callable[[Record], dict[str, float]]
 HITS = Table(
     "hits",
     "Oblique hits",
-    "A body without spin hits a plane at 4 m/s, without gravity. A cell has the error of the motion after the hit "
-    "[%]. Its square is the energy of the difference from the reference over the energy before the hit. Each cell "
-    "is the worst of four coefficients of friction (0.1 to 1) and five angles to the ground (10° to 80°). "
-    "Reference: the rigid body keeps e times its closing speed, and Coulomb's friction acts during the hit. Without "
-    "e in the row, e is 0. Hits in which the slip would reverse are left out, because laws of impact differ there. "
-    "The motion is read when the contact no longer closes.",
+    "A body without spin hits a plane at 4 m/s, without gravity. Error of the motion after the hit [%], "
+    "beside a rigid body with Coulomb's friction: the worst of four coefficients of friction (0.1 to 1) "
+    "and five angles to the ground (10° to 80°). Without e in the row, e is 0. Hits in which the slip "
+    "would reverse are left out.",
     {"error": Quantity("error", "%", 3.0)},
     _hits,
     steps=(0.004, 0.002, 0.001, 0.0005, 0.00025, 0.0001),
@@ -269,4 +267,5 @@ BOUNCES_AND_DROPS = Table(
     },
     _bounces,
     engines=("simkit", "MuJoCo's law", "PyBullet"),
+    headline=("restitution", "bounce_gain", "rebound", "rest"),
 )

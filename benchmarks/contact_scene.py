@@ -245,6 +245,8 @@ class Table:
         engines: names of the engines that run them.
         by_step: a column for each step, instead of a column for each quantity.
         timed: whether the time of a step is measured as well, the engines in turn.
+        headline: quantities that the page shows, of a table without `by_step`; without any, it shows all.
+        is_on_page: whether the page has the table.
     """
 
     name: str
@@ -257,3 +259,5 @@ class Table:
     engines: tuple[str, ...] = ("simkit", "MuJoCo's law", "PyBullet", "Drake", "DART")
     by_step: bool = False
     timed: bool = False
+    headline: tuple[str, ...] = ()
+    is_on_page: bool = True

@@ -261,31 +261,30 @@ def _pushed_and_driven(step: float, quick: bool) -> Iterator[Case]:
 SLIDING_BOXES = Table(
     "sliding",
     "Boxes that slide",
-    "A box of 1 kg slides on a plane until it stops. Each row has the worst of four coefficients of friction (0.05 "
-    "to 2) and four steps (0.5 to 4 ms). Reference: Coulomb's friction, a = μ g. The error of the way is given "
-    "without the part a t dt / 2 that every integrator of first order makes.",
+    "A box of 1 kg slides on a plane until it stops, beside a = μ g. The worst of four coefficients of "
+    "friction (0.05 to 2) and four steps (0.5 to 4 ms).",
     QUANTITIES,
     _sliding_boxes,
     steps=(0.0005, 0.001, 0.002, 0.004),
     engines=BESIDE,
     timed=True,
+    headline=("hop", "way"),
 )
 SLIDING_SHAPES = Table(
     "sliding_shapes",
     "Other shapes and grounds",
-    "The same with other shapes, on other grounds and on moving bodies, with a step of 1 ms. A round body slides "
-    "until it rolls at 5/7 (sphere) or 2/3 (cylinder) of its first speed.",
+    "The same with other shapes, on other grounds and on moving bodies, with a step of 1 ms.",
     QUANTITIES,
     _sliding_shapes,
     engines=BESIDE,
     timed=True,
+    is_on_page=False,
 )
 PUSHED = Table(
     "pushed",
     "Boxes that are pushed, and skid steering",
-    "A box of 1 kg, μ 0.5, is pushed for 2 s: with 6 N it moves, with 4.8 N it must not. Vehicles with four wheels "
-    "and skid steering turn on the spot. Reference: W² / (W² + L²) of the commanded yaw rate, with the track W and "
-    "the wheelbase L.",
+    "A box of 1 kg, μ 0.5, is pushed for 2 s: with 6 N it moves, with 4.8 N it must not. Vehicles turn on "
+    "the spot, beside W² / (W² + L²) of the commanded yaw rate (track W, wheelbase L).",
     {
         "contact": QUANTITIES["contact"],
         "hop": QUANTITIES["hop"],
@@ -296,4 +295,5 @@ PUSHED = Table(
     _pushed_and_driven,
     engines=BESIDE,
     timed=True,
+    headline=("speed", "creep", "yaw"),
 )

@@ -1,4 +1,4 @@
-"""Tables of `contact.py` in Markdown: a row for each row of cases and each engine, and the page that shows them."""
+"""Tables of `contact.py` in Markdown, in full for a terminal and with fewer columns for the page."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from contact_engines import LAW
 from contact_scene import Quantity, Table
 
 WIDTH = 130  # of a line of text
+PAGE_STEP = 0.001  # [s]
 STEP = {"step_us": Quantity("step", "µs", mean=True, beside=True)}
 
 
@@ -112,9 +113,27 @@ def markdown(results: Results) -> str:
     return "\n".join(lines)
 
 
+def page_table(results: Results) -> str:
+    """The table for the page: a column for each engine at the step next to 1 ms, or of the headline quantities."""
+    table = results.table
+    keys = list(results.quantities) if table.by_step else [k for k in table.headline if k in results.quantities]
+    if not keys:
+        return markdown(results)
+    steps, first = results.steps, "case: " + " / ".join(_title(results.quantities[key]) for key in keys)
+    if table.by_step:
+        steps = (min(results.steps, key=lambda step: abs(step - PAGE_STEP)),)
+        first = f"case, step {1e3 * steps[0]:g} ms"
+    lines = [_line([first, *results.engines]), "|---" * (1 + len(results.engines)) + "|"]
+    for row in results.rows:
+        exist = [k for k in keys if any(results.value(row, one, k, steps) is not None for one in results.engines)]
+        texts = [[_cell(results, row, engine, key, steps) for key in exist] for engine in results.engines]
+        lines.append(_line([row, *("–" if set(cell) == {"–"} else " / ".join(cell) for cell in texts)]))
+    return "\n".join(lines)
+
+
 def section(results: Results) -> str:
-    """The text of a table and the table."""
-    return f"{textwrap.fill(results.table.text, WIDTH, break_on_hyphens=False)}\n\n{markdown(results)}"
+    """The text of a table and the table for the page."""
+    return f"{textwrap.fill(results.table.text, WIDTH, break_on_hyphens=False)}\n\n{page_table(results)}"
 
 
 def _marker(name: str) -> tuple[str, str]:

@@ -144,9 +144,8 @@ def tosses(folder: Path | None) -> Table:
         "tosses",
         "Real tosses of a cube",
         "A cube of 105 mm with μ 0.18 was tossed and recorded at 148 Hz (ContactNets: Pfrommer, Halm and Posa "
-        "2020). Every fourth of 570 tosses is predicted from its first sample. Each cell has the mean error of the "
-        "position [% of the cube's width] and of the rotation [°] over all samples. Reference: the recording. The "
-        "steps are divisors of the sampling period.",
+        "2020). Every fourth of 570 tosses is predicted from its first sample. Mean error of the position [% "
+        "of the cube's width] and of the rotation [°] over all samples.",
         {"position": Quantity("position", "%", mean=True), "rotation": Quantity("rotation", "°", mean=True)},
         partial(_tosses, folder) if folder else lambda step, quick: iter(()),
         steps=(0.00097, 0.00068, 0.00017),

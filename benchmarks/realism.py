@@ -83,23 +83,15 @@ def x3_table(values: dict[str, dict[str, Any]]) -> Iterator[str]:
             reached[name] += is_good
             text = value_text(found[row["key"]]) if "key" in row else "-"
             cells.append(f"**{text}**" if is_good else text)
-        note = row.get("missing", "")
         published = f"{value_text(row['real'])} | {value_text(row['gazebo'])}"
-        lines.append(f"| {row['name']} | {published} | {' | '.join(cells)} | {note} |")
+        if "key" in row and not row.get("is_setting"):
+            lines.append(f"| {row['name']} | {published} | {' | '.join(cells)} |")
     counts = ", ".join(f"{count} with {name}" for name, count in reached.items())
-    yield f"Of {len(rows)} rows, these are within the tolerance: {counts} (bold).\n"
-    yield f"| row | real X3 | Gazebo | {' | '.join(f'simkit, {name}' for name in values)} | remark |"
-    yield "|---|---|---|" + "---|" * len(values) + "---|"
+    yield f"Of {len(rows)} rows, these are within the tolerance: {counts} (bold). Rows that a file can set, such as"
+    yield "rates, sizes and frames, and rows without a measurement are left out.\n"
+    yield f"| row | real X3 | Gazebo | {' | '.join(f'simkit, {name}' for name in values)} |"
+    yield "|---|---|---|" + "---|" * len(values)
     yield from lines
-
-
-def wall_table(walls: dict[float, dict[str, Any]]) -> Iterator[str]:
-    """Yield the lines of the table of the depth camera in front of a wall."""
-    yield "| wall at [m] | σ, real [mm] | σ, simkit [mm] | valid, real [%] | valid, simkit [%] |"
-    yield "|---|---|---|---|---|"
-    for distance, wall in walls.items():
-        share = SHARES.get(distance, "")
-        yield f"| {distance} | {SIGMAS[distance]} | {1e3 * wall['sigma']:.1f} | {share} | {wall['valid']:.1f} |"
 
 
 def command_table() -> Iterator[str]:
@@ -128,7 +120,6 @@ def main(arguments: list[str]) -> None:
     real = x3_values(X3_SET)
     parts = {
         "X3 rows": list(x3_table({"ideal": ideal[0], X3_SET: real[0]})),
-        "X3 walls": list(wall_table(real[2])),
         "X3 commands": list(command_table()),
         "TurtleBot3 rows": list(realism_turtlebot3.table()),
     }

@@ -8,6 +8,7 @@ import pickle
 import struct
 import sys
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -90,12 +91,12 @@ def test_the_torque_of_the_contact_turns_the_angular_momentum_of_a_body_in_stead
     assert np.cross(contact, force) == pytest.approx(speed * np.cross(upwards, momentum), abs=1e-9)
 
 
-def test_each_case_has_a_name_of_its_own_in_its_table_and_each_table_a_section_of_the_page(benchmark: Import) -> None:
+def test_each_case_has_a_name_of_its_own_in_its_table_and_each_table_of_the_page_a_section(benchmark: Import) -> None:
     page = (ROOT / "docs" / "accuracy.md").read_text(encoding="utf-8")
     tables = benchmark("contact").tables(None)
     for table in tables:
-        assert page.count(f"<!-- contact.py: {table.name} -->") == 1
-        assert page.count(f"<!-- end of {table.name} -->") == 1
+        assert page.count(f"<!-- contact.py: {table.name} -->") == table.is_on_page
+        assert page.count(f"<!-- end of {table.name} -->") == table.is_on_page
         names = [case.name for case in table.cases(table.steps[0], False)]
         assert len(set(names)) == len(names)
         quick = [case.name for case in table.cases(table.steps[0], True)]
@@ -123,6 +124,22 @@ def test_a_cell_has_the_worst_of_its_cases_and_a_time_also_its_ratio(benchmark: 
     text = tables.markdown(results)
     assert "| row | simkit | -3.00 | 20.0 (2.00) |" in text
     assert "| row | MuJoCo's law | diverged | 10.0 (1.00) |" in text
+
+
+def test_the_page_has_a_column_for_each_engine_with_the_quantities_that_exist_for_a_row(benchmark: Import) -> None:
+    tables, scene = benchmark("contact_tables"), benchmark("contact_scene")
+    quantities = {key: scene.Quantity(key, "%") for key in ("first", "second", "third")}
+    engines = ("simkit", "MuJoCo's law")
+    for by_step, headline, expected in (
+        (True, (), ["| case, step 1 ms | simkit | MuJoCo's law |", "| row | 2.00 / 3.00 / 0 | 4.00 / – / 0 |"]),
+        (False, ("first", "second"), ["| case: first [%] / second [%] | simkit |", "| other | 5.00 | – |"]),
+    ):
+        table = scene.Table("t", "T", "", quantities, lambda *_: iter(()), (0.002, 0.001), engines=engines)
+        results = tables.Results(replace(table, by_step=by_step, headline=headline), (0.002, 0.001))
+        results.add("row", "simkit", 0.001, {"first": 2.0, "second": 3.0, "third": 0.0})
+        results.add("row", "MuJoCo's law", 0.001, {"first": 4.0, "third": 0.0})
+        results.add("other", "simkit", 0.001, {"first": 5.0})
+        assert all(line in tables.page_table(results) for line in expected)
 
 
 def test_a_hit_runs_in_simkit_and_in_its_option_for_the_contacts_of_mujoco(benchmark: Import) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import importlib
 import re
 import subprocess
 import sys
@@ -12,6 +13,7 @@ from pathlib import Path
 import pytest
 
 import simkit
+from simkit.cli.diagnostic_catalogue import catalogue
 from simkit.deprecation import SimkitDeprecationWarning, removal_version
 from simkit.errors import InputError
 from simkit.testing.run_record import run_recorder
@@ -90,6 +92,8 @@ def test_versions_of_the_changelog_descend_from_the_present_one() -> None:
     assert versions[0] == PRESENT
     assert versions == sorted(set(versions), reverse=True)
     assert days == sorted(days, reverse=True)
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert f"\nversion: {simkit.__version__}\ndate-released: {days[0]}\n" in citation
 
 
 def test_sections_of_the_changelog_are_those_of_keep_a_changelog() -> None:
@@ -99,6 +103,18 @@ def test_sections_of_the_changelog_are_those_of_keep_a_changelog() -> None:
         assert kinds == [kind for kind in allowed if kind in kinds]
         entries = re.split(r"^### .+\n", section, flags=re.MULTILINE)[1:]
         assert all(re.match(r"\n- \S", entry) for entry in entries)
+
+
+def test_no_entry_of_the_changelog_is_there_twice() -> None:
+    entries = [" ".join(entry.split()) for entry in re.split(r"^(?:- |#)", CHANGELOG, flags=re.MULTILINE)]
+    long = [entry for entry in entries if len(entry) > 30]
+    assert sorted(long) == sorted(set(long))
+
+
+def test_what_is_not_released_is_short() -> None:
+    """A merge of branches keeps the lines of both sides: lines that one side removed must not come back."""
+    unreleased = CHANGELOG.partition("## Unreleased")[2].partition("\n## ")[0]
+    assert len(unreleased.split()) < 1500
 
 
 def test_every_entry_of_a_version_is_short() -> None:
@@ -111,3 +127,22 @@ def test_each_later_minor_version_has_upgrade_notes() -> None:
     minor = list(dict.fromkeys(re.findall(r"^## (\d+\.\d+)\.", CHANGELOG, flags=re.MULTILINE)))
     assert noted == minor[:-1]
     assert noted[0] == simkit.__version__.rpartition(".")[0]
+
+
+def test_codes_of_the_changelog_and_the_page_exist() -> None:
+    named = set(re.findall(r"\bSK-[A-Z]+-\d{3}\b", CHANGELOG + PAGE))
+    assert len(named) > 5 and named <= set(catalogue())
+
+
+@pytest.mark.needs_packs
+@pytest.mark.slow  # imports each command
+def test_options_of_the_changelog_and_the_page_exist(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "docs" / "site"))
+    pages = importlib.import_module("reference").command_pages().values()
+    known = {option for _, text in pages for option in re.findall(r"--[a-z][\w-]+", text)} | {"--help", "--version"}
+    named = {
+        option
+        for code in re.findall(r"`[^`]+`", CHANGELOG + PAGE)
+        for option in re.findall(r"(?<![\w-])--[a-z][\w-]+", code)
+    }
+    assert len(named) > 20 and named <= known

@@ -18,6 +18,7 @@ import simkit
 from simkit.cli import app
 
 ROOT = Path(__file__).resolve().parents[1]
+REPOSITORY_FILES = "https://github.com/simkit-robotics/simkit/raw/main/docs/images/"
 WORLD = """<sdf version="1.9"><world name="w">
   <model name="box"><pose>0 0 2 0 0 0</pose><link name="l"><inertial><mass>2</mass></inertial>
     <collision name="c"><geometry><box><size>1 1 {height}</size></box></geometry></collision>
@@ -41,7 +42,30 @@ def test_the_workflow_tests_each_python_that_the_classifiers_name() -> None:
 
 def test_the_citation_names_the_version_and_the_licence_of_the_code() -> None:
     citation = read("CITATION.cff")
-    assert (citation["version"], citation["license"]) == (simkit.__version__, project()["license"])
+    assert citation["version"] == simkit.__version__
+    assert project()["license"].split(" AND ")[0] == citation["license"]
+
+
+def test_the_addresses_of_the_project_name_files_of_the_repository() -> None:
+    urls = project()["urls"]
+    assert set(urls) == {"Documentation", "Source", "Issues", "Changelog"}
+    citation = read("CITATION.cff")
+    assert urls["Source"] == citation["repository-code"]
+    files = [url.partition("/blob/main/")[2] for url in urls.values() if "/blob/main/" in url]
+    assert len(files) == 2 and all((ROOT / file).is_file() for file in files)
+
+
+def test_the_classifiers_are_those_of_the_package_index() -> None:
+    known = pytest.importorskip("trove_classifiers").classifiers
+    named = project()["classifiers"]
+    assert set(named) <= known and named == sorted(
+        named, key=lambda name: re.sub(r"\d+", lambda n: n[0].zfill(3), name)
+    )
+
+
+def test_pictures_of_the_readme_are_those_of_the_repository() -> None:
+    pictures = re.findall(r"!\[[^\]]*\]\(([^)]+)\)", (ROOT / "README.md").read_text(encoding="utf-8"))
+    assert pictures and not [each for each in pictures if not each.startswith(REPOSITORY_FILES)]  # no badges
 
 
 def options_of(command: list[str]) -> set[str]:

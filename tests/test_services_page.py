@@ -10,14 +10,23 @@ from simkit import msgs
 from simkit.msgs.interface_definitions import interface_names
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "services.md"
-ROW = re.compile(r"^\| `(/[^`]+)` \| `([\w/]+/srv/\w+)` \| (.+) \|$", re.MULTILINE)
+ROW = re.compile(r"^\| `(/[^`]+)` \| `([\w/]+/srv/\w+)` \| (.*)\|$", re.MULTILINE)
 WORLD = (
     """<sdf version="1.9"><world name="w"><plugin name="api" filename="libgazebo_ros_api_plugin.so"/></world></sdf>"""
 )
 
 
 def test_the_page_has_every_service_with_its_type_and_no_other() -> None:
-    rows = {(name.replace("<world>", "w"), type_name) for name, type_name, _ in ROW.findall(PAGE.read_text("utf-8"))}
+    page = PAGE.read_text("utf-8")
+    rows = {(name.replace("<world>", "w"), type_name) for name, type_name, _ in ROW.findall(page)}
+    types = dict(rows)
+    classic = re.search(r"^These have the types .*$", page, re.MULTILINE)
+    assert classic is not None
+    rows |= {(name, types[name.removeprefix("/gazebo")]) for name in re.findall(r"`(/gazebo/\w+)`", classic[0])}
+    standard = page[page.index("## Services of `simulation_interfaces`") : page.index("The action `/simulate_steps`")]
+    for name in re.findall(r"^\| `(/\w+)`|(?<=[:,] )`(/\w+)`(?=[,.])", standard, re.MULTILINE):
+        camel = "".join(word.capitalize() for word in "".join(name).strip("/").split("_"))
+        rows.add(("".join(name), f"simulation_interfaces/srv/{camel}"))
     offered = set()
     # where Gazebo Classic's plugin offers a service of a name, that of `simulation_interfaces` is not offered
     for text in (WORLD, '<sdf version="1.9"><world name="w"/></sdf>'):

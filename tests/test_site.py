@@ -6,7 +6,10 @@
 from __future__ import annotations
 
 import importlib
+import json
 import re
+import shutil
+import subprocess
 import sys
 import types
 from collections import Counter
@@ -126,3 +129,45 @@ def test_each_diagnostic_code_has_a_heading_in_the_reference(reference: types.Mo
     texts = "\n".join(text for _, text in reference.diagnostic_pages().values())
     headings = re.findall(r"^## (SK-\S+)$", texts, re.MULTILINE)
     assert sorted(headings) == sorted(catalogue())
+
+
+def test_each_section_of_the_names_for_extensions_has_a_page_of_the_reference(reference: types.ModuleType) -> None:
+    texts = [text for path, (_, text) in reference.python_pages().items() if "simkit.extend." in path]
+    shown = [name for text in texts for name in re.findall(r"^::: simkit\.extend\.(\w+)$", text, re.MULTILINE)]
+    assert sorted(shown) == sorted(set(reference.public_names("simkit.extend")))
+    assert len(texts) > 5
+
+
+@pytest.mark.slow
+@pytest.mark.needs_packs
+def test_each_published_message_has_its_fields_in_the_reference(reference: types.ModuleType) -> None:
+    pages = reference.message_pages()
+    scan = pages["reference/messages/sensor_msgs.md"][1].partition("\n## LaserScan\n")[2].partition("\n## ")[0]
+    assert "Published by `GazeboRosLaser`, `GazeboRosRaySensor`, `gpu_lidar`, `lidar`." in scan
+    assert "float32 angle_min  # [rad]" in scan
+    assert "Received by" in pages["reference/messages/geometry_msgs.md"][1]
+
+
+@pytest.mark.parametrize(
+    ("typed", "query"),
+    [
+        ("--cmd-vel", "+cmd +vel* vel^10"),
+        ("package://", "package^10 packag*"),
+        ("the robot slides", "robot^10 robot* slides^10 slid*"),
+        ("run_until", "+run +until* until^10"),
+        ('"exact words"', '"exact words"'),
+        ("is", "is^10 is*"),
+        (
+            "size 0 must be in geom 1",
+            "text:size^10 text:size text:0^10 text:0 text:must^10 text:must text:geom^10 text:geom text:1^10 text:1",
+        ),
+    ],
+)
+def test_the_search_gets_what_people_type_as_a_query(typed: str, query: str) -> None:
+    node = shutil.which("node")
+    if node is None:
+        pytest.skip("needs node, to run the program of the page")
+    program = (ROOT / "docs/site/theme/search_query.js").read_text(encoding="utf-8")
+    show = f"{program}\nconsole.log(searchQuery({json.dumps(typed)}))"
+    done = subprocess.run([node, "-e", show], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == query

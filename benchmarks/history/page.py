@@ -14,7 +14,7 @@ FOLDER = Path(__file__).resolve().parent
 DOCS = FOLDER.parents[1] / "docs"
 Entry = Mapping[str, Any]
 
-_HEAD = """# Speed
+_HEAD = """## Against MuJoCo alone
 
 How fast simkit is, version by version, as the ratio to MuJoCo alone on the same compiled model. Both take turns in one
 process. A ratio of 1 is the speed of MuJoCo; less is faster. In a ratio of 2, half of the time is the physics, and half
@@ -51,7 +51,10 @@ def write_page() -> None:
 def page_text(entries: Sequence[Entry]) -> str:
     """Return the text of the page."""
     figures = tomllib.loads((FOLDER / "figures.toml").read_text(encoding="utf-8"))
-    return "\n".join((_HEAD, last_entry(entries), history(entries), peers(figures), memory(figures)))
+    costs = (FOLDER / "costs.md").read_text(encoding="utf-8")
+    return "\n".join(
+        ("# Speed\n", costs, _HEAD, last_entry(entries), history(entries), peers(figures), memory(figures))
+    )
 
 
 def amount(name: str, value: float) -> str:

@@ -1,8 +1,9 @@
-"""Pages of the reference that are made from the code: public names of Python, commands, diagnostic codes."""
+"""Pages of the reference that are made from the code: names of Python, commands, messages, diagnostic codes."""
 
 from __future__ import annotations
 
 import ast
+import json
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
@@ -18,13 +19,21 @@ _HANDLES = {
     ),
     "Sensors: sim.sensor": (
         "`sim.sensor(name)` returns a sensor. Its class depends on the kind; each has the names below, for example "
-        "`sensor.latest`, `sensor.truth` and `sensor.capture`. [The pages of the kinds](../../docs/sensors/index.md) "
-        "show their readings.",
+        "`sensor.latest` and `sensor.truth`. [The pages of the kinds](../../docs/sensors/index.md) show their "
+        "readings. `sensor.capture` is for authors of sensors: [Sensor](simkit.extend.sensors.md) has all methods.",
         ("simkit.sensors.base.Sensor",),
     ),
     "World and contacts: sim.world, sim.contacts": (
         "`sim.world` describes the world as it was read. `sim.contacts()` returns the present contacts.",
         ("simkit.scene.world.SceneWorld", "simkit.runtime.contact.collision_contacts.Contact"),
+    ),
+    "Plugins": (
+        "Base classes of plugins ([writing a plugin](../../docs/writing_a_plugin.md)), and the elements of a "
+        "`<plugin>`. All have the names of `simkit.Plugin`.",
+        (
+            *("simkit.Plugin", "simkit.ModelPlugin", "simkit.WorldPlugin", "simkit.SensorPlugin"),
+            *("simkit.VisualPlugin", "simkit.Params"),
+        ),
     ),
     "Topics and frames: sim.subscribe, sim.tf": (
         "`sim.advertise(…)` returns a publisher, `sim.subscribe(…)` a subscription, `sim.tf` the frames.",
@@ -39,9 +48,21 @@ _HANDLES = {
 """Pages for objects of a simulation: title -> introduction and names."""
 
 _MODULES = (
-    *("msgs", "testing", "recording", "live", "gym", "extend", "errors", "pose", "progress"),
+    *("msgs", "testing", "recording", "live", "gym", "errors", "pose", "progress"),
     *("elementary_functions", "float_sum", "linear_algebra", "matrix_decompositions"),
 )
+
+_WITHOUT_INHERITED_NAMES = (
+    *("simkit.ModelPlugin", "simkit.WorldPlugin", "simkit.SensorPlugin", "simkit.VisualPlugin"),
+    *("simkit.extend.VectorSensor", "simkit.extend.LidarMeasurement", "simkit.extend.ImuMeasurement"),
+    *("simkit.extend.NavSat", "simkit.extend.MessageArtefact"),
+)
+_NAMES_OF_A_SENSOR = ["topic", "topics", "latest", "truth", "pose", "set_rate", "noise", "options", "capture"]
+_OPTIONS: dict[str, dict[str, object]] = {
+    "simkit.sensors.base.Sensor": {"members": _NAMES_OF_A_SENSOR},
+    **{name: {"inherited_members": False} for name in _WITHOUT_INHERITED_NAMES},
+}
+"""Options of mkdocstrings for names whose base class has its own entry, or whose other names are not for scripts."""
 
 
 def public_names(module: str) -> list[str]:
@@ -73,7 +94,7 @@ def python_pages() -> dict[str, tuple[str, str]]:
         shown.update(names)
     rest = [f"simkit.{name}" for name in public_names("simkit") if f"simkit.{name}" not in shown]
     rest = [name for name in rest if not name.endswith("__")]
-    text = _python_page("simkit", "Functions, base classes of plugins and values that `import simkit` gives.", rest)
+    text = _python_page("simkit", "Functions, values and errors that `import simkit` gives.", rest)
     first = {_path("python", "simkit"): ("simkit", text)}
     for module in _MODULES:
         name = f"simkit.{module}"
@@ -81,7 +102,28 @@ def python_pages() -> dict[str, tuple[str, str]]:
         introduction = _with_blocks(docstring)
         names = tuple(f"{name}.{each}" for each in public_names(name))
         pages[_path("python", name)] = (module, _python_page(name, introduction, names))
-    return {**first, **pages}
+    return {**first, **pages, **_extend_pages()}
+
+
+def _extend_pages() -> dict[str, tuple[str, str]]:
+    """Return a page for each section of docs/extend.md: its sentences, and the names of its table."""
+    narrative = (ROOT / "docs" / "extend.md").read_text(encoding="utf-8")
+    names = public_names("simkit.extend")
+    pages = {}
+    for section in re.split(r"^## ", narrative, flags=re.MULTILINE)[1:]:
+        title, _, text = section.partition("\n")
+        rows = re.findall(r"^\| (.+?) \|", text, flags=re.MULTILINE)
+        shown = [name for row in rows for name in re.findall(r"`(\w+)`", row) if name in names]
+        if shown:
+            introduction = (
+                f"Names of `simkit.extend`: {title[0].lower()}{title[1:]} ([examples](../../docs/extend.md))."
+            )
+            path = _path("python", f"simkit.extend.{title}")
+            pages[path] = (
+                f"extend: {title[0].lower()}{title[1:]}",
+                _python_page(title, introduction, [f"simkit.extend.{name}" for name in shown]),
+            )
+    return pages
 
 
 def _python_page(title: str, introduction: str, names: Iterable[str]) -> str:
@@ -90,9 +132,11 @@ def _python_page(title: str, introduction: str, names: Iterable[str]) -> str:
 
 def _directive(name: str) -> str:
     """Return the line of mkdocstrings for a name. A class that users get only from a handle has no module before it."""
-    if name.count(".") < 3:
-        return f"::: {name}"
-    return f"::: {name}\n    options:\n      heading: {name.rpartition('.')[2]}"
+    options = dict(_OPTIONS.get(name, {}))
+    if name.count(".") >= 3:
+        options["heading"] = name.rpartition(".")[2]
+    lines = [f"      {option}: {json.dumps(value)}" for option, value in options.items()]
+    return "\n".join([f"::: {name}", *(["    options:"] if lines else []), *lines])
 
 
 def _with_blocks(docstring: str) -> str:
@@ -148,6 +192,51 @@ def _command_lines(command: Any, name: str, parent: Any, level: int) -> Iterator
             yield from _command_lines(command.get_command(context, each), each, context, level + 1)
 
 
+def message_pages() -> dict[str, tuple[str, str]]:
+    """Return title and text of a page for each package of messages that plugins and sensors publish or receive."""
+    from simkit.msgs.interface_definitions import interface_text
+
+    users = _users_of_messages()
+    pages = {}
+    for package in sorted({type_name.split("/")[0] for type_name in users}):
+        lines = [f"# {package}\n"]
+        for type_name in sorted(name for name in users if name.startswith(f"{package}/")):
+            lines.append(f"## {type_name.rpartition('/')[2]}\n\n`{type_name}`\n")
+            lines += [f"{verb} by {_listed(names)}.\n" for verb, names in users[type_name].items()]
+            lines.append(f"```text\n{interface_text(type_name).expandtabs(4)}\n```\n")
+        lines.append("`simkit interface show TYPE` prints every other type, also of services and actions.\n")
+        pages[_path("messages", package)] = (package, "\n".join(lines))
+    return pages
+
+
+def _users_of_messages() -> dict[str, dict[str, set[str]]]:
+    """Return the plugins and sensors of each message type: type -> `Published` or `Received` -> names."""
+    import simkit
+    from simkit_authoring.catalogue import facts_of, known_plugins
+
+    found: dict[str, dict[str, set[str]]] = {}
+    for entry in known_plugins():
+        for topic in facts_of(entry.cls).topics:
+            for type_name in topic.types:
+                if re.fullmatch(r"\w+/msg/\w+", type_name):  # else a placeholder: the world's file has the type
+                    verbs = found.setdefault(type_name, {})
+                    verbs.setdefault("Published" if topic.published else "Received", set()).add(entry.cls.__name__)
+    with simkit.load("sensor_bench") as sim:  # one sensor of each kind
+        for sensor in sim.sensors.values():
+            for product in sensor.products().values():
+                found.setdefault(product.type_name, {}).setdefault("Published", set()).add(sensor.kind)
+        for type_name in sim.topics().values():
+            found.setdefault(type_name, {})
+    return found
+
+
+def _listed(names: Iterable[str]) -> str:
+    """Return names as a list in code; of more than eight, the first ones and their number."""
+    ordered = sorted(names)
+    more = f" and {len(ordered) - 8} more" if len(ordered) > 8 else ""
+    return ", ".join(f"`{name}`" for name in ordered[:8]) + more
+
+
 def _one_line(text: str) -> str:
     return " ".join(text.split())
 
@@ -191,7 +280,7 @@ def _range_of(codes: list[str]) -> str:
 
 def generated_pages() -> Mapping[str, tuple[str, str]]:
     """Return title and text of all generated pages by their paths."""
-    return {**python_pages(), **command_pages(), **diagnostic_pages()}
+    return {**python_pages(), **command_pages(), **message_pages(), **diagnostic_pages()}
 
 
 def _path(folder: str, title: str) -> str:

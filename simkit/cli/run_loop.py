@@ -13,7 +13,7 @@ from types import FrameType
 from typing import TYPE_CHECKING, Protocol
 
 from simkit.cli.terminal.blocked_plugins import describe_blocking_plugin
-from simkit.cli.terminal.output import print_status
+from simkit.cli.terminal.output import print_line, print_status
 from simkit.cli.wall_time_limit import SignalHandler
 from simkit.interrupts import note_stop_request
 
@@ -62,7 +62,8 @@ class RunLoop:
         early_ends: checks between slices; a text, the reason, ends the run before its end.
         is_over: check between slices; True ends the run because it has reached its goal.
         server: server for other processes.
-        on_pause: callback when the world becomes paused.
+        on_pause: callback when the world becomes paused, or is paused at the start.
+        start_lines: lines that are printed on standard output when the loop starts, after all other messages.
     """
 
     def __init__(
@@ -88,6 +89,7 @@ class RunLoop:
         self.is_over: Callable[[], bool] = lambda: False
         self.server: Server | None = None
         self.on_pause: Callable[[], None] = self._say_paused
+        self.start_lines: list[str] = []
 
     def run(self, duration: float | None) -> bool:
         """Advance `duration` [s], or for ever if it is None; return True if the run reached its end.
@@ -98,7 +100,11 @@ class RunLoop:
         sim = self._sim
         end = None if duration is None else sim.engine.steps + round(duration / sim.timestep)
         self._restart_pace()
-        was_paused = False
+        was_paused = sim.paused
+        if was_paused:
+            self.on_pause()
+        while self.start_lines:
+            print_line(self.start_lines.pop(0))
         with sim.control.pausing.served():
             while end is None or sim.engine.steps < end:
                 if self._interrupts.exit_code or self.early_end() or self.is_over():

@@ -9,7 +9,7 @@ import inspect
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -42,6 +42,7 @@ class OpenRun:
         interrupts: Ctrl-C handler.
         advance: function that advances the run by a simulated time [s], or for ever if it is None.
         progress_lines: function that returns the lines of the progress display; None to show the topics.
+        status_lines: lines that stay at the top of the progress display; on other outputs, they are printed once, last.
     """
 
     spec: RunSpec
@@ -50,6 +51,7 @@ class OpenRun:
     interrupts: Interrupts
     advance: Callable[[float | None], object]
     progress_lines: Callable[[], Sequence[str]] | None = None
+    status_lines: list[str] = field(default_factory=list)
 
     def start_bridge(self, bridge: BridgeProcess) -> None:
         """Start a bridge and serve it until everything is open, so that it receives the first messages.

@@ -245,6 +245,8 @@ class Session:
             if duration is None:
                 print_status(_endless_text(spec))  # other terminals can connect from now on
             self._hold()
+            if not stdout_console().is_interactive:
+                loop.start_lines.extend(run.status_lines)
             stack.enter_context(conditions)
             loop.is_over = self._is_over
             try:
@@ -388,4 +390,4 @@ def _progress(run: OpenRun, counter: TopicCounter, duration: float | None) -> Pr
     console = stdout_console()
     if run.progress_lines is not None and not console.is_interactive:
         console = stderr_console()
-    return Progress(run.sim, counter, duration, console, run.progress_lines)
+    return Progress(run.sim, counter, duration, console, run.progress_lines, run.status_lines)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import io
 import math
 import sys
-from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any, Final, TextIO
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, Final, TextIO, cast
 
 from simkit_nodes.node_options import Keys
 from simkit_nodes.python_modules.thread_module import wait_for
@@ -144,6 +145,21 @@ class _BytesInput:
         return 0
 
 
+@contextmanager
+def _streams_of_process() -> Iterator[None]:
+    """Let the process have its own outputs while a program writes to one of them.
+
+    The display of `simkit run` on a terminal writes what it receives to `sys.stderr`, which would be the output of
+    the program again, without an end.
+    """
+    streams = sys.stdout, sys.stderr
+    sys.stdout, sys.stderr = (cast(TextIO, one.outer) if isinstance(one, ProgramOutput) else one for one in streams)
+    try:
+        yield
+    finally:
+        sys.stdout, sys.stderr = streams
+
+
 class ProgramOutput(io.TextIOBase):
     """Standard output of a program: it passes text on to that of the process, and each line to the program's log.
 
@@ -170,7 +186,8 @@ class ProgramOutput(io.TextIOBase):
         self._log.extend(lines)
         stream = self._stream()
         if stream is not None:
-            stream.write(text)
+            with _streams_of_process():
+                stream.write(text)
         return len(text)
 
     def _stream(self) -> TextIO | None:
@@ -182,7 +199,8 @@ class ProgramOutput(io.TextIOBase):
         stream = self._stream()
         is_closed = getattr(stream, "closed", False)  # Python also flushes a stream that nobody uses any more
         if stream is not None and not is_closed:
-            stream.flush()
+            with _streams_of_process():
+                stream.flush()
 
     def end_line(self) -> None:
         """Add a line without an end to the log."""

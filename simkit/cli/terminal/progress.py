@@ -35,6 +35,7 @@ class Progress:
         duration: simulated length of the run [s]; None for a run without an end.
         console: output of the display.
         lines: function that returns lines to show instead of the topics.
+        status_lines: lines that are always shown below the time, such as an address.
     """
 
     def __init__(
@@ -44,9 +45,10 @@ class Progress:
         duration: float | None,
         console: Console,
         lines: Callable[[], Sequence[str]] | None = None,
+        status_lines: Sequence[str] = (),
     ) -> None:
         self._sim, self._counter, self._duration, self._console = sim, counter, duration, console
-        self._lines = lines
+        self._lines, self._status_lines = lines, status_lines
         self._refresh = _REFRESH if lines is None else _REFRESH_LINES
         self._drawn = time.perf_counter()
         self._marks = [(self._drawn, sim.time)]
@@ -97,15 +99,16 @@ class Progress:
         end = f" of {self._duration:g}" if self._duration is not None else ""
         state = ("   paused", "bold yellow") if self._sim.paused else f"   {factor:.2f} × real time"
         head = Text.assemble((f"t = {self._sim.time:.2f}{end} s", "bold"), state)
+        status = [Text(line, overflow="fold") for line in self._status_lines]
         if self._lines is not None:
-            return Group(head, *(Text(line, no_wrap=True, overflow="ellipsis") for line in self._lines()))
+            return Group(head, *status, *(Text(line, no_wrap=True, overflow="ellipsis") for line in self._lines()))
         table = Table(box=None, padding=(0, 2, 0, 0))
         table.add_column("topic")
         table.add_column("messages", justify="right")
         table.add_column("rate", justify="right")
         rows = self._counter.rows
-        room = max(self._console.height - 4, 3)
+        room = max(self._console.height - 4 - len(status), 3)
         for row in rows[:room]:
             table.add_row(row.topic, str(row.count), rate_text(row))
         more = [Text(f"… and {len(rows) - room} more")] if len(rows) > room else []
-        return Group(head, table, *more)
+        return Group(head, *status, table, *more)

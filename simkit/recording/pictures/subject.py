@@ -84,7 +84,8 @@ def find_subject(
     corners = {name: boxes.reshape(-1, 3) for name, boxes in boxes_by_model.items()}
     # a model whose meshes are all missing is at a place too, and has a path
     corners |= {name: sim.models[name].pose.position[None] for name in moving if not len(corners[name])}
-    left_out = find_stray_models(sim, corners, moving, _ground(sim))
+    robots = [name for name in moving if _is_robot(sim, name)]
+    left_out = find_stray_models(sim, corners, moving, robots, _ground(sim))
     none = np.zeros((0, 8, 3))
     boxes = np.concatenate([none, *(boxes_by_model[name] for name in moving if name not in left_out)])
     fixed = [name for name in drawn if name not in moving and name not in left_out]
@@ -95,8 +96,7 @@ def find_subject(
     seen = np.concatenate((driven, scanned))
     points = np.concatenate((boxes.reshape(-1, 3), seen))
     room = walls.reshape(-1, 3)
-    is_scene = not any(_is_robot(sim, name) for name in moving)  # objects at rest, such as furniture
-    limit = math.inf if is_scene and not len(seen) else room_size
+    limit = math.inf if not robots and not len(seen) else room_size  # objects at rest, such as furniture
     if len(boxes) and (not len(room) or _size(np.concatenate((points, room))) > limit * _size(points)):
         room = np.zeros((0, 3))
     nearby = np.concatenate((boxes.reshape(-1, 3), driven))
@@ -179,13 +179,25 @@ def _ground(sim: Simulation) -> float:
 
 
 def _box_corners(sim: Simulation, geoms: list[int]) -> Points:
-    """Return the corners of the boxes around geoms [m], shape (n, 8, 3), without planes."""
+    """Return the corners of the boxes around geoms [m], shape (n, 8, 3), without planes.
+
+    The box of a mesh has the axes of the world: that of the engine has the principal axes of the mesh. In a building
+    of one mesh, these are at an angle to the walls, and the box is up to twice as large.
+    """
     model, data = sim.mj_model, sim.engine.physics.fresh()
     bounded = [geom for geom in geoms if model.geom_rbound[geom] > 0.0]
     drawn = np.array(bounded, dtype=int)
     corners = model.geom_aabb[drawn, None, :3] + _CORNERS * model.geom_aabb[drawn, None, 3:]
     axes = data.geom_xmat[drawn].reshape(-1, 3, 3)
     corners_in_world: Points = np.einsum("nij,nkj->nki", axes, corners) + data.geom_xpos[drawn, None]
+    for row, geom in enumerate(bounded):
+        if model.geom_type[geom] == int(mujoco.mjtGeom.mjGEOM_MESH):
+            mesh = model.geom_dataid[geom]
+            start = model.mesh_vertadr[mesh]
+            vertices = model.mesh_vert[start : start + model.mesh_vertnum[mesh]]
+            placed = np.einsum("ij,nj->ni", axes[row], vertices.astype(np.float64)) + data.geom_xpos[geom]
+            low, high = placed.min(axis=0), placed.max(axis=0)
+            corners_in_world[row] = (low + high) / 2 + _CORNERS * (high - low) / 2
     return corners_in_world[np.isfinite(corners_in_world).all(axis=(1, 2))]
 
 

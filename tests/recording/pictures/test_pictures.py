@@ -88,6 +88,30 @@ def test_a_model_far_away_from_all_others_does_not_decide_the_frame() -> None:
     assert usual.left_out == ()
 
 
+def test_a_ball_that_rolled_away_does_not_decide_the_frame_of_a_robot() -> None:
+    room = [("robot", "0 0 0.5", "1 1 1", False), ("wall", "1 0 0.5", "0.1 1 1", True)]
+    sensor = '<sensor name="s" type="imu"/></link>'
+    for place, left_out in (("9 0 0.1", ()), ("40 0 0.1", ("ball",))):
+        text = world(*room, ("ball", place, "0.2 0.2 0.2", False)).replace("</link>", sensor, 1)
+        with simkit.load(text) as sim:
+            subject = find_subject(sim, [])
+        assert subject.left_out == left_out
+        assert subject.robots[:, 0].max() == pytest.approx(9.1 if not left_out else 0.5)
+
+
+def test_the_box_of_a_mesh_has_the_axes_of_the_world(tmp_path: Path) -> None:
+    """The engine's box of a triangular prism lies along its principal axes, at 45 degrees."""
+    lines = [f"v {x} {y} {z}" for z in (0, 1) for x, y in ((0, 0), (2, 0), (2, 2))]
+    lines += [f"f {face}" for face in ("1 3 2", "4 5 6", "1 2 5 4", "2 3 6 5", "3 1 4 6")]
+    (tmp_path / "prism.obj").write_text("\n".join(lines), encoding="utf-8")
+    box = "<box>\n  <size>1 1 1</size></box>"
+    text = world(("prism", "0 0 0", "1 1 1", True)).replace(box, "<mesh><uri>prism.obj</uri></mesh>")
+    (tmp_path / "w.sdf").write_text(text, encoding="utf-8")
+    with simkit.load(tmp_path / "w.sdf") as sim:
+        points = find_subject(sim, []).points
+    np.testing.assert_allclose(np.ptp(points, axis=0), (2, 2, 1), atol=1e-6)
+
+
 def test_a_model_that_fell_out_of_the_world_is_not_framed_and_neither_is_its_path() -> None:
     with simkit.load(world(GROUND, ("robot", "0 0 0.5", "1 1 1", False), ("cone", "1 1 0.5", "1 1 1", False))) as sim:
         usual = find_subject(sim, [])

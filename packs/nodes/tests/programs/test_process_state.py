@@ -11,6 +11,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from rich.console import Console
+from rich.live import Live
 
 import simkit
 from simkit import Simulation
@@ -246,3 +248,14 @@ def test_variables_of_ros_are_set_for_a_program_alone(run_program: Run, monkeypa
     monkeypatch.delenv("ROS_DISTRO", raising=False)
     assert run_program("import rclpy, os\nprint(os.environ['ROS_DISTRO'])") == ["jazzy"]
     assert "ROS_DISTRO" not in os.environ
+
+
+def test_a_program_writes_above_the_display_of_a_run_on_a_terminal(
+    sim: Simulation, add_program: Callable[..., NodeProgram], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "stderr", terminal := io.StringIO())
+    node = add_program('import sys\nprint("to stdout")\nprint("to stderr", file=sys.stderr, flush=True)')
+    with Live("display", console=Console(stderr=True, force_terminal=True), auto_refresh=False):
+        sim.run(0.1)
+    assert node.log == ["to stdout", "to stderr"]
+    assert terminal.getvalue().count("to stderr") == 1

@@ -143,6 +143,7 @@ def _show_bag(path: Path, world: str | None, loading: LoadOptions, page: PageOpt
             return 0
         interrupts = stack.enter_context(Interrupts())
         view = open_page(sim, page, stack, recording, panels.streams)
+        show_address(view.address, opens=page.opens and view.is_local)
         while not interrupts.exit_code:
             view.update()
             time.sleep(_POLL)

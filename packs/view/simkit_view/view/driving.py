@@ -1,33 +1,47 @@
-"""Commands that pages send to robots: speeds, goals and initial poses, and joint positions."""
+"""Commands that pages send to robots: speeds, goals and initial poses."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final
+from collections.abc import Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
 
 from simkit.bridges.teleop import Teleop, TeleopTarget, find_targets
 from simkit.run_spec import JsonObject
+from simkit_view.view.packet import make_packet
 
 if TYPE_CHECKING:
-    from simkit import Publisher, Simulation
+    from simkit import Publisher, Simulation, Subscription
+    from simkit.msgs import Message
 
 _POSES: Final = {
     "goal": ("/goal_pose", "geometry_msgs/msg/PoseStamped"),
     "initial": ("/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped"),
 }
+_RECEIVERS: Final = {
+    "goal": "no navigator subscribes to {topic}, so no robot drives there; `simkit run WORLD --web --nav` starts one",
+    "initial": "no localisation subscribes to {topic}; `simkit run WORLD --web --nav MAP.yaml` starts one",
+}
+_NO_SPEEDS: Final = (0.0, 0.0, 0.0)
 _FRAME: Final = "map"  # frame of goals, as in RViz; the map of a world has the world's origin
 _POSITION_VARIANCE, _YAW_VARIANCE = 0.25, (math.pi / 12) ** 2  # [m²], [rad²]: those of RViz
 
+Speeds = tuple[float, float, float]
+"""Forward speed and speed to the left [m/s], and yaw rate to the left [rad/s]."""
+
 
 class Driving:
-    """Robots that pages drive; the run sends the commands that are due.
+    """Robots that pages drive; the run sends the commands that are due. Also the stream `driving` of the commands.
 
     Args:
         sim: simulation with the robots.
     """
 
     def __init__(self, sim: Simulation) -> None:
-        self._sim = sim
+        self._sim, self._sent, self._revision = sim, b"", -1
+        self._taps: dict[str, Subscription] = {}
+        self._newest: dict[str, tuple[float, Speeds]] = {}
         self._drivers: dict[str, tuple[Teleop, object]] = {}
         self._publishers: dict[str, Publisher] = {}
 
@@ -57,14 +71,61 @@ class Driving:
         self._drivers[topic] = (driver[0], client)
         return driver[0]
 
+    def packet(self, options: Sequence[object]) -> bytes | None:
+        """Return the present command of each driven topic: of a page that drives, else the newest one of anybody.
+
+        A command has its speeds, its time [s] (null while a page drives), and true if it is the stop of the timeout.
+        """
+        self._watch()
+        rows: JsonObject = {}
+        for topic in self._taps:
+            driver = self._drivers[topic][0] if topic in self._drivers else None
+            since, speeds = self._newest.get(topic, (0.0, _NO_SPEEDS))
+            if driver is not None and driver.next_tick is not None:
+                rows[topic] = [driver.speeds, None, False]
+            elif since <= self._sim.time:
+                rows[topic] = [speeds, since, driver is not None and driver.is_expired and speeds == _NO_SPEEDS]
+        packet = make_packet({"kind": "driving", "commands": rows}, {})
+        if packet == self._sent:
+            return None
+        self._sent = packet
+        return packet
+
+    def _watch(self) -> None:
+        """Receive the commands of all robots that can be driven, also of robots that were spawned later."""
+        bus = self._sim.communication.bus
+        if bus.revision == self._revision:
+            return
+        topics = [target.topic for target in find_targets(self._sim)]
+        for topic in [topic for topic in self._taps if topic not in topics]:
+            self._taps.pop(topic).close()
+        for topic in topics:
+            if topic not in self._taps:
+                self._taps[topic] = bus.tap(topic, partial(self._take, topic))
+        self._revision = bus.revision
+
+    def _take(self, topic: str, message: Message) -> None:
+        twist: Any = getattr(message, "twist", message)
+        self._newest[topic] = self._sim.time, (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z))
+
+    def close(self) -> None:
+        """End the subscriptions, because no page shows the commands."""
+        for tap in self._taps.values():
+            tap.close()
+        self._taps, self._newest, self._sent, self._revision = {}, {}, b"", -1
+
     def release(self, client: object) -> None:
         """Stop what a page drives, because the page has closed."""
         for driver, driven_by in self._drivers.values():
             if driven_by is client:
                 driver.release_keys()
 
-    def send_pose(self, kind: str, x: float, y: float, yaw: float, topic: str = "") -> str:
-        """Publish a goal (`goal`) or the estimate of the robot's own pose (`initial`); return the topic."""
+    def send_pose(self, kind: str, x: float, y: float, yaw: float, topic: str = "") -> JsonObject:
+        """Publish a goal (`goal`) or the estimate of the robot's own pose (`initial`).
+
+        Returns:
+            `topic`, and `missing`: what the user must start because nothing uses the topic; empty if something does.
+        """
         default, type_name = _POSES[kind]
         topic, sim = topic or default, self._sim
         if topic not in self._publishers:
@@ -78,7 +139,23 @@ class Driving:
             covariance[35] = _YAW_VARIANCE
             pose = {"pose": pose, "covariance": covariance}
         self._publishers[topic].publish({"header": {"stamp": stamp, "frame_id": _FRAME}, "pose": pose})
-        return topic
+        return {"topic": topic, "missing": "" if self._is_used(topic) else _RECEIVERS[kind].format(topic=topic)}
+
+    def _is_used(self, topic: str) -> bool:
+        """Check whether a plugin, a program or another process receives a topic, besides recorders and displays."""
+        bus = self._sim.communication.bus
+        ends = (end for _, end, _, role in bus.endpoints(topic) if role == "takes")
+        return any(end.active for end in ends) or any(map(_is_program, bus.readers(topic)))
+
+
+def _is_program(reader: Subscription) -> bool:
+    """Check whether a subscription belongs to a plugin, a program, a script or another process.
+
+    Recorders and displays keep no messages; the feed of other processes keeps none either, but knows its readers.
+    """
+    feed = getattr(reader.callback, "__self__", None)
+    is_own = reader.keeps > 0 or reader.owner is not None or bool(reader.node)
+    return reader.active and (is_own or bool(getattr(feed, "has_readers", False)))
 
 
 def _target_dict(target: TeleopTarget) -> JsonObject:

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from simkit.compiler.geom_groups import COLLISION, COLLISION_CONTACT, DRAWN_COLLISION, VISUAL
 from simkit.linear_algebra import matmul
 from simkit.run_spec import JsonObject
+from simkit_view.view.joint_groups import joint_groups
 from simkit_view.view.packet import make_packet
 
 if TYPE_CHECKING:
@@ -43,11 +44,12 @@ def make_scene_packet(sim: Simulation, revision: int, extra: JsonObject) -> byte
         "kind": "scene",
         "revision": revision,
         "world": sim.world.name,
+        "bare": sim.world.where.line is None,  # a model that was loaded without a world
         "timestep": sim.timestep,
         "bodies": [model.body(body).name for body in range(model.nbody)],
         "sensors": [_sensor_dict(sim, sensor) for sensor in sim.contents.sensors.values()],
         "models": [_model_dict(handle) for handle in sim.models.values()],
-        "joints": _joints(sim),
+        **_joints(sim),
         "surroundings": _surroundings(sim),
         "clouds": [topic for topic, type_name in sim.topics().items() if type_name == _CLOUD],
         "frames": _frames(sim),
@@ -271,17 +273,16 @@ def _frames(sim: Simulation) -> list[list[object]]:
     return frames
 
 
-def _joints(sim: Simulation) -> list[JsonObject]:
-    """Return the joints that move, with type, limits, and their axis in MuJoCo's model."""
+def _joints(sim: Simulation) -> JsonObject:
+    """Return the joints that move, with type, limits, and their axis in MuJoCo's model; and their groups."""
     joints, model = [], sim.mj_model
-    for scoped, joint in sim.contents.handles.tables["joint"].items():
-        if joint.dof < 1:
-            continue
+    moving = {scoped: joint for scoped, joint in sim.contents.handles.tables["joint"].items() if joint.dof >= 1}
+    for scoped, joint in moving.items():
         axes = [int(model.dof_jntid[dof]) for dof in joint.mj_dofs if model.jnt_type[model.dof_jntid[dof]] > _BALL]
         lower, upper = (_finite(value) for value in (joint.lower, joint.upper)) if joint.dof == 1 else (None, None)
         place = [[int(model.jnt_bodyid[a]), model.jnt_pos[a].tolist(), model.jnt_axis[a].tolist()] for a in axes]
         joints.append({"name": scoped, "type": joint.type, "lower": lower, "upper": upper, "axes": place})
-    return joints
+    return {"joints": joints, "jointGroups": joint_groups(sim, list(moving.values()))}
 
 
 def _finite(value: float) -> float | None:

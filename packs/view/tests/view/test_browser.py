@@ -56,8 +56,11 @@ class Session:
         more: str = "",
         size: tuple[int, int] = (1200, 720),
         theme: str = "dark",
+        paused: bool = False,
+        tour: bool = False,
     ) -> None:
         self.sim = stack.enter_context(simkit.load(world, sleep=False))  # a body asleep has no contacts
+        self.sim.paused = paused
         self.view = stack.enter_context(LiveView(self.sim))
         self._ends = threading.Event()
         self._calls: queue.SimpleQueue[tuple[Callable[[], Any], queue.SimpleQueue[Any]]] = queue.SimpleQueue()
@@ -68,6 +71,8 @@ class Session:
         viewport = {"width": size[0], "height": size[1]}
         context = browser.new_context(viewport=viewport, bypass_csp=not checks_policy, color_scheme=theme)
         stack.callback(context.close)
+        if not tour:
+            context.add_cookies([{"name": "simkit-tour", "value": "off", "url": self.view.address}])
         self.page = context.new_page()
         self.outside: list[str] = []
         self.errors: list[str] = []

@@ -150,7 +150,7 @@ def test_a_tab_that_is_not_shown_asks_for_nothing(session: Callable[..., Session
     found.until("app.plots.list.topics.length > 2")
     found.get("app.plots.choose('/odom', 'pose.pose.position')")
     found.until("app.plots.store.curves.size === 3")
-    usual = ["lidar", "joints", "ranges", "displays"]
+    usual = ["lidar", "joints", "ranges", "displays", "driving"]
     wants = f"Object.keys(app.connection.wants).filter(name => !{usual}.includes(name)).sort().join()"
     assert found.get(wants) == "rates,series:/odom,topics"
     for tab, expected in {

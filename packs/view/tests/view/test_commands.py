@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -29,10 +30,10 @@ def folder() -> Iterator[Path]:
 
 
 @contextmanager
-def started(folder: Path, *arguments: str) -> Iterator[subprocess.Popen[str]]:
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), "XDG_RUNTIME_DIR": str(folder)}
+def started(folder: Path, *arguments: str, **streams: int) -> Iterator[subprocess.Popen[str]]:
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "XDG_RUNTIME_DIR": str(folder), "TERM": "xterm"}
     command = [sys.executable, "-m", "simkit", *arguments]
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **streams}
     with subprocess.Popen(command, cwd=folder, env=environment, text=True, **pipes) as process:
         try:
             yield process
@@ -46,6 +47,33 @@ def test_a_run_prints_the_address_first_and_serves_the_page(folder: Path) -> Non
         assert ADDRESS.fullmatch(address)
         with urllib.request.urlopen(address.strip(), timeout=TIMEOUT) as answer:
             assert b'<script type="module" src="app.js">' in answer.read()
+
+
+@pytest.mark.slow
+def test_the_address_is_the_last_line_before_the_run(folder: Path) -> None:
+    with started(folder, "view", "yard.sdf", "--no-open", stderr=subprocess.STDOUT) as view:
+        lines = []
+        while not ADDRESS.fullmatch(lines[-1] if lines else ""):
+            lines.append(view.stdout.readline())
+        assert any("paused at t=0 s" in line for line in lines)
+        view.send_signal(signal.SIGINT)
+        assert view.stdout.readline().startswith("simulated 0.000 s")
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.name != "posix", reason="pseudo-terminals are of POSIX systems")
+def test_a_terminal_shows_the_address_below_the_time_as_long_as_the_run_lasts(folder: Path) -> None:
+    own, other = os.openpty()
+    screen = ""
+    with started(folder, "view", "yard.sdf", "--no-open", stdout=other, stderr=other, stdin=other) as view:
+        os.close(other)
+        pattern = re.compile(r"t = [\d.]+ s   paused\s+" + ADDRESS.pattern.replace(r"\n", r"\s+topic"))
+        while len(pattern.findall(screen)) < 3:  # three drawings of the display
+            screen += re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", os.read(own, 65536).decode())
+        view.send_signal(signal.SIGINT)
+        while "state " not in screen:
+            screen += os.read(own, 65536).decode()
+    os.close(own)
 
 
 @pytest.mark.slow

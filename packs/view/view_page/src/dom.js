@@ -1,5 +1,8 @@
 // Elements of the page.
 
+/** Returns a number with a count of decimals, without a minus sign before zero. */
+export const fixed = (value, digits) => value.toFixed(digits).replace(/^-(0(\.0*)?)$/, '$1');
+
 /** Returns a new element. `attributes` are properties; `class`, `style` objects and `on…` functions work too. */
 export function element(name, attributes = {}, ...children) {
   const made = document.createElement(name);
@@ -13,12 +16,16 @@ export function element(name, attributes = {}, ...children) {
   return made;
 }
 
-/** Returns a panel with a title that folds. */
+/** Matches a narrow window, such as that of a phone, whose panels lie below the scene. */
+export const narrow = matchMedia('(max-width: 900px)');
+
+/** Returns a panel with a title that folds. In a narrow window, only driving and the selection are open at first. */
 export function panel(id, title, ...children) {
-  const box = element('details', { class: 'panel', id, open: true }, element('summary', {}, title), ...children);
-  const key = `simkit-panel-${id}`;
+  const box = element('details', { class: 'panel', id, open: !narrow.matches || ['drive', 'selection'].includes(id) }, element('summary', {}, title), ...children);
+  const key = `simkit-${narrow.matches ? 'phone' : 'panel'}-${id}`;
   try {
-    if (localStorage.getItem(key) === 'closed') box.open = false;
+    const kept = localStorage.getItem(key);
+    if (kept) box.open = kept === 'open';
     box.addEventListener('toggle', () => localStorage.setItem(key, box.open ? 'open' : 'closed'));
   } catch { /* a page in a notebook may have no storage */ }
   return box;

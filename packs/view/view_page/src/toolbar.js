@@ -17,7 +17,7 @@ export function makeToolbar(app, bar) {
   const link = element('span', { id: 'link', class: 'off' }, '● connecting'), frames = element('span', { id: 'frames' });
   const world = element('strong', { id: 'world' }), seed = element('span', { id: 'seed', class: 'dim', title: 'Seed of all random streams' });
   bar.append(world, seed, element('span', { class: 'group' }, play, step, count, reset), speed, time, rtf,
-    element('span', { class: 'space' }), view, frames, link);
+    element('span', { class: 'space' }), view, button('tour-start', '?', 'Tour of the page', () => app.tour.start()), frames, link);
 
   app.on('scene', scene => {
     world.textContent = scene.world;

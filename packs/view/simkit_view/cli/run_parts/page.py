@@ -96,7 +96,11 @@ class WebPage(RunPart):
         """
         with ExitStack() as stack:
             if self.page is not None:
-                self._show(run, open_page(run.sim, self.page, stack))
+                view = open_page(run.sim, self.page, stack)
+                self._show(run, view)
+                run.status_lines.append(view.address)
+                if self.page.opens and view.is_local:
+                    open_in_browser(view.address)
             if run.loop.server is not None:
                 run.loop.server.open_view = lambda: self._address(run, stack)
             yield
@@ -125,7 +129,7 @@ def open_page(
     recording: bytes = b"",
     streams: Mapping[str, StreamMaker] | None = None,
 ) -> LiveView:
-    """Start the live view, print its address alone on a line, and open a browser; the stack closes the view.
+    """Start the live view, with a warning if other machines reach it; the stack closes the view.
 
     Args:
         sim: simulation to show.
@@ -140,7 +144,6 @@ def open_page(
     from simkit_view.view.live_view import LiveView
 
     view = stack.enter_context(LiveView(sim, options.host, options.port, recording=recording, streams=streams))
-    show_address(view.address, opens=options.opens and view.is_local)
     if not view.is_local:
         text = "other machines reach the page; whoever has its address may drive, spawn, reset and call services"
         print_message(f"warning SK-WEB-007: {text}; without --host only this machine reaches it")
@@ -153,8 +156,8 @@ def show_address(address: str, *, opens: bool) -> None:
     if sys.stdout is not None:
         sys.stdout.write(f"{address}\n")
         sys.stdout.flush()
-    if opens and _has_desktop():
-        _open_browser(address)
+    if opens:
+        open_in_browser(address)
 
 
 def _has_desktop() -> bool:
@@ -162,11 +165,14 @@ def _has_desktop() -> bool:
     return sys.platform in ("win32", "darwin") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
-def _open_browser(address: str) -> None:
-    """Open a page in a browser, by a file that only this user can read and that is removed soon.
+def open_in_browser(address: str) -> None:
+    """Open a page in a browser if this machine has a desktop, by a file that only this user can read.
 
-    Every user of the machine can read the arguments of a program, so the address with its token must not be one.
+    Every user of the machine can read the arguments of a program, so the address with its token must not be one. The
+    file is removed soon.
     """
+    if not _has_desktop():
+        return
     import webbrowser
 
     text = f'<!doctype html><meta http-equiv="refresh" content="0; url={html.escape(address)}"><title>simkit</title>'

@@ -12,23 +12,35 @@ export function makeDrivePanel(app) {
   const stop = element('button', { id: 'stop', onclick: () => key('s') }, 'Stop (s)');
   const go = element('button', { id: 'go', title: 'Click on the ground, drag for the direction', onclick: () => aim('goal', go) }, 'Go there');
   const here = element('button', { id: 'here', title: 'Click on the ground, drag for the direction', onclick: () => aim('initial', here) }, 'I am here');
-  const help = element('div', { class: 'dim' }, 'w a s d x or arrows: drive');
-  const driving = element('div', {}, choice, pad, speeds, stop);
-  const box = panel('drive', 'Drive', driving, help, element('div', { class: 'row' }, go, here));
-  let targets = [], timer = null, wanted = [0, 0];
+  const answer = element('div', { id: 'pose-answer', class: 'dim' });
+  const help = element('div', { class: 'dim keys' }, 'w a s d x or arrows: drive');
+  const driving = element('div', { class: 'driving' }, choice, pad, speeds, stop);
+  const box = panel('drive', 'Drive', driving, help, element('div', { class: 'row' }, go, here), answer);
+  let targets = [], commands = {}, timer = null, wanted = [0, 0];
 
   const target = () => targets[choice.selectedIndex];
+  /** Shows the present command, which also comes from a navigator, another page, or the end of a time-out. */
+  const showCommand = () => {
+    if (!target()) return;
+    const [[ahead, left, turn], since, isExpired] = commands[target().topic] ?? [[0, 0, 0], null, false];
+    const parts = [`${ahead.toFixed(2)} m/s`, ...(target().sideways ? [`${left.toFixed(2)} m/s left`] : []), `${turn.toFixed(2)} rad/s`];
+    const age = since === null || !(ahead || left || turn) ? 0 : (app.state?.time ?? since) - since;
+    speeds.textContent = parts.join('  ') + (isExpired ? ', stopped: no key for 10 s' : age > 1 ? `, sent ${age.toFixed(0)} s ago` : '');
+    speeds.title = `Command on ${target().topic}`;
+  };
+  const want = () => app.connection.want('driving', box.open && !box.hidden ? {} : null);
   const show = () => {
     driving.hidden = help.hidden = targets.length === 0;
     choice.hidden = targets.length < 2;
     box.hidden = targets.length === 0;
+    showCommand();
+    want();
   };
-  const report = found => { if (Array.isArray(found)) speeds.textContent = `${found[0].toFixed(2)} m/s  ${found[2].toFixed(2)} rad/s`; };
-  const key = name => { if (target()) app.send('key', { topic: target().topic, key: name }).then(report); };
+  const key = name => { if (target()) app.send('key', { topic: target().topic, key: name }); };
   const drive = () => {
     if (!target()) return;
     const most = (bounds, value, other) => value * Math.abs((value > 0 ? bounds[1] : bounds[0]) ?? other);
-    app.send('drive', { topic: target().topic, ahead: most(target().linear, wanted[0], 1), turn: most(target().angular, wanted[1], 1.5) }).then(report);
+    app.send('drive', { topic: target().topic, ahead: most(target().linear, wanted[0], 1), turn: most(target().angular, wanted[1], 1.5) });
   };
 
   const movePad = event => {
@@ -112,19 +124,28 @@ export function makeDrivePanel(app) {
   });
   canvas.addEventListener('pointerup', event => {
     if (!from || !aiming) return;
-    app.send('pose', { kind: aiming, x: from.x, y: from.y, yaw: yawTo(event) });
+    app.ask('pose', { kind: aiming, x: from.x, y: from.y, yaw: yawTo(event) }).then(tell, error => app.report(error.message));
     from = null;
     endAim();
   });
+
+  /** Says what has become of a pose: nothing, if no program receives it. */
+  const tell = ({ topic, missing }) => {
+    answer.textContent = missing || `published on ${topic}${app.state.paused ? '; the world is paused' : ''}`;
+    answer.className = missing ? 'problem' : 'dim';
+    if (missing) app.report(missing);
+  };
 
   app.on('scene', () => app.ask('targets').then(found => fill(found)).catch(() => {}));
   app.on('link', isUp => { if (isUp) app.ask('targets').then(found => fill(found)).catch(() => {}); });
   const fill = found => {
     targets = found;
     choice.replaceChildren(...found.map(one => element('option', {}, one.model || one.topic)));
-    if (found[0]) speeds.textContent = found[0].topic;
     show();
   };
+  app.on('packet:driving', packet => { commands = packet.commands; showCommand(); });
+  app.on('state', showCommand);
+  box.addEventListener('toggle', want);
   box.hidden = true;
   return box;
 }

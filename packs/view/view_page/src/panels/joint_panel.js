@@ -1,14 +1,14 @@
-// Joints with their positions. Sliders move the joints while the world stands still, as joint_state_publisher_gui does.
-import { element, panel } from '../dom.js';
+// Joints with their positions, in groups. Sliders move the joints of a paused world, as joint_state_publisher_gui does.
+import { element, fixed, panel } from '../dom.js';
 
 const MOST = 80;
 
 export function makeJointPanel(app) {
   const list = element('div', { class: 'joints' });
   const box = panel('joints', 'Joints', list);
-  let rows = [];
+  let rows = [], newest = [];
   const degrees = joint => joint.type !== 'prismatic';
-  const format = (joint, value) => degrees(joint) ? `${(value * 180 / Math.PI).toFixed(1)}°` : `${value.toFixed(3)} m`;
+  const format = (joint, value) => degrees(joint) ? `${fixed(value * 180 / Math.PI, 1)}°` : `${fixed(value, 3)} m`;
   const make = (joint, index) => {
     const range = joint.type === 'continuous' || joint.lower === null || joint.upper === null ? [-Math.PI, Math.PI] : [joint.lower, joint.upper];
     const value = element('output', { class: 'dim' });
@@ -23,21 +23,33 @@ export function makeJointPanel(app) {
     if (isWanted) others.add(name); else others.delete(name);
     want();
   };
+  /** Shows the newest positions, unless they belong to another scene, which is then loaded soon. */
+  const show = () => {
+    if (newest.length !== app.scene?.joints.length) return;
+    for (const { joint, index, slider, value } of rows) {
+      value.textContent = format(joint, newest[index]);
+      if (document.activeElement !== slider || !slider.matches(':active')) slider.value = newest[index];
+    }
+  };
   app.on('scene', scene => {
     const robots = new Set(app.robots.map(robot => robot.name));
-    rows = scene.joints.map((joint, i) => [joint, i]).filter(([joint]) => robots.has(joint.name.split('::', 1)[0])).slice(0, MOST).map(([joint, i]) => make(joint, i));
-    list.replaceChildren(...rows.map(({ row }) => row));
+    const groups = scene.jointGroups.filter(([, numbers]) => robots.has(scene.joints[numbers[0]].name.split('::', 1)[0]));
+    rows = [];
+    list.replaceChildren(...groups.flatMap(([heading, numbers]) => {
+      const made = numbers.slice(0, MOST - rows.length).map(number => make(scene.joints[number], number));
+      rows.push(...made);
+      return made.length ? [...(groups.length > 1 ? [element('h4', {}, heading)] : []), ...made.map(({ row }) => row)] : [];
+    }));
+    const more = groups.flatMap(([, numbers]) => numbers).length - rows.length;
+    if (more) list.append(element('p', { class: 'dim' }, `and ${more} more`));
     box.hidden = rows.length === 0 || scene.recording;
+    if (app.state) enable(app.state);
+    show(); // a paused world sends no further positions
     want();
   });
-  app.on('packet:joints', ({ arrays: { position } }) => {
-    for (const { joint, index, slider, value } of rows) {
-      if (Number.isNaN(position[index])) continue;
-      value.textContent = format(joint, position[index]);
-      if (document.activeElement !== slider || !slider.matches(':active')) slider.value = position[index];
-    }
-  });
-  app.on('state', state => { for (const { slider } of rows) slider.disabled = !state.paused; });
+  app.on('packet:joints', ({ arrays }) => { newest = arrays.position; show(); });
+  const enable = state => { for (const { slider } of rows) slider.disabled = !state.paused; };
+  app.on('state', enable);
   box.addEventListener('toggle', want);
   box.hidden = true;
   return box;

@@ -4,6 +4,7 @@ import { element } from '../dom.js';
 import { FIELD_DATA } from './topic_list.js';
 
 const COLOURS = ['#4c9ffe', '#f2a33c', '#3fbf7f', '#e5636b', '#b38cf4', '#2fc4c9', '#e87fbf', '#a8b545', '#8d99ae', '#d98e5f'];
+const STEPS = Array.from({ length: 49 }, (_, i) => [1, 2, 5].map(step => +`${step}e${i - 24}`)).flat(); // between two values of an axis; 2.5 would need more digits
 const WINDOWS = [['5 s', 5], ['10 s', 10], ['30 s', 30], ['60 s', 60], ['5 min', 300], ['all', Infinity]];
 
 export class Plot {
@@ -149,7 +150,7 @@ export class Plot {
     const style = getComputedStyle(document.body), text = style.getPropertyValue('--dim').trim(), line = style.getPropertyValue('--grid').trim();
     const font = '11px system-ui, sans-serif', all = [...new Set(curves.map(curve => this.unit(curve)))], units = all.slice(0, 2);
     const scaleOf = curve => units.includes(this.unit(curve)) ? `u${units.indexOf(this.unit(curve))}` : `u${units.length - 1}`;
-    const axis = (options) => ({ stroke: text, font, labelFont: font, labelSize: 16, grid: { stroke: line, width: 1 }, ticks: { stroke: line, width: 1, size: 4 }, gap: 3, ...options });
+    const axis = (options) => ({ stroke: text, font, labelFont: font, labelSize: 16, grid: { stroke: line, width: 1 }, ticks: { stroke: line, width: 1, size: 4 }, gap: 3, incrs: STEPS, values: ticks, ...options });
     const scales = { x: { time: false }, ...Object.fromEntries(units.map((_, i) => [`u${i}`, { range: (u, min, max) => padded(min, max) }])) };
     const { width, height } = this.space();
     this.chart = new uPlot({
@@ -157,7 +158,7 @@ export class Plot {
       cursor: { drag: { x: true, y: false, setScale: false }, points: { size: 5 }, focus: { prox: 24 } },
       focus: { alpha: 0.4 },
       series: [{}, ...curves.map(curve => ({ label: curve.label, stroke: this.colourOf(curve), width: 1.5, scale: scaleOf(curve), points: { show: false }, spanGaps: false, pxAlign: 0, paths: curve.isAngle ? anglePath(scaleOf(curve), Math.PI * this.scale(curve)) : undefined }))],
-      axes: [axis({ size: 24 }), ...units.map((unit, i) => axis({ scale: `u${i}`, side: i ? 1 : 3, size: 52, label: (i ? all.slice(1) : [unit]).filter(Boolean).join(', ') || ' ', values: ticks, grid: { show: i === 0, stroke: line, width: 1 } }))],
+      axes: [axis({ size: 24 }), ...units.map((unit, i) => axis({ scale: `u${i}`, side: i ? 1 : 3, size: 52, label: (i ? all.slice(1) : [unit]).filter(Boolean).join(', ') || ' ', grid: { show: i === 0, stroke: line, width: 1 } }))],
       hooks: {
         setSelect: [u => this.setZoom(u)],
         setCursor: [() => this.showValues()],

@@ -1,0 +1,70 @@
+// Ask the search of the built site what people type; exit 1 if a page that answers is not among the first results.
+// Usage: node docs/site/check_search.mjs [build/site]. The program is the theme's own search worker.
+import fs from "node:fs";
+import path from "node:path";
+import vm from "node:vm";
+
+const ANSWERS = {
+  "cmd-vel": "docs/troubleshooting",
+  "cmd_vel": "docs/troubleshooting",
+  "/cmd_vel": "docs/troubleshooting",
+  "--cmd-vel": "docs/commands/run",
+  "real-time factor": "docs/troubleshooting",
+  "RTF": "docs/troubleshooting",
+  "use_sim_time": "docs/troubleshooting",
+  "package://": "docs/troubleshooting",
+  "robot does not move": "docs/troubleshooting",
+  "scan is all inf": "docs/troubleshooting",
+  "the robot slides": "docs/troubleshooting",
+  "no pictures": "docs/troubleshooting",
+  "runs differ": "docs/troubleshooting",
+  "too slow": "docs/troubleshooting",
+  "my node sees no messages": "docs/troubleshooting",
+  "Nan, Inf or huge value in QACC": "docs/troubleshooting",
+  "mass and inertia of moving bodies must be larger than mjMINVAL": "docs/troubleshooting",
+  "free joint can only be used on top level": "docs/troubleshooting",
+  "Unable to find uri[model://sun]": "docs/troubleshooting",
+  "docker": "docs/systems",
+  "windows": "docs/systems",
+  "jupyter": "docs/systems",
+  "from gazebo classic": "docs/from/gazebo_classic",
+  "pybullet": "docs/from/pybullet",
+  "from ROS 2 launch": "docs/from/ros2_launch",
+  "ros2 launch": "packs/launch/docs/launch",
+  "LaserScan": "reference/messages/sensor_msgs",
+  "geometry_msgs/msg/Twist": "reference/messages/geometry_msgs",
+  "SK-SDF-011": "reference/diagnostics/sdf",
+  "capture": "reference/python/sensors",
+  "sim.world": "reference/python/world_and_contacts",
+  "sim.contacts": "reference/python/world_and_contacts",
+  "run_until": "reference/python/simulation",
+  "exit code": "docs/ci",
+};
+const FIRST = 5;
+
+const site = process.argv[2] ?? "build/site";
+const here = import.meta.dirname ?? path.dirname(new URL(import.meta.url).pathname);
+const rewriting = fs.readFileSync(path.join(here, "theme/search_query.js"), "utf8");
+const searchQuery = new Function(`${rewriting}; return searchQuery;`)();
+
+const folder = path.join(site, "assets/javascripts/workers");
+const worker = fs.readdirSync(folder).find((name) => /^search\..*\.js$/.test(name));
+let listener, answered;
+const scope = { self: {}, console, postMessage: (m) => answered(m), addEventListener: (_, f) => { listener = f; } };
+Object.defineProperty(scope, "lunr", { get: () => scope.self.lunr });
+vm.runInContext(fs.readFileSync(path.join(folder, worker), "utf8"), vm.createContext(scope));
+const ask = (type, data) => new Promise((resolve) => { answered = resolve; listener({ data: { type, data } }); });
+
+const index = JSON.parse(fs.readFileSync(path.join(site, "search/search_index.json"), "utf8"));
+await ask(0, { ...index, options: { suggest: false } });
+const queries = process.argv.length > 3 ? process.argv.slice(3) : Object.keys(ANSWERS);
+let misses = 0;
+for (const query of queries) {
+  const found = (await ask(2, searchQuery(query))).data.items.slice(0, FIRST).map(([{ location }]) => location);
+  const wanted = ANSWERS[query];
+  const isFound = wanted && found.some((location) => location.startsWith(`${wanted}.html`));
+  if (!isFound) console.log(`${query} -> ${wanted ?? ""}\n    ${found.join("\n    ")}`);
+  misses += wanted && !isFound ? 1 : 0;
+}
+console.log(`${queries.length} queries, ${misses} without their page among the first ${FIRST}`);
+process.exitCode = misses ? 1 : 0;

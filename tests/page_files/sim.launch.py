@@ -1,0 +1,6 @@
+from launch import LaunchDescription
+
+
+def generate_launch_description():
+    """Start nothing."""
+    return LaunchDescription([])
