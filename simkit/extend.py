@@ -18,6 +18,7 @@ from simkit.lazy_names import lazy_attributes
 if TYPE_CHECKING:
     from simkit.cli.run_options import GivenOptions, with_run_options
     from simkit.cli.run_part import OpenRun, RunPart
+    from simkit.cli.terminal.json_report import add_to_report
     from simkit.cli.terminal.options import argument, option
     from simkit.cli.terminal.output import report_errors
     from simkit.compiler import Compiled, SpecBuilder
@@ -48,6 +49,7 @@ if TYPE_CHECKING:
     from simkit.plugins.publish_on_demand import publish_while_subscribed
     from simkit.pose import Vector
     from simkit.runtime.communication.action_server import GoalHandle
+    from simkit.runtime.communication.service_server import ServiceCall
     from simkit.runtime.engine.random_streams import RandomStream
     from simkit.scene import (
         Box,
@@ -113,6 +115,7 @@ __all__ = [
     "SceneVisual",
     "SceneWorld",
     "Sensor",
+    "ServiceCall",
     "SharedByCopies",
     "SpecBuilder",
     "Sphere",
@@ -121,6 +124,7 @@ __all__ = [
     "VectorSensor",
     "Where",
     "acts",
+    "add_to_report",
     "argument",
     "block",
     "blocks",
@@ -151,6 +155,7 @@ __all__ = [
 _MODULES = {
     "simkit.cli.run_options": ("GivenOptions", "with_run_options"),
     "simkit.cli.run_part": ("OpenRun", "RunPart"),
+    "simkit.cli.terminal.json_report": ("add_to_report",),
     "simkit.cli.terminal.options": ("argument", "option"),
     "simkit.cli.terminal.output": ("report_errors",),
     "simkit.compiler": ("Compiled", "SpecBuilder"),
@@ -170,6 +175,7 @@ _MODULES = {
     "simkit.plugins.publish_on_demand": ("publish_while_subscribed",),
     "simkit.pose": ("Vector",),
     "simkit.runtime.communication.action_server": ("GoalHandle",),
+    "simkit.runtime.communication.service_server": ("ServiceCall",),
     "simkit.scene": (
         "Box", "Cylinder", "Inertial", "Scene", "SceneCollision", "SceneJoint", "SceneLink", "SceneModel",
         "SceneSensor", "SceneVisual", "SceneWorld", "Sphere",
@@ -185,4 +191,5 @@ _MODULES = {
     "simkit.sensors.vector_sensor": ("VectorRule", "VectorSensor"),
 }  # fmt: skip
 
-__getattr__, __dir__ = lazy_attributes(__name__, _MODULES)
+if not TYPE_CHECKING:  # hidden from type checkers, so that they report unknown names
+    __getattr__, __dir__ = lazy_attributes(__name__, _MODULES)

@@ -92,6 +92,8 @@ def test_versions_of_the_changelog_descend_from_the_present_one() -> None:
     assert versions[0] == PRESENT
     assert versions == sorted(set(versions), reverse=True)
     assert days == sorted(days, reverse=True)
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert f"\nversion: {simkit.__version__}\ndate-released: {days[0]}\n" in citation
 
 
 def test_sections_of_the_changelog_are_those_of_keep_a_changelog() -> None:
@@ -107,6 +109,12 @@ def test_no_entry_of_the_changelog_is_there_twice() -> None:
     entries = [" ".join(entry.split()) for entry in re.split(r"^(?:- |#)", CHANGELOG, flags=re.MULTILINE)]
     long = [entry for entry in entries if len(entry) > 30]
     assert sorted(long) == sorted(set(long))
+
+
+def test_what_is_not_released_is_short() -> None:
+    """A merge of branches keeps the lines of both sides: lines that one side removed must not come back."""
+    unreleased = CHANGELOG.partition("## Unreleased")[2].partition("\n## ")[0]
+    assert len(unreleased.split()) < 400
 
 
 def test_every_entry_of_a_version_is_short() -> None:

@@ -69,14 +69,14 @@ def test_a_link_leads_to_a_page_of_the_site_or_to_the_repository(site_pages: typ
     text = (
         "[a](../packs/view/docs/view.md#keys) [b](../worlds/office.sdf) [c](../worlds) `[d](../x)` [e](#here)\n"
         f"[f]({repository}blob/main/docs/golden.md) [g](https://example.org/a.md)\n"
-        "```\n[h](../worlds)\n```\n"
+        "```\n[h](../worlds)\n```\n[of\ntwo lines](../worlds)\n"
     )
     on_site = {"docs/golden.md", "packs/view/docs/view.md"}
     assert site_pages.with_site_links(text, "docs/teleop.md", on_site) == (
         f"[a](../packs/view/docs/view.md#keys) [b]({repository}blob/main/worlds/office.sdf) "
         f"[c]({repository}tree/main/worlds) `[d](../x)` [e](#here)\n"
         "[f](golden.md) [g](https://example.org/a.md)\n"
-        "```\n[h](../worlds)\n```\n"
+        f"```\n[h](../worlds)\n```\n[of\ntwo lines]({repository}tree/main/worlds)\n"
     )
 
 
@@ -157,6 +157,10 @@ def test_each_published_message_has_its_fields_in_the_reference(reference: types
         ("run_until", "+run +until* until^10"),
         ('"exact words"', '"exact words"'),
         ("is", "is^10 is*"),
+        (
+            "size 0 must be in geom 1",
+            "text:size^10 text:size text:0^10 text:0 text:must^10 text:must text:geom^10 text:geom text:1^10 text:1",
+        ),
     ],
 )
 def test_the_search_gets_what_people_type_as_a_query(typed: str, query: str) -> None:

@@ -7,7 +7,7 @@ import hashlib
 import queue
 import secrets
 import time
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -22,7 +22,7 @@ from simkit_view.view.packet import Stream, make_packet
 from simkit_view.view.page_calls import PageCalls
 from simkit_view.view.page_requests import execute_request
 from simkit_view.view.page_server import PageRequest, PageServer
-from simkit_view.view.streams import LASTING, StreamMaker, make_stream
+from simkit_view.view.streams import CLEARED, LASTING, StreamMaker, make_stream
 from simkit_view.web.access import is_loopback
 
 if TYPE_CHECKING:
@@ -90,6 +90,7 @@ class LiveView:
             **(streams or {}),
         }
         self._last = self._looked = 0.0
+        self._tick = sim.tick
         self._sent: tuple[object, ...] = ()
         self._pace = (time.perf_counter(), sim.time)
         self._rtf = 0.0
@@ -130,6 +131,9 @@ class LiveView:
         if not self.server.client_count:
             self._close_streams()
             return
+        if self.sim.tick < self._tick:
+            self._clear_streams()
+        self._tick = self.sim.tick
         if self.sim.mj_model is not self._model:
             self._set_scene()
         elif now - self._looked > _APPEARANCE_PERIOD:
@@ -198,12 +202,19 @@ class LiveView:
             if packet is not None:
                 self._packets[name] = packet
 
-    def _close_streams(self, exceptions: Collection[str] = ()) -> None:
-        """Close all streams except those of the given kinds."""
-        for name in [name for name in self._streams if name.partition(":")[0] not in exceptions]:
+    def _close_streams(self, is_closed: Callable[[str], bool] = lambda _: True) -> None:
+        """Close the streams of the chosen kinds; default: all."""
+        for name in [name for name in self._streams if is_closed(name.partition(":")[0])]:
             stream = self._streams.pop(name)
             if stream is not None:
                 stream.close()
+
+    def _clear_streams(self) -> None:
+        """Clear what pages show of messages and samples of before a reset."""
+        for name in self._streams:
+            if cleared := CLEARED.get(name.partition(":")[0]):
+                self._packets[name] = make_packet({"kind": name, **cleared[0]}, cleared[1])
+        self._close_streams(lambda kind: kind in CLEARED)
 
     # ------------------------------------------------------------------ scene
 
@@ -211,7 +222,7 @@ class LiveView:
         self.revision += 1
         self._model = self.sim.mj_model
         self._moving = scene_packet.moving_bodies(self._model)
-        self._close_streams(LASTING)
+        self._close_streams(lambda kind: kind not in LASTING)
         extra = {"seed": self.sim.seed, "recording": self._is_recording}
         packet = scene_packet.make_scene_packet(self.sim, self.revision, extra)
         self._looks = self._appearance_digest()

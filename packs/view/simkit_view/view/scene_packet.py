@@ -44,6 +44,7 @@ def make_scene_packet(sim: Simulation, revision: int, extra: JsonObject) -> byte
         "kind": "scene",
         "revision": revision,
         "world": sim.world.name,
+        "bare": sim.world.where.line is None,  # a model that was loaded without a world
         "timestep": sim.timestep,
         "bodies": [model.body(body).name for body in range(model.nbody)],
         "sensors": [_sensor_dict(sim, sensor) for sensor in sim.contents.sensors.values()],

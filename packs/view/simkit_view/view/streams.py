@@ -13,10 +13,11 @@ from simkit import msgs
 from simkit.errors import SimkitError
 from simkit.linear_algebra import matmul
 from simkit.msgs import Message
+from simkit.run_spec import JsonObject
 from simkit.runtime.communication.transform_buffer import TransformBuffer
 from simkit_view.displays.frame_poses import FramePoses
 from simkit_view.view.graph_streams import GRAPH_STREAMS
-from simkit_view.view.packet import Stream, make_packet
+from simkit_view.view.packet import Arrays, Stream, make_packet
 from simkit_view.view.series_stream import SERIES_STREAMS
 from simkit_view.view.topic_display import DisplayList, TopicDisplay
 from simkit_view.view.topic_streams import TOPIC_STREAMS
@@ -241,8 +242,18 @@ STREAMS: Final[dict[str, Callable[[Simulation, str], Stream]]] = {
 }
 """Streams by the first part of their name; the part after a colon is the second argument."""
 
-LASTING: Final = ("display",)
+LASTING: Final = ("display", "driving")
 """Streams that go on when the structure changes, because they keep messages that do not come again."""
+
+
+_NO_POINTS: Final = np.zeros((0, 3))
+CLEARED: Final[dict[str, tuple[JsonObject, Arrays]]] = {
+    "lidar": ({"lidars": []}, {"points": _NO_POINTS, "origins": _NO_POINTS}),
+    "cloud": ({}, {"points": _NO_POINTS}),
+    "image": ({"error": "the camera has not taken a picture yet"}, {}),
+    "display": ({"problems": [], "groups": []}, {}),
+}
+"""Streams that begin anew after a reset, with the packet that clears what the page shows of before it."""
 
 
 def make_stream(sim: Simulation, name: str) -> Stream | None:

@@ -56,9 +56,11 @@ class Session:
         more: str = "",
         size: tuple[int, int] = (1200, 720),
         theme: str = "dark",
+        paused: bool = False,
         tour: bool = False,
     ) -> None:
         self.sim = stack.enter_context(simkit.load(world, sleep=False))  # a body asleep has no contacts
+        self.sim.paused = paused
         self.view = stack.enter_context(LiveView(self.sim))
         self._ends = threading.Event()
         self._calls: queue.SimpleQueue[tuple[Callable[[], Any], queue.SimpleQueue[Any]]] = queue.SimpleQueue()

@@ -47,6 +47,16 @@ def test_the_speed_shown_is_zero_after_the_timeout_of_the_keys(session: Callable
     found.until("document.getElementById('speeds').textContent === '0.00 m/s  0.00 m/s left  0.00 rad/s'")
 
 
+def test_the_command_of_another_program_is_shown_with_its_age(session: Callable[..., Session]) -> None:
+    found = session()
+    speeds = found.page.locator("#speeds")
+    speeds.filter(has_text="0.00 m/s").wait_for(timeout=TIMEOUT)
+    found.do(lambda: found.sim.publish("/cmd_vel", {"linear": {"x": 0.02}}))
+    speeds.filter(has_text="0.02 m/s").filter(has_text="sent 2 s ago").wait_for(timeout=TIMEOUT)
+    found.do(lambda: found.sim.publish("/cmd_vel", {}))
+    found.until("document.getElementById('speeds').textContent === '0.00 m/s  0.00 m/s left  0.00 rad/s'")
+
+
 def test_a_goal_without_a_navigator_says_what_is_missing(session: Callable[..., Session]) -> None:
     found = session()
     found.until("app.stage.draws > 1 && document.getElementById('drive').hidden === false")
@@ -72,7 +82,8 @@ def test_joints_are_in_groups_with_the_arm_first_and_the_wheels_last(session: Ca
     names = found.get("[...document.querySelectorAll('[data-joint]')].map(e => e.dataset.joint)")
     assert names[:7] == [f"tiago::arm_{number}_joint" for number in range(1, 8)]
     found.until("document.querySelector('#joints output').textContent !== ''")
-    assert found.get("[...document.querySelectorAll('#joints output')].every(e => e.textContent)")
+    texts = found.get("[...document.querySelectorAll('#joints output')].map(e => e.textContent)")
+    assert all(texts) and not {"-0.0°", "-0.000 m"} & set(texts)
 
 
 def test_a_reset_while_paused_leaves_positions_and_no_errors(session: Callable[..., Session]) -> None:

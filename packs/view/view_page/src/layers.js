@@ -1,8 +1,15 @@
 // Layers that help to understand the scene: grid, frames, joint axes, inertias, centres of mass, contacts, paths.
 import * as T from 'three';
+import { element } from './dom.js';
 import { readPose } from './world.js';
 
 const AXES = [0xe5484d, 0x46a758, 0x3e7bfa];
+const ROBOT = 0x1f8fff, OTHER = 0xd9822b; // colours of the paths of robots, and of people and other models
+const CELLS = 60; // of the grid, along a side; they have 1 m in a world
+const GRID_HEIGHT = 0.003; // [m] of the grid above the floor
+const FLOOR = 250; // [m] radius of the floor of a robot without a world
+const MOST_LABELS = 150;
+const shortName = name => name.split('::').at(-1);
 const m = new T.Matrix4();
 
 /** Names, titles and initial states of the layers, in the order of the panel. */
@@ -60,8 +67,11 @@ export class Layers {
     this.mass = this.instances(new T.SphereGeometry(0.018, 16, 12), 0xffc53d, 0.95);
     this.contactPoints = this.instances(new T.SphereGeometry(0.012, 10, 8), 0xff3b8d, 0.95);
     this.makeGrid();
+    this.makeFloor();
+    this.labels = document.getElementById('labels');
     this.paths = new Map();
     stage.before.push(() => this.update());
+    app.stage.after.push(() => this.placeLabels());
     app.on('packet:contacts', packet => { this.contacts = packet; this.drawContacts(); stage.invalidate(); });
   }
 
@@ -81,9 +91,17 @@ export class Layers {
   }
 
   makeGrid() {
-    const grid = new T.GridHelper(60, 60, 0x6a7480, 0x97a0aa).rotateX(Math.PI / 2);
-    Object.assign(grid.material, { transparent: true, opacity: 0.32, depthWrite: false });
-    grid.position.z = 0.003;
+    const lines = new Lines(this.app.stage.helpers, true), grid = lines.object, half = CELLS / 2, from = new T.Vector3(), to = new T.Vector3();
+    for (let line = -half; line <= half; line++) {
+      for (let cell = -half; cell < half; cell++) { // cell by cell: software renderers leave out lines that end behind the camera
+        lines.add(from.set(line, cell, 0), to.set(line, cell + 1, 0), line ? 0x97a0aa : 0x6a7480);
+        lines.add(from.set(cell, line, 0), to.set(cell + 1, line, 0), line ? 0x97a0aa : 0x6a7480);
+      }
+    }
+    lines.show();
+    Object.assign(grid.material, { opacity: 0.32, depthWrite: false, fog: true });
+    grid.renderOrder = 0;
+    grid.position.z = GRID_HEIGHT;
     this.grid = grid;
     const axes = new T.Group();
     AXES.forEach((colour, axis) => {
@@ -91,7 +109,33 @@ export class Layers {
       axes.add(new T.Line(new T.BufferGeometry().setFromPoints([new T.Vector3(0, 0, 0.004), new T.Vector3(...end)]), new T.LineBasicMaterial({ color: colour })));
     });
     this.origin = axes;
-    this.app.stage.helpers.add(grid, axes);
+    this.app.stage.helpers.add(axes);
+  }
+
+  /** Makes the floor of a robot without a world; it is only drawn, and holds nothing. */
+  makeFloor() {
+    const material = new T.MeshLambertMaterial({ color: 0xd5dade, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2 });
+    this.floor = new T.Mesh(new T.CircleGeometry(FLOOR, 48), material);
+    this.floor.receiveShadow = true;
+    this.floor.visible = false;
+    this.level = null;
+    this.app.stage.helpers.add(this.floor);
+  }
+
+  /** Puts floor and grid where a robot without a world stands. */
+  placeFloor() {
+    const { world, scene } = this.app, box = scene.bare ? world.boxOf(() => true) : null;
+    if (box === null || box.isEmpty() || world.floors.length || world.terrains.length) {
+      this.level = null;
+      this.grid.scale.setScalar(1);
+    } else if (this.level === null) { // not again: a robot that falls leaves its floor
+      this.level = box.min.z;
+      this.grid.scale.setScalar(10 ** Math.round(Math.log10(box.getSize(new T.Vector3()).length() / 2)));
+    }
+    this.floor.visible = this.level !== null && this.on.grid;
+    world.drawnFloor = this.floor.visible ? this.level : null;
+    this.floor.position.z = this.level ?? 0;
+    this.grid.position.z = this.floor.position.z + GRID_HEIGHT;
   }
 
   /** Switches a layer. */
@@ -100,7 +144,7 @@ export class Layers {
     this.on[name] = on;
     if (name === 'visuals') world.visuals.visible = on;
     if (name === 'collisions') { world.collisions.visible = on; world.place(true); }
-    if (name === 'grid') this.grid.visible = this.origin.visible = on;
+    if (name === 'grid') { this.grid.visible = this.origin.visible = on; if (this.app.scene) this.placeFloor(); }
     if (name === 'shadows') { stage.shadows = on; stage.makeLights(); }
     if (name === 'transparent') this.setTransparent(on);
     if (name === 'contacts') this.app.connection.want('contacts', on ? {} : null);
@@ -117,8 +161,7 @@ export class Layers {
     for (const { mesh, isVisual, isFloor, geoms } of this.app.world.shapes) {
       if (!isVisual || isFloor) continue;
       const alpha = this.app.world.arrays.geom_rgba[4 * geoms[0] + 3] * (on ? 0.4 : 1);
-      Object.assign(mesh.material, { transparent: alpha < 0.995, opacity: alpha, depthWrite: alpha > 0.6 });
-      mesh.material.needsUpdate = true;
+      for (const material of mesh.userData.materials) Object.assign(material, { transparent: alpha < 0.995, opacity: alpha, depthWrite: alpha > 0.6, needsUpdate: true });
     }
   }
 
@@ -126,6 +169,7 @@ export class Layers {
   load() {
     for (const name of Object.keys(this.on)) if (['transparent', 'collisions', 'visuals'].includes(name)) this.set(name, this.on[name]);
     this.set('contacts', this.on.contacts);
+    this.placeFloor();
   }
 
   update() {
@@ -141,14 +185,40 @@ export class Layers {
 
   drawFrames(size) {
     this.frames.clear();
+    this.named = [];
     const origin = new T.Vector3(), end = new T.Vector3(), local = new T.Matrix4();
     for (const [name, body, offset] of this.app.scene.frames) {
       if (!this.app.world.isMoving[body] && this.app.models.get(name.split('::', 1)[0])?.static) continue;
       m.multiplyMatrices(this.app.world.bodies[body], readPose(offset, 0, local));
       origin.setFromMatrixPosition(m);
+      this.named.push([name, origin.clone()]);
       AXES.forEach((colour, axis) => this.frames.add(origin, end.setFromMatrixColumn(m, axis).normalize().multiplyScalar(size).add(origin), colour));
     }
     this.frames.show();
+  }
+
+  /** Writes the names of the frames beside them: the nearest first, and none over another. */
+  placeLabels() {
+    const { stage: { camera, canvas } } = this.app, shown = [], eye = camera.position;
+    const named = this.on.frames && this.app.scene ? this.named : [];
+    const counts = new Map();
+    for (const [name] of named) counts.set(shortName(name), (counts.get(shortName(name)) ?? 0) + 1);
+    for (const [name, origin] of [...named].sort((p, q) => p[1].distanceTo(eye) - q[1].distanceTo(eye))) {
+      const text = counts.get(shortName(name)) > 1 ? name : shortName(name), point = origin.clone().project(camera);
+      if (Math.abs(point.x) > 1 || Math.abs(point.y) > 1 || Math.abs(point.z) > 1) continue;
+      const x = (point.x + 1) / 2 * canvas.clientWidth + 5, y = (1 - point.y) / 2 * canvas.clientHeight, width = 6.2 * text.length;
+      if (shown.some(other => Math.abs(other.y - y) < 13 && x < other.x + other.width && other.x < x + width)) continue;
+      shown.push({ text, name, x, y, width });
+      if (shown.length === MOST_LABELS) break;
+    }
+    while (this.labels.childElementCount > shown.length) this.labels.lastChild.remove();
+    while (this.labels.childElementCount < shown.length) this.labels.append(element('span', { class: 'frame' }));
+    shown.forEach(({ text, name, x, y }, i) => {
+      const label = this.labels.children[i];
+      if (label.textContent !== text) label.textContent = text;
+      label.dataset.frame = name;
+      label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translateY(-50%)`;
+    });
   }
 
   drawJoints(size) {
@@ -227,7 +297,7 @@ export class Layers {
 
   pathOf(name) {
     if (!this.paths.has(name)) {
-      const mesh = new T.Mesh(new T.BufferGeometry(), new T.MeshBasicMaterial({ color: 0x1f8fff, side: T.DoubleSide, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -2 }));
+      const mesh = new T.Mesh(new T.BufferGeometry(), new T.MeshBasicMaterial({ color: this.app.isRobot(name) ? ROBOT : OTHER, side: T.DoubleSide, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -2 }));
       mesh.frustumCulled = false;
       mesh.visible = this.on.path;
       this.app.stage.helpers.add(mesh);

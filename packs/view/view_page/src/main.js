@@ -18,7 +18,7 @@ const listeners = new Map();
 /**
  * Events: `scene` (a new scene is loaded), `state`, `packet:KIND`, `select`, `layers`, `view`, `link`.
  * `scene` and `state` are the newest packets, `models` the top-level models by name, `robots` those that can move,
- * `selected` the scoped name of the selected link.
+ * `selected` the scoped name of the selected link or model.
  */
 const app = {
   scene: null, state: null, models: new Map(), robots: [], selected: null, stats: { states: 0 },
@@ -40,19 +40,22 @@ function showNotice(text) {
 }
 document.getElementById('notice').hidden = true;
 
+const BY_NUMBER = /^(state|appearance|joints)$|^display:/; // packets with numbers of bodies, shapes or joints of the newest scene
+const early = new Map(); // the newest of them, while the page loads that scene
+
 function receive(packet) {
+  if (packet.kind === 'scene_changed' || packet.kind === 'state') requireScene(packet.revision);
+  if (BY_NUMBER.test(packet.kind) && isOld()) {
+    early.set(packet.kind, packet);
+    return;
+  }
   if (packet.kind === 'state') takeState(packet);
-  else if (packet.kind === 'scene_changed') requireScene(packet.revision);
   else if (packet.kind === 'appearance') takeAppearance(packet);
   app.emit(`packet:${packet.kind.split(':', 1)[0]}`, packet);
 }
 
 function takeState(packet) {
-  if (!app.scene || packet.revision !== app.scene.revision) {
-    app.early = packet;
-    requireScene(packet.revision);
-    return;
-  }
+  if (packet.revision !== app.scene.revision) return; // older than the scene
   const isBack = app.state && packet.tick < app.state.tick;
   app.state = packet;
   app.stats.states += 1;
@@ -63,17 +66,18 @@ function takeState(packet) {
 }
 
 function takeAppearance(packet) {
-  if (packet.revision === app.scene?.revision) app.world.setAppearance(packet.arrays);
-  else app.earlyAppearance = packet;
+  if (packet.revision === app.scene.revision) app.world.setAppearance(packet.arrays);
 }
 
-let isLoading = false, required = 0;
+let isLoading = false, required = 1;
+const isOld = () => (app.scene?.revision ?? 0) < required;
+
 /** Loads the scene if it is older than a revision. A paused simulation announces a revision only once. */
 async function requireScene(revision) {
   required = Math.max(required, revision);
   if (isLoading) return;
   isLoading = true;
-  for (let tries = 0; (app.scene?.revision ?? 0) < required && tries < 20; tries++) {
+  for (let tries = 0; isOld() && tries < 20; tries++) {
     if (!await loadScene()) await new Promise(resolve => setTimeout(resolve, 500));
   }
   isLoading = false;
@@ -92,10 +96,10 @@ async function loadScene() {
     app.layers.load();
     app.emit('scene', scene);
     document.title = `${scene.world} – simkit`;
-    const early = app.early;
-    app.early = null;
-    if (early?.revision === scene.revision) takeState(early);
-    if (app.earlyAppearance?.revision === scene.revision) takeAppearance(app.earlyAppearance);
+    for (const packet of isOld() ? [] : [...early.values()]) {
+      early.delete(packet.kind);
+      receive(packet);
+    }
     if (scene.recording && isFirst) {
       app.player = app.connection.player = new Player(app, await loadRecording(app.connection));
       app.player.show();
@@ -126,6 +130,7 @@ function findRobots(scene) {
   const active = new Set([...scene.joints, ...scene.sensors].map(item => item.name.split('::', 1)[0]));
   const moving = scene.models.filter(model => app.bodyOf.has(model.name));
   const robots = moving.filter(model => active.has(model.name));
+  app.isRobot = name => active.has(name);
   app.hasRobots = robots.length > 0;
   return robots.length ? robots : moving;
 }

@@ -19,7 +19,7 @@ export class Sensors {
   constructor(app) {
     this.app = app;
     const { helpers } = app.stage;
-    this.points = dynamic(new T.PointsMaterial({ color: 0xff2d1f, size: app.stage.lite ? 3 : 3.5 * Math.min(devicePixelRatio, 2), sizeAttenuation: false, fog: false }), T.Points);
+    this.points = dynamic(new T.PointsMaterial({ color: 0xff2d1f, size: 3, sizeAttenuation: false, fog: false }), T.Points);
     this.fan = dynamic(new T.MeshBasicMaterial({ color: 0x3a7bff, transparent: true, opacity: 0.16, side: T.DoubleSide, depthWrite: false, fog: false }));
     this.frusta = dynamic(new T.LineBasicMaterial({ color: 0xf5a524, transparent: true, opacity: 0.9, fog: false }), T.LineSegments);
     this.cones = dynamic(new T.MeshBasicMaterial({ color: 0x12a594, transparent: true, opacity: 0.3, side: T.DoubleSide, depthWrite: false, fog: false }));

@@ -1,9 +1,19 @@
 // Renderer, cameras, lights, sky and the drawing loop. A frame is drawn only if something has changed.
+//
+// A full frame has all pixels, smooth edges, shadows and shininess; a fast one has none of them, and 3/4 of the pixels along
+// each axis. Without a graphics card, a full frame takes 5 times as long, so it is drawn only when nothing moves.
 import * as T from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 
 T.Object3D.DEFAULT_UP.set(0, 0, 1);
 const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
+const REST = 300; // [ms] without motion after which a full frame is drawn
+const STILL_PERIOD = 1000; // [ms] between two full frames without a graphics card, while nothing moves
+const FAST_PIXELS = 0.75; // pixels of a fast frame for each pixel of the page, along an axis
+const SAMPLES = 4; // of each pixel of a full frame
+
+/** Choices of the drawing quality, by the value in the address. */
+export const QUALITIES = { auto: 'automatic', full: 'full', fast: 'fast' };
 
 export class Stage {
   constructor(canvas, quality) {
@@ -13,13 +23,16 @@ export class Stage {
     const info = probe.getExtension('WEBGL_debug_renderer_info');
     this.renderer = info ? probe.getParameter(info.UNMASKED_RENDERER_WEBGL) : '';
     this.isSoftware = SOFTWARE.test(this.renderer);
-    this.lite = quality === 'lite' || (quality !== 'full' && this.isSoftware);
     probe.getExtension('WEBGL_lose_context')?.loseContext();
-    const gl = new T.WebGLRenderer({ canvas, antialias: !this.lite });
-    gl.setPixelRatio(this.lite ? 0.75 : Math.min(devicePixelRatio, 2));
-    gl.shadowMap.enabled = !this.lite;
+    const gl = new T.WebGLRenderer({ canvas, antialias: false }); // full frames have their own samples
+    gl.shadowMap.enabled = true;
     gl.shadowMap.type = T.PCFShadowMap;
     this.gl = gl;
+    this.quality = Object.hasOwn(QUALITIES, quality) ? quality : 'auto';
+    this.isFull = null; // true if the last frame was a full one
+    this.onQuality = []; // functions that run when `isFull` changes
+    this.movedAt = this.fullAt = -1e6;
+    this.makeCopy();
     this.scene = new T.Scene();
     this.camera = new T.PerspectiveCamera(45, 1, 0.02, 500);
     this.camera.position.set(-4, -4, 3);
@@ -27,15 +40,16 @@ export class Stage {
     this.controls.enableDamping = true;
     this.controls.dampingFactor = 0.2;
     this.controls.zoomToCursor = true;
-    this.controls.addEventListener('change', () => this.invalidate());
+    this.controls.addEventListener('change', () => this.move());
     this.lights = new T.Group();
     this.helpers = new T.Group(); // everything that no sensor sees
     this.scene.add(this.lights, this.helpers);
     this.makeSky();
+    this.limit = () => {}; // limits the angle of the orbit before it is used
     this.before = []; // functions that run before a frame
     this.after = []; // functions that run after it
     this.cuts = []; // planes above which nothing is drawn
-    this.draws = 0;
+    this.draws = this.triangles = 0;
     this.extent = 5;
     this.dirty = false;
     this.shadows = true;
@@ -49,6 +63,13 @@ export class Stage {
     this.gl.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
+    this.move();
+  }
+
+  /** Asks for a new frame of a camera or of models that move. */
+  move() {
+    this.movedAt = performance.now();
+    if (this.waits) { clearTimeout(this.waits); this.waits = null; this.dirty = false; }
     this.invalidate();
   }
 
@@ -56,11 +77,54 @@ export class Stage {
   invalidate() {
     if (this.dirty) return;
     this.dirty = true;
-    requestAnimationFrame(() => this.draw());
+    const ask = () => { this.waits = null; requestAnimationFrame(() => this.draw()); };
+    const wait = this.isSoftware && this.isFull && this.wantsFull() ? this.fullAt + STILL_PERIOD - performance.now() : 0;
+    if (wait > 0) this.waits = setTimeout(ask, wait);
+    else ask();
+  }
+
+  setQuality(quality) {
+    this.quality = quality;
+    this.move();
+  }
+
+  wantsFull() {
+    if (this.quality !== 'auto') return this.quality === 'full';
+    return !this.isSoftware || performance.now() - this.movedAt >= REST;
+  }
+
+  /** Chooses the quality of the next frame; after a fast one, a full one follows when nothing moves any more. */
+  chooseQuality() {
+    const isFull = this.wantsFull();
+    clearTimeout(this.rest);
+    if (!isFull && this.quality === 'auto') this.rest = setTimeout(() => this.invalidate(), REST + 10);
+    if (isFull) this.fullAt = performance.now();
+    if (isFull === this.isFull) return;
+    this.isFull = isFull;
+    this.gl.setPixelRatio(isFull ? Math.min(devicePixelRatio, 2) : FAST_PIXELS);
+    this.showShadows();
+    for (const call of this.onQuality) call(isFull);
+  }
+
+  /** Makes what copies a full frame from its samples to the page. */
+  makeCopy() {
+    this.target = new T.WebGLRenderTarget(1, 1, { colorSpace: T.SRGBColorSpace, samples: SAMPLES });
+    const material = new T.ShaderMaterial({
+      depthTest: false, depthWrite: false, uniforms: { picture: { value: this.target.texture } },
+      vertexShader: 'varying vec2 place;void main(){place=uv;gl_Position=vec4(position.xy,0.,1.);}',
+      fragmentShader: `uniform sampler2D picture;varying vec2 place;
+        void main(){gl_FragColor=texture2D(picture,place);
+        #include <colorspace_fragment>
+        }`,
+    });
+    this.copy = new T.Mesh(new T.PlaneGeometry(2, 2), material);
+    this.copy.frustumCulled = false;
   }
 
   draw() {
     this.dirty = false;
+    this.chooseQuality();
+    this.limit();
     this.controls.update();
     for (const call of this.before) call();
     const distance = this.camera.position.distanceTo(this.controls.target);
@@ -71,8 +135,18 @@ export class Stage {
     this.sky.position.copy(this.camera.position);
     this.sky.scale.setScalar(0.9 * this.camera.far);
     this.gl.clippingPlanes = this.cuts; // only here: sensors see what is cut
+    if (this.isFull) {
+      const { width, height } = this.canvas;
+      if (this.target.width !== width || this.target.height !== height) this.target.setSize(width, height);
+      this.gl.setRenderTarget(this.target);
+    }
     this.gl.render(this.scene, this.camera);
+    this.triangles = this.gl.info.render.triangles;
     this.gl.clippingPlanes = [];
+    if (this.isFull) {
+      this.gl.setRenderTarget(null);
+      this.gl.render(this.copy, this.camera);
+    }
     this.draws += 1;
     for (const call of this.after) call();
   }
@@ -145,8 +219,8 @@ export class Stage {
         made.position.copy(position);
         if (made.target) made.target.position.copy(position).add(direction);
       }
-      if (light.shadow && around.shadows && this.shadows && !this.lite && light.kind !== 'point' && shadows < 2) {
-        made.castShadow = true;
+      if (light.shadow && around.shadows && light.kind !== 'point' && shadows < 2) {
+        made.userData.hasShadow = true;
         made.shadow.mapSize.set(2048, 2048);
         made.shadow.bias = -0.0003;
         made.shadow.normalBias = 0.012;
@@ -160,10 +234,17 @@ export class Stage {
     if (count === 0) { // a model without a world
       this.sun = new T.DirectionalLight(0xffffff, 2.2);
       this.sun.userData.direction = new T.Vector3(0.45, 0.6, -0.9).normalize();
-      this.sun.castShadow = !this.lite && this.shadows;
+      this.sun.userData.hasShadow = true;
+      this.sun.shadow.mapSize.set(2048, 2048);
+      this.sun.shadow.normalBias = 0.004;
       lights.add(this.sun, this.sun.target);
     }
+    this.showShadows();
     this.invalidate();
+  }
+
+  showShadows() {
+    for (const light of this.lights.children) light.castShadow = !!light.userData.hasShadow && this.shadows && this.isFull === true;
   }
 
   /** Moves the area of the sun's shadow to what the camera looks at. */

@@ -5,7 +5,7 @@ import { element, narrow } from './dom.js';
 const STEPS = [
   ['#view', 'The scene', 'Drag to turn the view, drag with the right button or two fingers to move it, and use the wheel or two fingers to zoom. Click a link to select it.'],
   ['#toolbar .group', 'Run, step and reset', 'Pause and resume (space), make steps (n), or start again. The list beside the buttons limits the speed.'],
-  ['#tree', 'Models and links', 'Select a link here. The panel Models adds a model to the world, and moves, turns or deletes the selected one.'],
+  ['#tree', 'Models and links', 'Select a model or a link here. The panel Models adds a model to the world, and moves, turns or deletes the selected one.'],
   ['#layers', 'What is drawn', 'Show lidars, contacts, frames, joint axes, centres of mass and more. Topics such as paths and maps have a list of their own.'],
   ['#drive, #joints', 'Move the robot', 'Drive with the pad or with the keys w a s d x. Sliders move the joints while the world is paused.'],
   ['#dock-tabs', 'Data', 'Plot any field of any topic, read the log, call services, send goals, set parameters, and draw the graph of nodes.'],

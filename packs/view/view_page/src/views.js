@@ -5,13 +5,25 @@ const DIRECTIONS = [[0.55, 0.62, -0.56], [-0.55, 0.62, -0.56], [0.55, -0.62, -0.
 const COVERED = 0.5, HEADROOM = 0.05; // least share that is seen of what is not below a roof; [m] between robots and a cut
 const FARTHEST = 300, SIZES = 20, DEEPEST = 20; // [m], sizes of everything else, [m]: a model beyond is left out of views
 const LARGEST_WHOLE = 12; // [m] up to which the first view shows the whole world
+const FLIGHT = 400; // [ms] that the camera takes to a model
+const FILL = 0.3; // share of the picture that a model has after that
+const GAP = 0.1, CLEARANCE = 0.05; // [m] between the camera and a wall, and a floor
+const RISES = [0, 0.25, 0.5, 0.75, 1, 1.25]; // [rad] by which the camera rises where a wall is too near
+const HIGHEST = 1.4; // [rad] largest elevation of a camera that rises
+const STOREY = 0.5; // [m] by which a floor may be above what the camera looks at
+
+/** Returns true if a link is a link of a model, or of a model within it, or if both names are the same. */
+export const isWithin = (link, name) => link === name || link.startsWith(`${name}::`);
 
 export class Views {
   constructor(app) {
     this.app = app;
     this.followed = null; // body that the camera follows
     this.sensor = null; // camera whose view is shown
+    this.flight = null; // from where to where the camera flies
     app.stage.before.push(() => this.update());
+    app.stage.limit = () => this.limitOrbit();
+    app.stage.controls.addEventListener('start', () => { this.flight = null; });
   }
 
   /** Returns the names of the models that fell out of the world or are far away from all others, as pictures do. */
@@ -59,7 +71,7 @@ export class Views {
     }
     const notes = strays.size ? [`outside of the view: ${[...strays].slice(0, 3).join(', ')}${strays.size > 3 ? ` and ${strays.size - 3} more` : ''}`] : [];
     let direction = new T.Vector3(...DIRECTIONS[0]);
-    if (stage.gl.info.render.triangles < 4e5) {
+    if (stage.triangles < 4e5) {
       const points = robots.isEmpty() ? this.roomPoints(strays) : this.robotPoints(robots);
       let seen = this.clearest(box, points, Infinity);
       if (seen.share < COVERED && !all.isEmpty()) { // below a roof
@@ -127,27 +139,104 @@ export class Views {
     if (!box.isEmpty()) this.app.stage.fit(box, new T.Vector3(0, 0.001, -1));
   }
 
-  /** Follows a body, or nothing with null. */
+  /** Follows a body, or nothing with null; walls do not hide it. */
   follow(body) {
-    this.sensor = null;
-    this.app.stage.controls.enabled = true;
+    const { stage, world, scene } = this.app;
+    this.detach();
     this.followed = body;
-    this.last = body === null ? null : new T.Vector3().setFromMatrixPosition(this.app.world.bodies[body]);
     if (body !== null) {
-      const { stage, world } = this.app, distance = Math.min(stage.camera.position.distanceTo(this.last), 3.5);
-      const direction = stage.camera.position.clone().sub(this.last).normalize();
-      direction.z = Math.max(direction.z, 0.35);
-      stage.controls.target.copy(this.last);
-      stage.camera.position.copy(this.last).addScaledVector(direction.normalize(), distance);
+      this.own = scene.frames.find(([, found]) => found === body)[0].split('::', 1)[0];
       world.place();
+      const box = world.boxOf(geom => world.modelOf(geom) === this.own), origin = new T.Vector3().setFromMatrixPosition(world.bodies[body]);
+      this.last = origin;
+      stage.controls.target.copy(origin);
+      if (!box.isEmpty()) stage.controls.target.z = Math.max(origin.z, (box.min.z + box.max.z) / 2);
+      this.least = Math.max(0.5, 1.2 * (box.isEmpty() ? 0 : box.getSize(new T.Vector3()).length()));
+      const offset = stage.camera.position.clone().sub(stage.controls.target), length = Math.min(offset.length(), 3.5);
+      offset.normalize();
+      offset.z = Math.max(offset.z, 0.35);
+      this.wanted = offset.setLength(Math.max(length, this.least));
+      this.taken = null;
     }
     this.app.emit('view');
-    this.app.stage.invalidate();
+    stage.move();
+  }
+
+  /** Returns the offset of the camera nearest to a wanted one at which nothing hides a point: closer, or above if a wall is too near. */
+  clearOffset(point, wanted, own, least) {
+    const reach = wanted.length(), level = Math.hypot(wanted.x, wanted.y), elevation = Math.atan2(wanted.z, level);
+    let best = wanted, most = -1;
+    for (const rise of RISES) {
+      const angle = rise ? Math.max(elevation, Math.min(elevation + rise, HIGHEST)) : elevation;
+      const across = level > 1e-6 ? reach * Math.cos(angle) / level : 0;
+      const along = new T.Vector3(wanted.x * across, wanted.y * across, reach * Math.sin(angle)).normalize();
+      const seen = this.app.world.sight(point, along, reach + GAP, own) - GAP;
+      if (seen > most) { most = seen; best = along.multiplyScalar(Math.max(seen, GAP)); }
+      if (seen >= Math.min(least, reach) - 1e-6) break;
+    }
+    return best;
+  }
+
+  /** Moves the camera with the body that it follows. */
+  keepFollowing() {
+    const { stage: { camera, controls }, world } = this.app;
+    const now = new T.Vector3().setFromMatrixPosition(world.bodies[this.followed]), moved = now.clone().sub(this.last);
+    this.last = now;
+    controls.target.add(moved);
+    const offset = camera.position.clone().add(moved).sub(controls.target);
+    if (this.taken && offset.distanceTo(this.taken) > 1e-4) this.wanted = offset.multiplyScalar(this.wanted.length() / this.taken.length()); // the user has turned the view
+    this.taken = this.clearOffset(controls.target, this.wanted, this.own, this.least);
+    camera.position.copy(controls.target).add(this.taken);
+    camera.lookAt(controls.target);
+  }
+
+  /** Returns the level of the floor below the camera; null without a floor, and where a camera of the robot looks. */
+  floorLevel() {
+    const { stage: { camera, controls }, world, scene } = this.app;
+    return scene && !this.sensor ? world.floorAt(camera.position, controls.target.z + STOREY) : null;
+  }
+
+  /** Ends the orbit just above the floor. */
+  limitOrbit() {
+    const { camera, controls } = this.app.stage, level = this.floorLevel();
+    const height = level === null ? -1 : (level + CLEARANCE - controls.target.z) / camera.position.distanceTo(controls.target);
+    controls.maxPolarAngle = Math.acos(Math.min(Math.max(height, -1), 1));
+  }
+
+  /** Lifts the camera and what it looks at above the floor, below which they can be moved. */
+  liftAboveFloor() {
+    const { camera, controls } = this.app.stage, level = this.floorLevel();
+    if (level === null) return;
+    const lift = Math.max(0, level + CLEARANCE - camera.position.z, level - controls.target.z);
+    camera.position.z += lift;
+    controls.target.z += lift;
+  }
+
+  /** Flies to a model from the present direction, or from one where no wall hides it; a floor alone is already seen. */
+  flyTo(name) {
+    const { stage, world } = this.app, own = name.split('::', 1)[0];
+    const box = world.boxOf((geom, isFloor) => !isFloor && isWithin(world.linkOf(geom), name));
+    if (box.isEmpty()) return;
+    this.detach();
+    const { camera, controls } = stage, point = box.getCenter(new T.Vector3()), offset = camera.position.clone().sub(controls.target);
+    offset.setLength(Math.max(stage.fitDistance(box, offset.clone().negate().normalize(), FILL), 0.3));
+    offset.copy(this.clearOffset(point, offset, own, 0.6 * offset.length()));
+    this.flight = { begin: performance.now(), eye: [camera.position.clone(), point.clone().add(offset)], target: [controls.target.clone(), point] };
+    stage.move();
+  }
+
+  fly() {
+    const { stage } = this.app, { begin, eye, target } = this.flight, x = Math.min(1, (performance.now() - begin) / FLIGHT), f = x * x * (3 - 2 * x);
+    stage.camera.position.lerpVectors(...eye, f);
+    stage.controls.target.lerpVectors(...target, f);
+    stage.camera.lookAt(stage.controls.target);
+    if (x === 1) this.flight = null;
+    stage.move();
   }
 
   /** Looks through a camera of the robot. */
   through(sensor) {
-    this.followed = null;
+    this.detach();
     this.sensor = sensor;
     this.app.stage.cuts = [];
     this.app.stage.controls.enabled = false;
@@ -155,24 +244,25 @@ export class Views {
     this.app.stage.invalidate();
   }
 
-  release() {
-    this.app.stage.cuts = [];
-    this.followed = this.sensor = null;
+  /** Ends following, flights and the view of a camera. */
+  detach() {
+    this.followed = this.sensor = this.flight = null;
     this.app.stage.controls.enabled = true;
     this.app.stage.camera.fov = 45;
     this.app.stage.camera.up.set(0, 0, 1);
     this.app.emit('view');
   }
 
+  release() {
+    this.app.stage.cuts = [];
+    this.detach();
+  }
+
   update() {
-    const { stage, world, sensors } = this.app;
-    if (this.followed !== null && this.last) {
-      const now = new T.Vector3().setFromMatrixPosition(world.bodies[this.followed]);
-      const moved = now.clone().sub(this.last);
-      stage.camera.position.add(moved);
-      stage.controls.target.add(moved);
-      this.last = now;
-    }
+    const { stage } = this.app;
+    if (this.followed !== null) this.keepFollowing();
+    if (this.flight) this.fly();
+    this.liftAboveFloor();
     if (this.sensor) {
       this.aim(stage.camera, this.sensor, stage.camera.aspect);
       stage.controls.target.copy(stage.camera.position).add(new T.Vector3(0, 0, -1).applyQuaternion(stage.camera.quaternion));

@@ -5,6 +5,9 @@ const PLANE = 0, HEIGHTS = 1, SPHERE = 2, CAPSULE = 3, ELLIPSOID = 4, CYLINDER =
 const DRAWN_COLLISION = 1, VISUAL = 2;
 const ONE = new T.Vector3(1, 1, 1);
 const FAR_PLANE = 250; // [m] half size of a plane without edges
+const STILL = 1e-4; // least change of a position [m] or of a number of a quaternion that is a motion
+const FLOOR_SHARE = 0.5, FLOOR_SLOPE = 0.1; // least share of the world's width that a floor has; largest height by its width
+const GLASS = 0.5; // opacity below which a shape hides nothing
 
 const scratch = { m: new T.Matrix4(), b: new T.Matrix4(), p: new T.Vector3(), q: new T.Quaternion() };
 
@@ -43,6 +46,7 @@ export class World {
     stage.helpers.add(this.collisions);
     this.collisions.visible = false;
     stage.scene.add(this.root);
+    stage.onQuality.push(() => this.chooseMaterials());
     this.unit = {
       [SPHERE]: new T.SphereGeometry(1, 32, 20),
       [ELLIPSOID]: new T.SphereGeometry(1, 32, 20),
@@ -51,6 +55,7 @@ export class World {
       [PLANE]: new T.PlaneGeometry(2, 2),
     };
     this.bodies = [];
+    this.drawnFloor = null; // level of a floor that only the page draws
   }
 
   /** Replaces all objects by those of a scene packet. */
@@ -75,15 +80,22 @@ export class World {
     for (const group of [this.visuals, this.collisions]) {
       for (const mesh of [...group.children]) {
         group.remove(mesh);
-        mesh.material.dispose();
+        for (const material of mesh.userData.materials ?? [mesh.material]) material.dispose();
         mesh.dispose?.();
       }
     }
     this.shapes = [];
     this.groupGeoms();
     this.makeSkins();
+    this.chooseMaterials();
     this.place(true);
+    this.findFloors();
     this.stage.extent = this.stage.around.extent;
+  }
+
+  /** Gives the visuals their materials for full or for fast frames. */
+  chooseMaterials() {
+    for (const mesh of this.visuals.children) mesh.material = mesh.userData.materials[this.stage.isFull ? 0 : 1];
   }
 
   // -------------------------------------------------------------- shapes
@@ -177,15 +189,15 @@ export class World {
 
   makeInstances(geoms, isVisual, geometry) {
     const { arrays: a } = this, first = geoms[0];
-    const material = isVisual ? this.materialOf(a.geom_material[first], a.geom_rgba[4 * first + 3], !!geometry.attributes.uv)
-      : new T.MeshBasicMaterial({ color: 0xff8a1f, wireframe: true, transparent: true, opacity: 0.55 });
-    const mesh = new T.InstancedMesh(geometry, material, geoms.length);
+    const materials = isVisual ? this.materialsOf(a.geom_material[first], a.geom_rgba[4 * first + 3], !!geometry.attributes.uv)
+      : [new T.MeshBasicMaterial({ color: 0xff8a1f, wireframe: true, transparent: true, opacity: 0.55 })];
+    const mesh = new T.InstancedMesh(geometry, materials[0], geoms.length);
     mesh.frustumCulled = false;
     const isFloor = a.geom_type[first] === PLANE;
     mesh.castShadow = isVisual && !isFloor && a.geom_rgba[4 * first + 3] > 0.5;
     mesh.receiveShadow = isVisual;
-    mesh.userData = { geoms, isFloor };
-    if (isFloor) { material.polygonOffset = true; material.polygonOffsetFactor = material.polygonOffsetUnits = 1; }
+    mesh.userData = { geoms, isFloor, materials };
+    if (isFloor) for (const material of materials) Object.assign(material, { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
     const colour = new T.Color();
     geoms.forEach((geom, k) => {
       if (isVisual) mesh.setColorAt(k, colour.setRGB(a.geom_rgba[4 * geom], a.geom_rgba[4 * geom + 1], a.geom_rgba[4 * geom + 2], T.SRGBColorSpace));
@@ -198,7 +210,8 @@ export class World {
     this.shapes.push({ mesh, geoms, local, isVisual, isFloor, moves: geoms.some(geom => this.isMoving[a.geom_body[geom]]) });
   }
 
-  materialOf(index, alpha, hasUv) {
+  /** Returns the materials of a visual for full and for fast frames. */
+  materialsOf(index, alpha, hasUv) {
     const found = this.scene.materials[index];
     const options = { color: 0xffffff, transparent: alpha < 0.995, opacity: alpha, depthWrite: alpha > 0.6 };
     const texture = found && this.textures[found.texture];
@@ -208,11 +221,10 @@ export class World {
       options.emissiveIntensity = 0.5 * found.emission;
       if (options.map) options.emissiveMap = options.map;
     }
-    if (this.stage.lite) return new T.MeshLambertMaterial(options);
-    const shininess = found ? found.shininess : 0.3, specular = found ? found.specular : 0.3;
+    const fast = new T.MeshLambertMaterial(options), shininess = found ? found.shininess : 0.3, specular = found ? found.specular : 0.3;
     options.roughness = found?.roughness >= 0 ? found.roughness : Math.min(0.95, 0.9 - 0.5 * shininess * specular);
     options.metalness = found?.metallic >= 0 ? found.metallic : 0.02;
-    return new T.MeshStandardMaterial(options);
+    return [new T.MeshStandardMaterial(options), fast];
   }
 
   async loadTextures(scene) {
@@ -223,7 +235,7 @@ export class World {
       made.flipY = false;
       made.colorSpace = T.SRGBColorSpace;
       made.wrapS = made.wrapT = T.RepeatWrapping;
-      made.anisotropy = this.stage.lite ? 1 : 8;
+      made.anisotropy = this.stage.isSoftware ? 1 : 8;
       made.needsUpdate = true;
       return made;
     };
@@ -239,9 +251,10 @@ export class World {
       made.setAttribute('position', new T.BufferAttribute(new Float32Array(rest.length), 3));
       made.setIndex(new T.BufferAttribute(new Uint32Array(a[`skin${i}.index`]), 1));
       if (a[`skin${i}.uv`]) made.setAttribute('uv', new T.BufferAttribute(a[`skin${i}.uv`], 2));
-      const material = this.materialOf(skin.material, skin.rgba[3], !!a[`skin${i}.uv`]);
-      material.color.setRGB(...skin.rgba.slice(0, 3), T.SRGBColorSpace);
-      const mesh = new T.Mesh(made, material);
+      const materials = this.materialsOf(skin.material, skin.rgba[3], !!a[`skin${i}.uv`]);
+      for (const material of materials) material.color.setRGB(...skin.rgba.slice(0, 3), T.SRGBColorSpace);
+      const mesh = new T.Mesh(made, materials[0]);
+      mesh.userData.materials = materials;
       mesh.frustumCulled = false;
       mesh.castShadow = mesh.receiveShadow = true;
       this.visuals.add(mesh);
@@ -278,7 +291,9 @@ export class World {
     if (poses.length !== 7 * this.moving.length) return;
     this.moving.forEach((body, i) => readPose(poses, 7 * i, this.bodies[body]));
     this.isOld = true;
-    this.stage.invalidate();
+    if (this.drawn?.length === poses.length && this.drawn.every((value, i) => Math.abs(value - poses[i]) < STILL)) return;
+    this.drawn = poses.slice();
+    this.stage.move();
   }
 
   /** Writes the poses of the bodies into the drawn instances. */
@@ -343,12 +358,58 @@ export class World {
     return this.scene.owners[this.arrays.geom_owner[geom]]?.[0] ?? '';
   }
 
-  /** Returns the nearest hit of a ray: link, geom and point. */
-  pick(raycaster) {
+  /** Returns the nearest hit of a ray that `accept(geom, isFloor)` takes: link, geom and point. What is cut off is not hit. */
+  pick(raycaster, accept = () => true) {
     this.place();
-    const hit = raycaster.intersectObjects(this.visuals.children.filter(mesh => mesh.userData.geoms), false)[0];
-    if (!hit) return null;
-    const geom = hit.object.userData.geoms[hit.instanceId];
-    return { geom, link: this.linkOf(geom), owner: this.scene.owners[this.arrays.geom_owner[geom]]?.[1], point: hit.point, isFloor: hit.object.userData.isFloor };
+    for (const { object, instanceId, point } of raycaster.intersectObjects(this.visuals.children.filter(mesh => mesh.userData.geoms), false)) {
+      const geom = object.userData.geoms[instanceId], { isFloor } = object.userData;
+      if (this.stage.cuts.some(cut => cut.distanceToPoint(point) < 0) || !accept(geom, isFloor)) continue;
+      return { geom, link: this.linkOf(geom), owner: this.scene.owners[this.arrays.geom_owner[geom]]?.[1], point, isFloor };
+    }
+    return null;
+  }
+
+  /** Returns how far one sees from a point along a unit vector, at most `reach` [m]. Floors, glass and the model `own` hide nothing. */
+  sight(from, along, reach, own) {
+    const { geom_rgba: rgba } = this.arrays;
+    const hit = this.pick(new T.Raycaster(from, along, 0, reach), (geom, isFloor) => !isFloor && rgba[4 * geom + 3] > GLASS && this.modelOf(geom) !== own);
+    return hit ? hit.point.distanceTo(from) : reach;
+  }
+
+  modelOf(geom) {
+    return this.linkOf(geom).split('::', 1)[0];
+  }
+
+  // -------------------------------------------------------------- floors
+
+  /** Finds the levels of floors: horizontal planes and height fields; in a world without them, flat shapes about as wide as the world. */
+  findFloors() {
+    const { arrays: a } = this, fixed = geom => !this.isMoving[a.geom_body[geom]], up = new T.Vector3(), size = new T.Vector3();
+    this.floors = [];
+    this.terrains = [];
+    for (const { mesh, geoms, isVisual, isFloor } of this.shapes) {
+      if (!isVisual) continue;
+      if (a.geom_type[geoms[0]] === HEIGHTS) this.terrains.push(mesh);
+      if (isFloor) geoms.filter(fixed).forEach(geom => {
+        mesh.getMatrixAt(geoms.indexOf(geom), scratch.m);
+        if (up.setFromMatrixColumn(scratch.m, 2).normalize().z > 0.99) this.floors.push(scratch.m.elements[14]);
+      });
+    }
+    if (this.floors.length || this.terrains.length) return;
+    const boxes = this.boxesBy(geom => geom), all = new T.Box3();
+    for (const box of boxes.values()) all.union(box);
+    const width = all.getSize(new T.Vector3());
+    for (const [geom, box] of boxes) {
+      box.getSize(size);
+      const narrow = Math.min(size.x, size.y);
+      if (fixed(geom) && Math.min(size.x / width.x, size.y / width.y) > FLOOR_SHARE && size.z < FLOOR_SLOPE * narrow) this.floors.push(box.max.z);
+    }
+  }
+
+  /** Returns the level of the highest floor at a place and below a level; null without a floor. */
+  floorAt({ x, y }, below) {
+    const ray = new T.Raycaster(new T.Vector3(x, y, below), new T.Vector3(0, 0, -1));
+    const levels = [...this.floors, this.drawnFloor ?? NaN, ...ray.intersectObjects(this.terrains, false).map(hit => hit.point.z)].filter(level => level <= below);
+    return levels.length ? Math.max(...levels) : null;
   }
 }

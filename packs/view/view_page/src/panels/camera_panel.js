@@ -37,7 +37,7 @@ export function makeCameraPanel(app) {
     if (!sensor()) return;
     canvas.height = Math.round(WIDTH * Math.min(1.2, sensor().camera.height / sensor().camera.width));
     target?.dispose();
-    target = new T.WebGLRenderTarget(canvas.width, canvas.height, { colorSpace: T.SRGBColorSpace, samples: app.stage.lite ? 0 : 4 });
+    target = new T.WebGLRenderTarget(canvas.width, canvas.height, { colorSpace: T.SRGBColorSpace, samples: app.stage.isSoftware ? 0 : 4 });
     pixels = new Uint8Array(4 * canvas.width * canvas.height);
     note.textContent = isOwn() ? sensor().topic : 'drawn by the browser';
     if (isOwn() && box.open) app.connection.want(stream = `image:${sensor().name}`, {});
@@ -71,7 +71,8 @@ export function makeCameraPanel(app) {
   };
   app.on('packet:image', async packet => {
     if (packet.kind !== stream) return;
-    if (packet.error) { note.textContent = packet.error; return; }
+    note.textContent = packet.error ?? sensor().topic;
+    if (packet.error) { context.clearRect(0, 0, canvas.width, canvas.height); return; }
     const image = await createImageBitmap(new Blob([packet.arrays.jpeg], { type: 'image/jpeg' }));
     context.drawImage(image, 0, 0, canvas.width, canvas.height);
   });

@@ -1,12 +1,14 @@
-// Pose of the selected link, and its outline in the scene.
+// Pose of the selected link or model, and its outline in the scene.
 import * as T from 'three';
-import { element, panel } from '../dom.js';
+import { element, fixed, panel } from '../dom.js';
+import { isWithin } from '../views.js';
 
 export function makeSelectionPanel(app) {
   const text = element('div', { class: 'selection' }), follow = element('button', { onclick: () => app.views.follow(body) }, 'Follow');
   const box = panel('selection', 'Selected', text, follow);
   const outline = new T.Box3Helper(new T.Box3(), 0xffd23e);
-  outline.material.depthTest = false;
+  Object.assign(outline.material, { depthTest: false, transparent: true, fog: false }); // drawn after everything that would cover it
+  outline.renderOrder = 6;
   outline.visible = false;
   app.stage.helpers.add(outline);
   let body = null;
@@ -15,14 +17,15 @@ export function makeSelectionPanel(app) {
     box.hidden = app.selected === null;
     outline.visible = app.selected !== null;
     if (app.selected === null) return;
-    const frame = app.scene.frames.find(([name]) => name === app.selected);
+    const frame = app.scene.frames.find(([name]) => isWithin(name, app.selected)); // of a model, its first link
     body = frame ? frame[1] : app.scene.bodies.indexOf(app.selected);
     follow.hidden = !(body > 0);
     const lines = [app.selected];
+    if (frame && frame[0] !== app.selected) lines.push(`pose of ${frame[0].slice(app.selected.length + 2)}`);
     if (body > 0) {
       const pose = app.world.bodies[body], place = new T.Vector3().setFromMatrixPosition(pose);
-      const turn = new T.Euler().setFromRotationMatrix(pose, 'ZYX'), degrees = value => (value * 180 / Math.PI).toFixed(1);
-      lines.push(`x ${place.x.toFixed(3)}  y ${place.y.toFixed(3)}  z ${place.z.toFixed(3)} m`);
+      const turn = new T.Euler().setFromRotationMatrix(pose, 'ZYX'), degrees = value => fixed(value * 180 / Math.PI, 1);
+      lines.push(`x ${fixed(place.x, 3)}  y ${fixed(place.y, 3)}  z ${fixed(place.z, 3)} m`);
       lines.push(`roll ${degrees(turn.x)}  pitch ${degrees(turn.y)}  yaw ${degrees(turn.z)}°`);
     } else lines.push('static');
     text.replaceChildren(...lines.map(line => element('div', {}, line)));
@@ -30,7 +33,7 @@ export function makeSelectionPanel(app) {
   app.on('select', show);
   app.on('state', () => { if (app.selected !== null) show(); });
   app.stage.before.push(() => {
-    if (app.selected !== null) outline.box.copy(app.world.boxOf(geom => app.world.linkOf(geom) === app.selected));
+    if (app.selected !== null) outline.box.copy(app.world.boxOf(geom => isWithin(app.world.linkOf(geom), app.selected)));
   });
   box.hidden = true;
   return box;
