@@ -24,8 +24,6 @@ from simkit.version import __version__  # noqa: E402
 
 TYPE_CHECKING = False  # `typing` takes 3 ms
 if TYPE_CHECKING:
-    from typing import Any
-
     from simkit import (  # noqa: F401
         elementary_functions,
         errors,
@@ -152,21 +150,23 @@ moved_modules.install()
 _DISTRIBUTION = "simkit-robotics"
 
 
-def __getattr__(name: str) -> Any:
-    if name in _PUBLIC_MODULES:
-        return importlib.import_module(f"simkit.{name}")
-    if name not in _LAZY:
-        raise AttributeError(f"module 'simkit' has no attribute {name!r}{_conflict_text()}")
+if not TYPE_CHECKING:  # hidden from type checkers, so that they report unknown names
 
-    try:
-        with no_collection():
-            value = getattr(importlib.import_module(_LAZY[name]), name)
-    except ImportError as error:
-        if text := _conflict_text():
-            error.add_note(text.strip())
-        raise
-    globals()[name] = value
-    return value
+    def __getattr__(name: str) -> object:
+        if name in _PUBLIC_MODULES:
+            return importlib.import_module(f"simkit.{name}")
+        if name not in _LAZY:
+            raise AttributeError(f"module 'simkit' has no attribute {name!r}{_conflict_text()}")
+
+        try:
+            with no_collection():
+                value = getattr(importlib.import_module(_LAZY[name]), name)
+        except ImportError as error:
+            if text := _conflict_text():
+                error.add_note(text.strip())
+            raise
+        globals()[name] = value
+        return value
 
 
 def _conflict_text() -> str:

@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from simkit.plugins.publish_on_demand import publish_while_subscribed
     from simkit.pose import Vector
     from simkit.runtime.communication.action_server import GoalHandle
+    from simkit.runtime.communication.service_server import ServiceCall
     from simkit.runtime.engine.random_streams import RandomStream
     from simkit.scene import (
         Box,
@@ -113,6 +114,7 @@ __all__ = [
     "SceneVisual",
     "SceneWorld",
     "Sensor",
+    "ServiceCall",
     "SharedByCopies",
     "SpecBuilder",
     "Sphere",
@@ -170,6 +172,7 @@ _MODULES = {
     "simkit.plugins.publish_on_demand": ("publish_while_subscribed",),
     "simkit.pose": ("Vector",),
     "simkit.runtime.communication.action_server": ("GoalHandle",),
+    "simkit.runtime.communication.service_server": ("ServiceCall",),
     "simkit.scene": (
         "Box", "Cylinder", "Inertial", "Scene", "SceneCollision", "SceneJoint", "SceneLink", "SceneModel",
         "SceneSensor", "SceneVisual", "SceneWorld", "Sphere",
@@ -185,4 +188,5 @@ _MODULES = {
     "simkit.sensors.vector_sensor": ("VectorRule", "VectorSensor"),
 }  # fmt: skip
 
-__getattr__, __dir__ = lazy_attributes(__name__, _MODULES)
+if not TYPE_CHECKING:  # hidden from type checkers, so that they report unknown names
+    __getattr__, __dir__ = lazy_attributes(__name__, _MODULES)

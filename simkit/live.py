@@ -7,7 +7,7 @@ with connect() as client:
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.bridges.live.client import Client, connect
 from simkit.bridges.live.client_handles import LiveGoal, LivePublisher, LiveSubscription, Received
@@ -38,9 +38,11 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    if name == "Server":  # imported lazily: a client does not need the modules of a simulation
-        from simkit.bridges.live.server import Server
+if not TYPE_CHECKING:  # hidden from type checkers, so that they report unknown names
 
-        return Server
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    def __getattr__(name: str) -> object:
+        if name == "Server":  # imported lazily: a client does not need the modules of a simulation
+            from simkit.bridges.live.server import Server
+
+            return Server
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

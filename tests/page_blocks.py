@@ -22,13 +22,15 @@ class Block(NamedTuple):
 
     Attributes:
         line: line of the page on which the code begins.
-        language: word after the fence. Indented blocks are `xml`, `sh`, `prompt` (commands after `$`) or `text`.
+        language: word after the fence. Indented blocks are `xml`, `sh`, `prompt` (commands after `$`) or empty.
+        title: rest of the line of the fence.
         file: name of the file that the page gives to the block; empty if the page gives none.
         text: the code.
     """
 
     line: int
     language: str
+    title: str
     file: str
     text: str
 
@@ -64,14 +66,14 @@ def _parse(lines: list[str]) -> Iterator[Block]:
         if fence := _FENCE.match(line):
             end = next(n for n in range(number + 1, len(lines)) if lines[n].startswith("```"))
             text = "".join(f"{one}\n" for one in lines[number + 1 : end])
-            yield Block(number + 2, fence[1], _file_of(fence[2], text, paragraph), text)
+            yield Block(number + 2, fence[1], fence[2].strip(), _file_of(fence[2], text, paragraph), text)
             number, paragraph = end + 1, ""
         elif line.startswith("    ") and not lines[number - 1] and not _LIST.match(paragraph):
             end = next(
                 (n for n in range(number, len(lines)) if lines[n] and not lines[n].startswith("    ")), len(lines)
             )
             text = "".join(f"{one[4:]}\n" for one in lines[number:end]).rstrip("\n") + "\n"
-            yield Block(number + 1, _language_of(text), _file_of("", text, paragraph), text)
+            yield Block(number + 1, _language_of(text), "", _file_of("", text, paragraph), text)
             number = end
         else:
             if line:
@@ -85,7 +87,7 @@ def _language_of(text: str) -> str:
         return "xml"
     found = _COMMAND.search(text)
     if not found or (_SYNOPSIS.search(text) and found[0] != "$ "):
-        return "text"
+        return ""
     return "prompt" if found[0] == "$ " else "sh"
 
 

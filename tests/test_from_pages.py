@@ -108,9 +108,10 @@ def test_a_name_of_simkit_in_the_tables_exists(span: str, is_simkit: bool) -> No
     elif names := re.findall(r"^<(?:simkit:)?(\w+)", span):
         assert set(names) <= ELEMENTS or not is_simkit
     elif re.match(r"lib\w|gz-|ignition-", span) and len(span) > 4:
-        from simkit_authoring.catalogue import find_entry
-
-        find_entry(span)
+        plugin = f'<plugin filename="{span}" name="plugin"/>'
+        model = f'<model name="robot"><link name="base"/>{plugin}</model>'
+        found = simkit.check(f'<sdf version="1.9"><world name="hall">{plugin}{model}</world></sdf>')
+        assert "SK-PLUGIN-001" not in {problem.code for problem in found}
     elif is_simkit:
         assert span in SENSORS, "no command, option, element, plugin, sensor or expression of simkit"
 
@@ -138,3 +139,5 @@ def test_the_check_finds_wrong_names() -> None:
         check_python("sim.steps(3)")
     with pytest.raises(TypeError):
         check_python('simkit.load("a.sdf", speed=2)')
+    with pytest.raises(AssertionError):
+        test_a_name_of_simkit_in_the_tables_exists("libgazebo_ros_diff_drivee.so", is_simkit=True)

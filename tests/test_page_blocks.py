@@ -7,6 +7,8 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
+import time
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -22,7 +24,7 @@ PYTHON: Final = [
     pytest.param(page, block, id=f"{page_name(page)}:{block.line}")
     for page in pages()
     for block in blocks(page, "python")
-    if "labs" not in page.relative_to(ROOT).parts  # pieces of programs, which the tests of the labs complete
+    if not block.title  # a program for ROS, which another test runs
 ]
 SHELL: Final = ("sh", "bash", "prompt")
 
@@ -32,6 +34,8 @@ OTHER_TESTS: Final = {
     "docs/adding_a_plugin.md": "tests/test_adding_pages.py",
     "docs/adding_a_sensor.md": "tests/test_adding_pages.py",
     "docs/ci.md": "tests/examples/test_ci_page.py",
+    "docs/commands/demo.md": "tests/cli/test_demo.py",
+    "docs/commands/doctor.md": "tests/cli/test_commands.py",
     "docs/cours.md": "tests/labs/test_course_page.py",
     "docs/course.md": "tests/labs/test_course_page.py",
     "docs/course/ros2_graph.md": "tests/cli/course_page.py",
@@ -56,21 +60,21 @@ class LeftOut(NamedTuple):
 
 
 LEFT_OUT: Final = {
-    r"pip (un)?install|git clone|podman|-m venv |simkit fetch": LeftOut("network", 0),
-    r"articubot_one/|vectored|pal\b|tiago_gazebo|go2_desc|burger\.urdf|depot\.sdf|ros2_ws|baxter_sim": LeftOut(
-        "files of public repositories", 0
+    r"pip (un)?install|git clone|podman|-m venv |simkit fetch|simkit fleet": LeftOut("network", 32),
+    r"articubot_one/|vectored|pal\b|tiago_gazebo|go2_desc|burger\.urdf|depot\.sdf|~/|baxter_sim": LeftOut(
+        "robots of public repositories", 17
     ),
-    r"pytest -n auto|-m pytest|ruff|\.ci/|golden record golden/sensor_bench|lab grade|> docs/": LeftOut(
-        "other tests run it, or it changes the repository", 0
+    r"base\.yaml|controllers\.yaml|bow|arena\.wo|\.sdf --score|my_robots|finger\.urdf|harbour|map_saver/|-v 4": LeftOut(
+        "worlds and robots that the page does not show", 11
     ),
-    r"^ros2 |^simkit ros$|--ros(?: |$)": LeftOut("ROS 2", 0),
-    r"ray start|--cluster|SLURM": LeftOut("a cluster", 0),
-    r"contact-nets|--quick|benchmarks/history|train_turtlebot3|toss1": LeftOut(
-        "hours, or recordings of a real cube", 0
+    r"pytest -n auto|-m pytest|ruff|\.ci/|golden record golden/sensor_bench|lab (?:start|grade)|^cd |> docs/": LeftOut(
+        "other tests run it, or it changes the repository", 79
     ),
-    r"arena\.world|robot\.sdf --score|check my_robots|finger\.urdf|harbour": LeftOut("an example of a message", 0),
+    r"^ros2 |^simkit ros$|--ros(?: |$)": LeftOut("ROS 2", 7),
+    r"ray start|--cluster|SLURM": LeftOut("a cluster", 3),
+    r"contact-nets|--quick|benchmarks/history|train_turtlebot3|toss1": LeftOut("hours, or data of a real cube", 3),
 }
-SHORTER: Final = {"samples: 64": "samples: 4", "--trials 200": "--trials 2"}
+SHORTER: Final = {"samples: 64": "samples: 3", "duration: 10\n": "duration: 2\n", "--trials 200": "--trials 2"}
 LONGEST: Final = 3.0  # [s] of simulated time
 IN_CLONE: Final = re.compile(r"(?<!\S)(?:\.venv|benchmarks|examples|packs|tests|worlds)/")
 WRITES_FILES: Final = re.compile(r"write_text\(|Recorder\(")
@@ -95,6 +99,13 @@ def commands(block: Block) -> Iterator[tuple[str, str, list[str]]]:
 def pattern_of(command: str) -> str:
     """Return the pattern of a command that a test cannot run; empty if a test can."""
     return next((pattern for pattern in LEFT_OUT if re.search(pattern, command)), "")
+
+
+def shorter(text: str) -> str:
+    """Return a command or a file with fewer or shorter runs."""
+    for long, short in SHORTER.items():
+        text = text.replace(long, short)
+    return text
 
 
 def shell_pages() -> dict[str, Path]:
@@ -146,8 +157,7 @@ class Reader:
         for command, comment, shown in commands(block):
             if pattern_of(command):
                 continue
-            for long, short in SHORTER.items():
-                command = command.replace(long, short)
+            command = shorter(command)
             if WORLD.search(command) or UNTIL_INTERRUPT.search(command):
                 self._end_of(command)
             if UNTIL_INTERRUPT.search(command):
@@ -157,22 +167,39 @@ class Reader:
                 command = re.sub(
                     r"--duration (\S+)", lambda found: f"--duration {min(float(found[1]), LONGEST)}", command
                 )
-            if command.startswith("cd "):
-                self._folder /= command[3:]
-                continue
-            done = subprocess.run(
-                ["bash", "-c", command], cwd=self._folder, env={**os.environ, **self._environment}, timeout=250,
-                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-            )  # fmt: skip
-            self._output += done.stdout
+            output, code = self._run(command)
+            self._output += output
             codes = {0, *map(int, re.findall(r"exit code (\d+)", comment))}
-            assert done.returncode in codes, f"line {block.line}: $ {command}\n{done.stdout}\nexit {done.returncode}"
+            assert code in codes, f"line {block.line}: $ {command}\n{output}\nexit code {code}"
             self._compare(shown)
 
+    def _run(self, command: str) -> tuple[str, int]:
+        """Run a command to its end; return its output and its exit code."""
+        with tempfile.TemporaryFile("w+", encoding="utf-8") as output:
+            process = subprocess.Popen(
+                ["bash", "-c", command], cwd=self._folder, env={**os.environ, **self._environment},
+                stdin=subprocess.DEVNULL, stdout=output, stderr=output,
+            )  # fmt: skip
+            self._wait_for(process)
+            output.seek(0)
+            return output.read(), process.returncode
+
+    def _wait_for(self, process: subprocess.Popen[bytes]) -> None:
+        """Wait for the end of a process, and read what the terminals show: a program that nobody reads waits."""
+        end = time.monotonic() + 250.0
+        while process.poll() is None:
+            for terminal in self._running.values():
+                terminal.read(0.02)
+            time.sleep(0.02)
+            if time.monotonic() > end:
+                process.kill()
+
     def _compare(self, lines: list[str]) -> None:
+        output = re.sub(" +", " ", self._output)  # columns are as wide as the lines that a page shows
         for line in lines:
+            line = re.sub(" +", " ", line)
             pattern = "[^\n]*".join(map(re.escape, line.split("…")))
-            assert re.search(f"^{pattern}$", self._output, re.MULTILINE), f"{line}\nis not in\n{self._output}"
+            assert re.search(f"^{pattern}$", output, re.MULTILINE), f"{line}\nis not in\n{self._output}"
 
     def _begin(self, command: str) -> None:
         terminal = Terminal("bash", "-c", command, cwd=self._folder, size=(40, 160), environment=self._environment)
@@ -181,8 +208,10 @@ class Reader:
         assert "error" not in terminal.wait_for(rf"{started}|error.*\n.*")[0]
 
     def _end_of(self, command: str) -> None:
-        if terminal := self._running.pop(program_of(command), None):
+        if terminal := self._running.get(program_of(command)):
             terminal.press("\x03")
+            self._wait_for(terminal.process)
+            del self._running[program_of(command)]
             assert terminal.wait() in (0, 130), terminal.seen
 
     def end(self) -> None:
@@ -238,11 +267,11 @@ def test_the_commands_of_a_page_run(page: Path, tmp_path: Path) -> None:
     elif any(IN_CLONE.search(part.text) for part in parts if part.language in SHELL):
         copy_clone(folder, programs)
     for file in folder.glob("*.yaml"):
-        file.write_text(file.read_text("utf-8").replace(*next(iter(SHORTER.items()))), encoding="utf-8")
+        file.write_text(shorter(file.read_text("utf-8")), encoding="utf-8")
     with ExitStack() as stack:
         reader = Reader(folder, programs, stack)
         for part in parts:
-            if part.language in (*SHELL, "text") or WRITES_FILES.search(part.text):
+            if part.language in (*SHELL, "text") or (not part.title and WRITES_FILES.search(part.text)):
                 reader.paste(part)
         reader.end()
 

@@ -157,6 +157,10 @@ def test_each_published_message_has_its_fields_in_the_reference(reference: types
         ("run_until", "+run +until* until^10"),
         ('"exact words"', '"exact words"'),
         ("is", "is^10 is*"),
+        (
+            "size 0 must be in geom 1",
+            "text:size^10 text:size text:0^10 text:0 text:must^10 text:must text:geom^10 text:geom text:1^10 text:1",
+        ),
     ],
 )
 def test_the_search_gets_what_people_type_as_a_query(typed: str, query: str) -> None:

@@ -1,8 +1,9 @@
-"""Types that mypy finds in users' programs: topics by message class, and sensors by their class."""
+"""Types that mypy and pyright find in users' programs: messages by their class, and sensors by theirs."""
 
 from __future__ import annotations
 
 import importlib.util
+import json
 import os
 import subprocess
 import sys
@@ -11,92 +12,160 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-PROGRAM = """
+PROGRAM = '''
+from typing import Any, assert_type
+
 import simkit
-from simkit import msgs
-from simkit.sensors import Camera, Imu, Lidar
+from simkit import live, msgs
+from simkit.extend import GoalHandle, ServiceCall
+from simkit.sensors import Camera, Imu, Lidar, Sensor
 
 
-def switch(request: msgs.SetBool_Request) -> msgs.Message:
-    reveal_type(request.data)
-    return {"success": request.data}
+def switch(request: msgs.SetBool_Request) -> msgs.SetBool_Response:
+    assert_type(request.data, bool)
+    return msgs.SetBool_Response(success=request.data, message="")
+
+
+def count(goal: GoalHandle[msgs.Fibonacci_Goal]) -> None:
+    assert_type(goal.request.order, int)
+    goal.publish_feedback({"sequence": [1]})
+    goal.succeed({"sequence": [1, 1]})
 
 
 class Echo(simkit.WorldPlugin):
+    """Plugin that uses each kind of endpoint."""
+
     def load(self, parent: simkit.Simulation, params: simkit.Params) -> None:
-        reveal_type(self.subscribe("/scan", type=msgs.LaserScan))
-        reveal_type(self.advertise("/echo", msgs.String))
-        self.listen("/cmd_vel", msgs.Twist, lambda message: message.linear.x)
+        assert_type(self.subscribe("/scan", type=msgs.LaserScan).latest, msgs.LaserScan | Any)
+        assert_type(self.advertise("/echo", msgs.String), simkit.Publisher[msgs.String])
+        self.listen("/cmd_vel", msgs.Twist, lambda message: print(message.linear.x))
+        self.offer("/lamp", msgs.SetBool_Request, lambda request: {"success": request.data})
+        self.act("/count", msgs.Fibonacci_Goal, count)
 
 
-with simkit.load("world") as sim:
-    reveal_type(sim.subscribe("/scan"))
+def topics(sim: simkit.Simulation) -> None:
+    assert_type(sim.subscribe("/scan"), simkit.Subscription[Any])
     scans = sim.subscribe("/scan", type=msgs.LaserScan, callback=lambda scan: print(scan.ranges))
-    reveal_type(scans.latest)
-    reveal_type(scans.messages)
-    reveal_type(sim.advertise("/chatter", msgs.String))
-    reveal_type(sim.sensor("lds"))
-    reveal_type(sim.sensor("lds", type=Lidar).latest)
-    reveal_type(sim.sensor("imu", type=Imu).truth)
-    reveal_type(sim.sensor("camera", type=Camera).latest)
-    sim.offer("/lamp", msgs.SetBool_Request, switch)
-    sim.act("/count", msgs.Fibonacci_Goal, lambda goal: print(goal.request.order))
+    assert_type(scans.latest, msgs.LaserScan | Any)
+    assert_type(scans.messages, list[msgs.LaserScan])
+    assert_type(sim.advertise("/chatter", msgs.String), simkit.Publisher[msgs.String])
     print(scans.latest.ranges.min(), sim.run_until("pose('bot').x > 0.5", timeout=5.0))
-"""
-REVEALED = [
-    "bool",
-    "Subscription[LaserScan]",
-    "Publisher[String]",
-    "Subscription[Any]",
-    "LaserScan | Any",
-    "list[LaserScan]",
-    "Publisher[String]",
-    "Any",
-    "LaserScan | Any",
-    "Imu | Any",
-    "Image | Any",
-]
+
+
+def sensors(sim: simkit.Simulation) -> None:
+    assert_type(sim.sensors, dict[str, Sensor[Any]])
+    assert_type(sim.sensor("lds"), Sensor[Any])
+    assert_type(sim.sensor("lds").update_rate, float)
+    assert_type(sim.sensor("lds", type=Lidar).latest, msgs.LaserScan | Any)
+    assert_type(sim.sensor("imu", type=Imu).truth, msgs.Imu | Any)
+    assert_type(sim.sensor("camera", type=Camera).latest, msgs.Image | Any)
+
+
+def services(sim: simkit.Simulation) -> None:
+    sim.offer("/lamp", msgs.SetBool_Request, switch)
+    assert_type(sim.call("/lamp", msgs.SetBool_Request(True)), msgs.SetBool_Response)
+    assert_type(sim.call("/lamp", {"data": True}, type=msgs.SetBool_Request), msgs.SetBool_Response)
+    assert_type(sim.call("/reset", type=msgs.Trigger_Request), msgs.Trigger_Response)
+    later = sim.call("/lamp", msgs.SetBool_Request(True), on_done=lambda call: print(call.response.message))
+    assert_type(later, ServiceCall[msgs.SetBool_Response])
+    assert_type(sim.call("/lamp", {"data": True}), Any)
+
+
+def actions(sim: simkit.Simulation) -> None:
+    sim.act("/count", msgs.Fibonacci_Goal, count)
+    goal = sim.send_goal("/count", msgs.Fibonacci_Goal(3), on_feedback=lambda feedback: print(feedback.sequence))
+    assert_type(goal, GoalHandle[msgs.Fibonacci_Goal])
+    assert_type(goal.result, msgs.Fibonacci_Result | Any)
+    assert_type(sim.send_goal("/count", {"order": 3}, type=msgs.Fibonacci_Goal).feedback, msgs.Fibonacci_Feedback | Any)
+    assert_type(sim.send_goal("/count", {"order": 3}), GoalHandle[Any])
+
+
+def client(client: live.Client) -> None:
+    scans = client.subscribe("/scan", type=msgs.LaserScan)
+    assert_type(next(scans).message, msgs.LaserScan)
+    assert_type(client.advertise("/chatter", msgs.String), live.LivePublisher[msgs.String])
+    client.listen("/cmd_vel", msgs.Twist, lambda message: print(message.linear.x))
+    client.offer("/lamp", msgs.SetBool_Request, switch)
+    client.act("/count", msgs.Fibonacci_Goal, lambda goal: {"sequence": [goal.request.order]})
+    assert_type(client.call("/lamp", msgs.SetBool_Request(True)), msgs.SetBool_Response)
+    assert_type(client.call("/lamp", {"data": True}, type=msgs.SetBool_Request), msgs.SetBool_Response)
+    goal = client.send_goal("/count", {"order": 3}, type=msgs.Fibonacci_Goal)
+    assert_type(goal, live.LiveGoal[msgs.Fibonacci_Goal])
+    assert_type(goal.result, msgs.Fibonacci_Result | Any)
+
+
+def loaded() -> None:
+    with simkit.load("world") as sim:
+        assert_type(sim, simkit.Simulation)
+        assert_type(sim.link("bot::base").pose, simkit.Pose)
+        assert_type(sim.contacts()[0].first, str)
+'''
 MISTAKES = {
-    "scans.latest.rangs": 'has no attribute "rangs"',
-    "sim.advertise('/chatter', msgs.String).publish(msgs.Bool(True))": "incompatible type",
-    "sim.subscribe('/scan', lambda scan: scan.rangs, type=msgs.LaserScan)": 'has no attribute "rangs"',
-    "sim.act('/count', msgs.Fibonacci_Goal, lambda goal: print(goal.request.ordr))": 'has no attribute "ordr"',
-    "sim.offer('/lamp', msgs.Trigger_Request, switch)": "incompatible type|No overload",
+    "sim.subscribe('/scan', type=msgs.LaserScan).messages[0].rangs": "rangs",
+    "sim.subscribe('/scan', lambda scan: print(scan.rangs), type=msgs.LaserScan)": "rangs",
+    "sim.advertise('/chatter', msgs.String).publish(msgs.Bool(True))": "Bool",
+    "sim.offer('/lamp', msgs.Trigger_Request, switch)": "offer",
+    "sim.call('/lamp', msgs.SetBool_Request(True)).succes": "succes",
+    "sim.call('/lamp', {'data': True}, type=msgs.LaserScan)": "call",
+    "sim.act('/count', msgs.Fibonacci_Goal, lambda goal: print(goal.request.ordr))": "ordr",
+    "sim.act('/count', msgs.Fibonacci_Goal, lambda goal: goal.succeed(msgs.Bool(True)))": "Bool",
+    "sim.send_goal('/count', msgs.Fibonacci_Goal(3), lambda feedback: print(feedback.sequenc))": "sequenc",
+    "client.call('/lamp', msgs.SetBool_Request(True)).succes": "succes",
+    "sim.sensor('lds').ranges": "ranges",
 }
 
 
-def type_check(folder: Path, text: str) -> list[str]:
-    """Return the lines that mypy prints for a user's program."""
-    (folder / "program.py").write_text(text, encoding="utf-8")
-    options = ["--strict", "--follow-imports=silent", "--no-pretty", "--cache-dir", "cache"]
-    command = [sys.executable, "-m", "mypy", *options, "program.py"]
-    environment = {**os.environ, "MYPYPATH": str(ROOT)}
-    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
-    return done.stdout.splitlines()
+def found_by_mypy(folder: Path) -> list[tuple[int, str]]:
+    """Return the line and the text of each error that mypy finds."""
+    options = ["--strict", "--follow-imports=silent", "--no-pretty", "--hide-error-context", "--cache-dir", "cache"]
+    command = [sys.executable, "-m", "mypy", *options, "--python-version", "3.11", "program.py"]
+    done = subprocess.run(
+        command, cwd=folder, env={**os.environ, "MYPYPATH": str(ROOT)}, capture_output=True, text=True, check=False
+    )
+    assert "program.py" in done.stdout or "Success" in done.stdout, done.stdout + done.stderr
+    lines = [line.split(":", 3) for line in done.stdout.splitlines() if ": error:" in line]
+    return [(int(number), text) for _, number, _, text in lines]
 
 
-def short(line: str) -> str:
-    """Return a revealed type without the modules of its names."""
-    text = line.split("Revealed type is ")[1].strip('"').replace("builtins.", "")
-    if text.startswith("Union["):
-        text = " | ".join(text.removeprefix("Union[").removesuffix("]").split(", "))
-    words = text.replace("[", "[ ").replace("]", " ]").split(" ")
-    return "".join(word if word == "|" else word.rpartition(".")[2] for word in words).replace("|", " | ").rstrip("?")
+def found_by_pyright(folder: Path) -> list[tuple[int, str]]:
+    """Return the line and the text of each error that pyright finds, with the settings of a new user."""
+    settings = {"typeCheckingMode": "standard", "pythonVersion": "3.11", "extraPaths": [str(ROOT)]}
+    (folder / "pyrightconfig.json").write_text(json.dumps(settings), encoding="utf-8")
+    command = [sys.executable, "-m", "basedpyright", "--outputjson", "--pythonpath", sys.executable, "program.py"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    found = json.loads(done.stdout)
+    assert found["summary"]["filesAnalyzed"] == 1, done.stdout
+    errors = [each for each in found["generalDiagnostics"] if each["severity"] == "error"]
+    return [(each["range"]["start"]["line"] + 1, each["message"]) for each in errors]
 
 
-@pytest.mark.slow
-@pytest.mark.skipif(importlib.util.find_spec("mypy") is None, reason="needs mypy")
-def test_mypy_knows_the_messages_of_topics_and_sensors_that_are_named_by_class(tmp_path: Path) -> None:
-    lines = type_check(tmp_path, PROGRAM)
-    assert lines[-1].startswith("Success"), "\n".join(lines)
-    assert [short(line) for line in lines if "Revealed" in line] == REVEALED
+def needs(module: str) -> pytest.MarkDecorator:
+    """Return the mark of a test that needs a module of the extra dev."""
+    return pytest.mark.skipif(importlib.util.find_spec(module) is None, reason=f"needs {module}, of the extra dev")
 
 
-@pytest.mark.slow
-@pytest.mark.skipif(importlib.util.find_spec("mypy") is None, reason="needs mypy")
-def test_mypy_finds_a_misspelled_field_and_a_message_of_another_class(tmp_path: Path) -> None:
-    lines = type_check(tmp_path, PROGRAM + "".join(f"    {mistake}\n" for mistake in MISTAKES))
-    errors = [line for line in lines if "error:" in line]
-    assert len(errors) == len(MISTAKES), "\n".join(lines)
-    for line, texts in zip(errors, MISTAKES.values(), strict=True):
-        assert any(text in line for text in texts.split("|")), line
+CHECKERS = pytest.mark.parametrize(
+    "found_by",
+    [
+        pytest.param(found_by_mypy, id="mypy", marks=needs("mypy")),
+        pytest.param(found_by_pyright, id="pyright", marks=needs("basedpyright")),
+    ],
+)
+pytestmark = pytest.mark.slow
+
+
+@CHECKERS
+def test_a_type_checker_knows_what_is_named_by_class(found_by, tmp_path: Path) -> None:
+    (tmp_path / "program.py").write_text(PROGRAM, encoding="utf-8")
+    assert found_by(tmp_path) == []
+
+
+@CHECKERS
+def test_a_type_checker_finds_misspelled_fields_and_messages_of_another_class(found_by, tmp_path: Path) -> None:
+    head = "\n\ndef mistakes(sim: simkit.Simulation, client: live.Client) -> None:\n"
+    (tmp_path / "program.py").write_text(PROGRAM + head + "".join(f"    {mistake}\n" for mistake in MISTAKES), "utf-8")
+    first = (PROGRAM + head).count("\n") + 1
+    found = found_by(tmp_path)
+    for number, (mistake, text) in enumerate(MISTAKES.items(), first):
+        assert any(line == number and text in problem for line, problem in found), (mistake, found)
+    assert {line for line, _ in found} == set(range(first, first + len(MISTAKES)))

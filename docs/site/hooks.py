@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
     from mkdocs.structure.pages import Page
 
 _pages = cache(generated_pages)
+_INLINE_CODE = re.compile(r"<code>[^<]*</code>")
+_OPTION = re.compile(r"(?<![\w-])--?[a-zA-Z][\w-]*")
 
 
 def on_config(config: MkDocsConfig) -> MkDocsConfig:
@@ -63,8 +66,13 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
         page.meta["search"] = {"boost": 0.5}  # most queries are English
     if path == "docs/troubleshooting.md":
         page.meta["search"] = {"boost": 2}  # who searches for a symptom wants its remedy
-    if path.startswith("reference/python/"):
-        page.meta["search"] = {"boost": 0.5}  # each of its 700 names is a title
+    if path.startswith(("reference/python/", "reference/messages/", "reference/diagnostics/")):
+        page.meta["search"] = {"boost": 0.5}  # each of their 2000 names is a title
     if not path.startswith("reference/"):
         markdown = in_python_markdown(with_site_links(markdown, path, files.src_uris))
     return markdown
+
+
+def on_page_content(html: str, page: Page, config: MkDocsConfig, files: Files) -> str:  # noqa: ARG001 - MkDocs passes it
+    """Keep each option in code on one line: a browser breaks lines after hyphens."""
+    return _INLINE_CODE.sub(lambda code: _OPTION.sub(r'<span class="option">\g<0></span>', code[0]), html)

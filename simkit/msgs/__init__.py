@@ -27,6 +27,7 @@ from simkit.msgs.topic_names import absolute_name, valid_topic
 from simkit.msgs.type_hashes import rihs
 
 if TYPE_CHECKING:
+    from simkit.msgs import message_classes
     from simkit.msgs.image_arrays import image, image_message
     from simkit.msgs.message_builder import MessageBuilder
     from simkit.msgs.message_classes import *  # noqa: F403
@@ -64,6 +65,8 @@ __all__ = [
     "valid_topic",
     "yaw",
 ]
+if TYPE_CHECKING:
+    __all__ += message_classes.__all__
 
 
 class _Timed(Protocol):

@@ -18,10 +18,11 @@ from simkit.msgs.message_types import Message, type_store
 
 if TYPE_CHECKING:
     import numpy.typing as npt
+    from pandas import DataFrame as DataFrame
     from rosbags.typesys.store import Typestore
+else:
+    DataFrame = Any  # pandas is optional
 
-DataFrame = Any
-"""`pandas.DataFrame`; pandas is optional."""
 _TIME: Final = "builtin_interfaces/msg/Time"
 _HEADER: Final = "std_msgs/msg/Header"
 _NS: Final = 1_000_000_000

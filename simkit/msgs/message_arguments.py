@@ -7,7 +7,24 @@ from collections.abc import Collection, Mapping
 from simkit import msgs
 from simkit.argument_checks import shown
 from simkit.errors import MessageError, NoMessageError
-from simkit.msgs.message_types import FieldValue, Message
+from simkit.msgs.message_types import FieldValue, Message, interface_type
+
+
+def typed_message(value: FieldValue, type_: str | type | None, part: str, place: str) -> Message:
+    """Return a request or goal of the type that its sender names; the value itself without a type.
+
+    Args:
+        value: message, dict of its fields, or None for a message with all fields at their defaults.
+        type_: service or action type, or the class of the message; None for no type.
+        part: part of the type: "Request" or "Goal".
+        place: service or action for the error message.
+
+    Raises:
+        MessageError: the type is unknown, or the value does not fit it.
+    """
+    if type_ is None:
+        return value
+    return checked_message(value, (f"{interface_type(type_, part)}_{part}",), place, none_is_default=True)
 
 
 def checked_message(

@@ -18,12 +18,23 @@ _HEAD = '''# Written by `python -m simkit.msgs.message_class_stubs`; a test comp
 """Fields of every message class: `from simkit.msgs import LaserScan`."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Generic, type_check_only
 
 import numpy as np
 from numpy.typing import NDArray
+
+from simkit.msgs.message_types import F, M, R
+
+@type_check_only
+class ServiceRequest(Generic[M, R]):
+    """Request of the class `M`, to which a response of the class `R` belongs. No message has this base at run time."""
+
+@type_check_only
+class ActionGoal(Generic[M, R, F]):
+    """Goal of the class `M`, with results of the class `R` and feedback of the class `F`. Not a base at run time."""
 '''
 _SCALARS = {"bool": "bool", "string": "str", "wstring": "str", "float32": "float", "float64": "float"}
+_PARTS = {"ServiceRequest": ("Request", "Response"), "ActionGoal": ("Goal", "Result", "Feedback")}
 _DTYPES = {"bool": "bool_", "byte": "uint8", "char": "uint8"}
 
 
@@ -35,7 +46,8 @@ def stub_text() -> str:
         lines += [f"# {package}", ""]
         for type_name in type_names:
             lines += [*_class_lines(type_name, classes), ""]
-    return "\n".join(lines)
+    names = "".join(f'    "{name}",\n' for name in sorted(classes.values()))
+    return "\n".join([*lines, f"__all__: list[str] = [\n{names}]\n"])
 
 
 def _class_lines(type_name: str, classes: dict[str, str]) -> Iterator[str]:
@@ -43,7 +55,7 @@ def _class_lines(type_name: str, classes: dict[str, str]) -> Iterator[str]:
 
     constants, fields = type_store().fielddefs[type_name]
     yield "@dataclass"
-    yield f"class {classes[type_name]}:"
+    yield f"class {classes[type_name]}{_base(type_name, classes)}:"
     yield f'    """`{type_name}`"""'
     for name, node in fields:
         default = " = 0" if name == "structure_needs_at_least_one_member" else ""
@@ -51,6 +63,15 @@ def _class_lines(type_name: str, classes: dict[str, str]) -> Iterator[str]:
     for name, base, value in constants:
         yield f"    {normalize_fieldname(name)}: ClassVar[{_SCALARS.get(base, 'int')}] = {value!r}"
     yield "    __msgtype__: ClassVar[str]"
+
+
+def _base(type_name: str, classes: dict[str, str]) -> str:
+    """Return the base of a request or goal, which names the classes that belong to it; empty for other messages."""
+    interface, _, part = type_name.rpartition("_")
+    for generic, parts in _PARTS.items():
+        if part == parts[0] and f"{interface}_{parts[1]}" in classes:
+            return f"({generic}[{', '.join(classes[f'{interface}_{name}'] for name in parts)}])"
+    return ""
 
 
 def _annotation(node: FieldNode, classes: dict[str, str]) -> str:

@@ -4,10 +4,20 @@
 """Fields of every message class: `from simkit.msgs import LaserScan`."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Generic, type_check_only
 
 import numpy as np
 from numpy.typing import NDArray
+
+from simkit.msgs.message_types import F, M, R
+
+@type_check_only
+class ServiceRequest(Generic[M, R]):
+    """Request of the class `M`, to which a response of the class `R` belongs. No message has this base at run time."""
+
+@type_check_only
+class ActionGoal(Generic[M, R, F]):
+    """Goal of the class `M`, with results of the class `R` and feedback of the class `F`. Not a base at run time."""
 
 # ackermann_msgs
 
@@ -58,7 +68,7 @@ class action_msgs__msg__GoalStatusArray:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class CancelGoal_Request:
+class CancelGoal_Request(ServiceRequest[CancelGoal_Request, CancelGoal_Response]):
     """`action_msgs/srv/CancelGoal_Request`"""
     goal_info: GoalInfo
     __msgtype__: ClassVar[str]
@@ -83,7 +93,7 @@ class action_tutorials_interfaces__action__Fibonacci_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class action_tutorials_interfaces__action__Fibonacci_Goal:
+class action_tutorials_interfaces__action__Fibonacci_Goal(ActionGoal[action_tutorials_interfaces__action__Fibonacci_Goal, action_tutorials_interfaces__action__Fibonacci_Result, action_tutorials_interfaces__action__Fibonacci_Feedback]):
     """`action_tutorials_interfaces/action/Fibonacci_Goal`"""
     order: int
     __msgtype__: ClassVar[str]
@@ -103,7 +113,7 @@ class TestRequest_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class TestRequest_Goal:
+class TestRequest_Goal(ActionGoal[TestRequest_Goal, TestRequest_Result, TestRequest_Feedback]):
     """`actionlib/action/TestRequest_Goal`"""
     terminate_status: int
     ignore_cancel: bool
@@ -135,7 +145,7 @@ class Test_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class Test_Goal:
+class Test_Goal(ActionGoal[Test_Goal, Test_Result, Test_Feedback]):
     """`actionlib/action/Test_Goal`"""
     goal: int
     __msgtype__: ClassVar[str]
@@ -153,7 +163,7 @@ class TwoInts_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class TwoInts_Goal:
+class TwoInts_Goal(ActionGoal[TwoInts_Goal, TwoInts_Result, TwoInts_Feedback]):
     """`actionlib/action/TwoInts_Goal`"""
     a: int
     b: int
@@ -211,7 +221,7 @@ class Averaging_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class Averaging_Goal:
+class Averaging_Goal(ActionGoal[Averaging_Goal, Averaging_Result, Averaging_Feedback]):
     """`actionlib_tutorials/action/Averaging_Goal`"""
     samples: int
     __msgtype__: ClassVar[str]
@@ -230,7 +240,7 @@ class actionlib_tutorials__action__Fibonacci_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class actionlib_tutorials__action__Fibonacci_Goal:
+class actionlib_tutorials__action__Fibonacci_Goal(ActionGoal[actionlib_tutorials__action__Fibonacci_Goal, actionlib_tutorials__action__Fibonacci_Result, actionlib_tutorials__action__Fibonacci_Feedback]):
     """`actionlib_tutorials/action/Fibonacci_Goal`"""
     order: int
     __msgtype__: ClassVar[str]
@@ -460,7 +470,7 @@ class SEAJointState:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SolvePositionIK_Request:
+class SolvePositionIK_Request(ServiceRequest[SolvePositionIK_Request, SolvePositionIK_Response]):
     """`baxter_core_msgs/srv/SolvePositionIK_Request`"""
     pose_stamp: list[PoseStamped]
     seed_angles: list[JointState]
@@ -513,7 +523,7 @@ class FollowJointTrajectory_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class FollowJointTrajectory_Goal:
+class FollowJointTrajectory_Goal(ActionGoal[FollowJointTrajectory_Goal, FollowJointTrajectory_Result, FollowJointTrajectory_Feedback]):
     """`control_msgs/action/FollowJointTrajectory_Goal`"""
     trajectory: JointTrajectory
     multi_dof_trajectory: MultiDOFJointTrajectory
@@ -547,7 +557,7 @@ class GripperCommand_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GripperCommand_Goal:
+class GripperCommand_Goal(ActionGoal[GripperCommand_Goal, GripperCommand_Result, GripperCommand_Feedback]):
     """`control_msgs/action/GripperCommand_Goal`"""
     command: GripperCommand
     __msgtype__: ClassVar[str]
@@ -568,7 +578,7 @@ class JointTrajectory_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class JointTrajectory_Goal:
+class JointTrajectory_Goal(ActionGoal[JointTrajectory_Goal, JointTrajectory_Result, JointTrajectory_Feedback]):
     """`control_msgs/action/JointTrajectory_Goal`"""
     trajectory: JointTrajectory
     __msgtype__: ClassVar[str]
@@ -586,7 +596,7 @@ class ParallelGripperCommand_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ParallelGripperCommand_Goal:
+class ParallelGripperCommand_Goal(ActionGoal[ParallelGripperCommand_Goal, ParallelGripperCommand_Result, ParallelGripperCommand_Feedback]):
     """`control_msgs/action/ParallelGripperCommand_Goal`"""
     command: JointState
     __msgtype__: ClassVar[str]
@@ -606,7 +616,7 @@ class PointHead_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class PointHead_Goal:
+class PointHead_Goal(ActionGoal[PointHead_Goal, PointHead_Result, PointHead_Feedback]):
     """`control_msgs/action/PointHead_Goal`"""
     target: PointStamped
     pointing_axis: Vector3
@@ -631,7 +641,7 @@ class SingleJointPosition_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SingleJointPosition_Goal:
+class SingleJointPosition_Goal(ActionGoal[SingleJointPosition_Goal, SingleJointPosition_Result, SingleJointPosition_Feedback]):
     """`control_msgs/action/SingleJointPosition_Goal`"""
     position: float
     min_duration: Duration
@@ -845,7 +855,7 @@ class SteeringControllerStatus:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class QueryCalibrationState_Request:
+class QueryCalibrationState_Request(ServiceRequest[QueryCalibrationState_Request, QueryCalibrationState_Response]):
     """`control_msgs/srv/QueryCalibrationState_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -857,7 +867,7 @@ class QueryCalibrationState_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class QueryTrajectoryState_Request:
+class QueryTrajectoryState_Request(ServiceRequest[QueryTrajectoryState_Request, QueryTrajectoryState_Response]):
     """`control_msgs/srv/QueryTrajectoryState_Request`"""
     time: Time
     __msgtype__: ClassVar[str]
@@ -917,7 +927,7 @@ class HardwareInterface:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ConfigureController_Request:
+class ConfigureController_Request(ServiceRequest[ConfigureController_Request, ConfigureController_Response]):
     """`controller_manager_msgs/srv/ConfigureController_Request`"""
     name: str
     __msgtype__: ClassVar[str]
@@ -929,7 +939,7 @@ class ConfigureController_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ListControllerTypes_Request:
+class ListControllerTypes_Request(ServiceRequest[ListControllerTypes_Request, ListControllerTypes_Response]):
     """`controller_manager_msgs/srv/ListControllerTypes_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -942,7 +952,7 @@ class ListControllerTypes_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ListControllers_Request:
+class ListControllers_Request(ServiceRequest[ListControllers_Request, ListControllers_Response]):
     """`controller_manager_msgs/srv/ListControllers_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -954,7 +964,7 @@ class ListControllers_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ListHardwareComponents_Request:
+class ListHardwareComponents_Request(ServiceRequest[ListHardwareComponents_Request, ListHardwareComponents_Response]):
     """`controller_manager_msgs/srv/ListHardwareComponents_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -966,7 +976,7 @@ class ListHardwareComponents_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ListHardwareInterfaces_Request:
+class ListHardwareInterfaces_Request(ServiceRequest[ListHardwareInterfaces_Request, ListHardwareInterfaces_Response]):
     """`controller_manager_msgs/srv/ListHardwareInterfaces_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -979,7 +989,7 @@ class ListHardwareInterfaces_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class LoadController_Request:
+class LoadController_Request(ServiceRequest[LoadController_Request, LoadController_Response]):
     """`controller_manager_msgs/srv/LoadController_Request`"""
     name: str
     __msgtype__: ClassVar[str]
@@ -991,7 +1001,7 @@ class LoadController_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ReloadControllerLibraries_Request:
+class ReloadControllerLibraries_Request(ServiceRequest[ReloadControllerLibraries_Request, ReloadControllerLibraries_Response]):
     """`controller_manager_msgs/srv/ReloadControllerLibraries_Request`"""
     force_kill: bool
     __msgtype__: ClassVar[str]
@@ -1003,7 +1013,7 @@ class ReloadControllerLibraries_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetHardwareComponentState_Request:
+class SetHardwareComponentState_Request(ServiceRequest[SetHardwareComponentState_Request, SetHardwareComponentState_Response]):
     """`controller_manager_msgs/srv/SetHardwareComponentState_Request`"""
     name: str
     target_state: State
@@ -1017,7 +1027,7 @@ class SetHardwareComponentState_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SwitchController_Request:
+class SwitchController_Request(ServiceRequest[SwitchController_Request, SwitchController_Response]):
     """`controller_manager_msgs/srv/SwitchController_Request`"""
     activate_controllers: list[str]
     deactivate_controllers: list[str]
@@ -1038,7 +1048,7 @@ class SwitchController_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class UnloadController_Request:
+class UnloadController_Request(ServiceRequest[UnloadController_Request, UnloadController_Response]):
     """`controller_manager_msgs/srv/UnloadController_Request`"""
     name: str
     __msgtype__: ClassVar[str]
@@ -1059,7 +1069,7 @@ class ConveyorBeltState:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ConveyorBeltControl_Request:
+class ConveyorBeltControl_Request(ServiceRequest[ConveyorBeltControl_Request, ConveyorBeltControl_Response]):
     """`conveyorbelt_msgs/srv/ConveyorBeltControl_Request`"""
     power: float
     __msgtype__: ClassVar[str]
@@ -1111,7 +1121,7 @@ class StratifiedCurrentVelocity:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class dave_gazebo_ros_plugins__srv__GetCurrentModel_Request:
+class dave_gazebo_ros_plugins__srv__GetCurrentModel_Request(ServiceRequest[dave_gazebo_ros_plugins__srv__GetCurrentModel_Request, dave_gazebo_ros_plugins__srv__GetCurrentModel_Response]):
     """`dave_gazebo_ros_plugins/srv/GetCurrentModel_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -1127,7 +1137,7 @@ class dave_gazebo_ros_plugins__srv__GetCurrentModel_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class dave_gazebo_ros_plugins__srv__GetOriginSphericalCoord_Request:
+class dave_gazebo_ros_plugins__srv__GetOriginSphericalCoord_Request(ServiceRequest[dave_gazebo_ros_plugins__srv__GetOriginSphericalCoord_Request, dave_gazebo_ros_plugins__srv__GetOriginSphericalCoord_Response]):
     """`dave_gazebo_ros_plugins/srv/GetOriginSphericalCoord_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -1141,7 +1151,7 @@ class dave_gazebo_ros_plugins__srv__GetOriginSphericalCoord_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class dave_gazebo_ros_plugins__srv__SetCurrentDirection_Request:
+class dave_gazebo_ros_plugins__srv__SetCurrentDirection_Request(ServiceRequest[dave_gazebo_ros_plugins__srv__SetCurrentDirection_Request, dave_gazebo_ros_plugins__srv__SetCurrentDirection_Response]):
     """`dave_gazebo_ros_plugins/srv/SetCurrentDirection_Request`"""
     angle: float
     __msgtype__: ClassVar[str]
@@ -1153,7 +1163,7 @@ class dave_gazebo_ros_plugins__srv__SetCurrentDirection_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class dave_gazebo_ros_plugins__srv__SetCurrentModel_Request:
+class dave_gazebo_ros_plugins__srv__SetCurrentModel_Request(ServiceRequest[dave_gazebo_ros_plugins__srv__SetCurrentModel_Request, dave_gazebo_ros_plugins__srv__SetCurrentModel_Response]):
     """`dave_gazebo_ros_plugins/srv/SetCurrentModel_Request`"""
     mean: float
     min: float
@@ -1169,7 +1179,7 @@ class dave_gazebo_ros_plugins__srv__SetCurrentModel_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class dave_gazebo_ros_plugins__srv__SetCurrentVelocity_Request:
+class dave_gazebo_ros_plugins__srv__SetCurrentVelocity_Request(ServiceRequest[dave_gazebo_ros_plugins__srv__SetCurrentVelocity_Request, dave_gazebo_ros_plugins__srv__SetCurrentVelocity_Response]):
     """`dave_gazebo_ros_plugins/srv/SetCurrentVelocity_Request`"""
     velocity: float
     horizontal_angle: float
@@ -1183,7 +1193,7 @@ class dave_gazebo_ros_plugins__srv__SetCurrentVelocity_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class dave_gazebo_ros_plugins__srv__SetOriginSphericalCoord_Request:
+class dave_gazebo_ros_plugins__srv__SetOriginSphericalCoord_Request(ServiceRequest[dave_gazebo_ros_plugins__srv__SetOriginSphericalCoord_Request, dave_gazebo_ros_plugins__srv__SetOriginSphericalCoord_Response]):
     """`dave_gazebo_ros_plugins/srv/SetOriginSphericalCoord_Request`"""
     latitude_deg: float
     longitude_deg: float
@@ -1197,7 +1207,7 @@ class dave_gazebo_ros_plugins__srv__SetOriginSphericalCoord_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetStratifiedCurrentDirection_Request:
+class SetStratifiedCurrentDirection_Request(ServiceRequest[SetStratifiedCurrentDirection_Request, SetStratifiedCurrentDirection_Response]):
     """`dave_gazebo_ros_plugins/srv/SetStratifiedCurrentDirection_Request`"""
     layer: int
     angle: float
@@ -1210,7 +1220,7 @@ class SetStratifiedCurrentDirection_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetStratifiedCurrentVelocity_Request:
+class SetStratifiedCurrentVelocity_Request(ServiceRequest[SetStratifiedCurrentVelocity_Request, SetStratifiedCurrentVelocity_Response]):
     """`dave_gazebo_ros_plugins/srv/SetStratifiedCurrentVelocity_Request`"""
     layer: int
     velocity: float
@@ -1225,7 +1235,7 @@ class SetStratifiedCurrentVelocity_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class dave_gazebo_ros_plugins__srv__TransformFromSphericalCoord_Request:
+class dave_gazebo_ros_plugins__srv__TransformFromSphericalCoord_Request(ServiceRequest[dave_gazebo_ros_plugins__srv__TransformFromSphericalCoord_Request, dave_gazebo_ros_plugins__srv__TransformFromSphericalCoord_Response]):
     """`dave_gazebo_ros_plugins/srv/TransformFromSphericalCoord_Request`"""
     latitude_deg: float
     longitude_deg: float
@@ -1239,7 +1249,7 @@ class dave_gazebo_ros_plugins__srv__TransformFromSphericalCoord_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class dave_gazebo_ros_plugins__srv__TransformToSphericalCoord_Request:
+class dave_gazebo_ros_plugins__srv__TransformToSphericalCoord_Request(ServiceRequest[dave_gazebo_ros_plugins__srv__TransformToSphericalCoord_Request, dave_gazebo_ros_plugins__srv__TransformToSphericalCoord_Response]):
     """`dave_gazebo_ros_plugins/srv/TransformToSphericalCoord_Request`"""
     input: Vector3
     __msgtype__: ClassVar[str]
@@ -1312,7 +1322,7 @@ class diagnostic_msgs__msg__KeyValue:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class AddDiagnostics_Request:
+class AddDiagnostics_Request(ServiceRequest[AddDiagnostics_Request, AddDiagnostics_Response]):
     """`diagnostic_msgs/srv/AddDiagnostics_Request`"""
     load_namespace: str
     __msgtype__: ClassVar[str]
@@ -1325,7 +1335,7 @@ class AddDiagnostics_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SelfTest_Request:
+class SelfTest_Request(ServiceRequest[SelfTest_Request, SelfTest_Response]):
     """`diagnostic_msgs/srv/SelfTest_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -1439,7 +1449,7 @@ class Fibonacci_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class Fibonacci_Goal:
+class Fibonacci_Goal(ActionGoal[Fibonacci_Goal, Fibonacci_Result, Fibonacci_Feedback]):
     """`example_interfaces/action/Fibonacci_Goal`"""
     order: int
     __msgtype__: ClassVar[str]
@@ -1639,7 +1649,7 @@ class WString:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class AddTwoInts_Request:
+class AddTwoInts_Request(ServiceRequest[AddTwoInts_Request, AddTwoInts_Response]):
     """`example_interfaces/srv/AddTwoInts_Request`"""
     a: int
     b: int
@@ -1652,7 +1662,7 @@ class AddTwoInts_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class example_interfaces__srv__SetBool_Request:
+class example_interfaces__srv__SetBool_Request(ServiceRequest[example_interfaces__srv__SetBool_Request, example_interfaces__srv__SetBool_Response]):
     """`example_interfaces/srv/SetBool_Request`"""
     data: bool
     __msgtype__: ClassVar[str]
@@ -1665,7 +1675,7 @@ class example_interfaces__srv__SetBool_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class example_interfaces__srv__Trigger_Request:
+class example_interfaces__srv__Trigger_Request(ServiceRequest[example_interfaces__srv__Trigger_Request, example_interfaces__srv__Trigger_Response]):
     """`example_interfaces/srv/Trigger_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -1808,7 +1818,7 @@ class WorldState:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ApplyBodyWrench_Request:
+class ApplyBodyWrench_Request(ServiceRequest[ApplyBodyWrench_Request, ApplyBodyWrench_Response]):
     """`gazebo_msgs/srv/ApplyBodyWrench_Request`"""
     body_name: str
     reference_frame: str
@@ -1826,7 +1836,7 @@ class ApplyBodyWrench_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ApplyJointEffort_Request:
+class ApplyJointEffort_Request(ServiceRequest[ApplyJointEffort_Request, ApplyJointEffort_Response]):
     """`gazebo_msgs/srv/ApplyJointEffort_Request`"""
     joint_name: str
     effort: float
@@ -1842,7 +1852,7 @@ class ApplyJointEffort_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ApplyLinkWrench_Request:
+class ApplyLinkWrench_Request(ServiceRequest[ApplyLinkWrench_Request, ApplyLinkWrench_Response]):
     """`gazebo_msgs/srv/ApplyLinkWrench_Request`"""
     link_name: str
     reference_frame: str
@@ -1860,7 +1870,7 @@ class ApplyLinkWrench_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class BodyRequest_Request:
+class BodyRequest_Request(ServiceRequest[BodyRequest_Request, BodyRequest_Response]):
     """`gazebo_msgs/srv/BodyRequest_Request`"""
     body_name: str
     __msgtype__: ClassVar[str]
@@ -1872,7 +1882,7 @@ class BodyRequest_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class gazebo_msgs__srv__DeleteEntity_Request:
+class gazebo_msgs__srv__DeleteEntity_Request(ServiceRequest[gazebo_msgs__srv__DeleteEntity_Request, gazebo_msgs__srv__DeleteEntity_Response]):
     """`gazebo_msgs/srv/DeleteEntity_Request`"""
     name: str
     __msgtype__: ClassVar[str]
@@ -1885,7 +1895,7 @@ class gazebo_msgs__srv__DeleteEntity_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class DeleteLight_Request:
+class DeleteLight_Request(ServiceRequest[DeleteLight_Request, DeleteLight_Response]):
     """`gazebo_msgs/srv/DeleteLight_Request`"""
     light_name: str
     __msgtype__: ClassVar[str]
@@ -1898,7 +1908,7 @@ class DeleteLight_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class DeleteModel_Request:
+class DeleteModel_Request(ServiceRequest[DeleteModel_Request, DeleteModel_Response]):
     """`gazebo_msgs/srv/DeleteModel_Request`"""
     model_name: str
     __msgtype__: ClassVar[str]
@@ -1911,7 +1921,7 @@ class DeleteModel_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetEntityState_Request:
+class GetEntityState_Request(ServiceRequest[GetEntityState_Request, GetEntityState_Response]):
     """`gazebo_msgs/srv/GetEntityState_Request`"""
     name: str
     reference_frame: str
@@ -1926,7 +1936,7 @@ class GetEntityState_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetJointProperties_Request:
+class GetJointProperties_Request(ServiceRequest[GetJointProperties_Request, GetJointProperties_Response]):
     """`gazebo_msgs/srv/GetJointProperties_Request`"""
     joint_name: str
     __msgtype__: ClassVar[str]
@@ -1949,7 +1959,7 @@ class GetJointProperties_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetLightProperties_Request:
+class GetLightProperties_Request(ServiceRequest[GetLightProperties_Request, GetLightProperties_Response]):
     """`gazebo_msgs/srv/GetLightProperties_Request`"""
     light_name: str
     __msgtype__: ClassVar[str]
@@ -1966,7 +1976,7 @@ class GetLightProperties_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetLinkProperties_Request:
+class GetLinkProperties_Request(ServiceRequest[GetLinkProperties_Request, GetLinkProperties_Response]):
     """`gazebo_msgs/srv/GetLinkProperties_Request`"""
     link_name: str
     __msgtype__: ClassVar[str]
@@ -1988,7 +1998,7 @@ class GetLinkProperties_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetLinkState_Request:
+class GetLinkState_Request(ServiceRequest[GetLinkState_Request, GetLinkState_Response]):
     """`gazebo_msgs/srv/GetLinkState_Request`"""
     link_name: str
     reference_frame: str
@@ -2003,7 +2013,7 @@ class GetLinkState_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetModelList_Request:
+class GetModelList_Request(ServiceRequest[GetModelList_Request, GetModelList_Response]):
     """`gazebo_msgs/srv/GetModelList_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -2017,7 +2027,7 @@ class GetModelList_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetModelProperties_Request:
+class GetModelProperties_Request(ServiceRequest[GetModelProperties_Request, GetModelProperties_Response]):
     """`gazebo_msgs/srv/GetModelProperties_Request`"""
     model_name: str
     __msgtype__: ClassVar[str]
@@ -2037,7 +2047,7 @@ class GetModelProperties_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetModelState_Request:
+class GetModelState_Request(ServiceRequest[GetModelState_Request, GetModelState_Response]):
     """`gazebo_msgs/srv/GetModelState_Request`"""
     model_name: str
     relative_entity_name: str
@@ -2054,7 +2064,7 @@ class GetModelState_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetPhysicsProperties_Request:
+class GetPhysicsProperties_Request(ServiceRequest[GetPhysicsProperties_Request, GetPhysicsProperties_Response]):
     """`gazebo_msgs/srv/GetPhysicsProperties_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -2072,7 +2082,7 @@ class GetPhysicsProperties_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetWorldProperties_Request:
+class GetWorldProperties_Request(ServiceRequest[GetWorldProperties_Request, GetWorldProperties_Response]):
     """`gazebo_msgs/srv/GetWorldProperties_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -2088,7 +2098,7 @@ class GetWorldProperties_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class JointRequest_Request:
+class JointRequest_Request(ServiceRequest[JointRequest_Request, JointRequest_Response]):
     """`gazebo_msgs/srv/JointRequest_Request`"""
     joint_name: str
     __msgtype__: ClassVar[str]
@@ -2100,7 +2110,7 @@ class JointRequest_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class LinkRequest_Request:
+class LinkRequest_Request(ServiceRequest[LinkRequest_Request, LinkRequest_Response]):
     """`gazebo_msgs/srv/LinkRequest_Request`"""
     link_name: str
     __msgtype__: ClassVar[str]
@@ -2112,7 +2122,7 @@ class LinkRequest_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetEntityState_Request:
+class SetEntityState_Request(ServiceRequest[SetEntityState_Request, SetEntityState_Response]):
     """`gazebo_msgs/srv/SetEntityState_Request`"""
     state: EntityState
     __msgtype__: ClassVar[str]
@@ -2124,7 +2134,7 @@ class SetEntityState_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetJointProperties_Request:
+class SetJointProperties_Request(ServiceRequest[SetJointProperties_Request, SetJointProperties_Response]):
     """`gazebo_msgs/srv/SetJointProperties_Request`"""
     joint_name: str
     ode_joint_config: ODEJointProperties
@@ -2138,7 +2148,7 @@ class SetJointProperties_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetJointTrajectory_Request:
+class SetJointTrajectory_Request(ServiceRequest[SetJointTrajectory_Request, SetJointTrajectory_Response]):
     """`gazebo_msgs/srv/SetJointTrajectory_Request`"""
     model_name: str
     joint_trajectory: JointTrajectory
@@ -2155,7 +2165,7 @@ class SetJointTrajectory_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetLightProperties_Request:
+class SetLightProperties_Request(ServiceRequest[SetLightProperties_Request, SetLightProperties_Response]):
     """`gazebo_msgs/srv/SetLightProperties_Request`"""
     light_name: str
     diffuse: ColorRGBA
@@ -2172,7 +2182,7 @@ class SetLightProperties_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetLinkProperties_Request:
+class SetLinkProperties_Request(ServiceRequest[SetLinkProperties_Request, SetLinkProperties_Response]):
     """`gazebo_msgs/srv/SetLinkProperties_Request`"""
     link_name: str
     com: Pose
@@ -2194,7 +2204,7 @@ class SetLinkProperties_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetLinkState_Request:
+class SetLinkState_Request(ServiceRequest[SetLinkState_Request, SetLinkState_Response]):
     """`gazebo_msgs/srv/SetLinkState_Request`"""
     link_state: LinkState
     __msgtype__: ClassVar[str]
@@ -2207,7 +2217,7 @@ class SetLinkState_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetModelConfiguration_Request:
+class SetModelConfiguration_Request(ServiceRequest[SetModelConfiguration_Request, SetModelConfiguration_Response]):
     """`gazebo_msgs/srv/SetModelConfiguration_Request`"""
     model_name: str
     urdf_param_name: str
@@ -2223,7 +2233,7 @@ class SetModelConfiguration_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetModelState_Request:
+class SetModelState_Request(ServiceRequest[SetModelState_Request, SetModelState_Response]):
     """`gazebo_msgs/srv/SetModelState_Request`"""
     model_state: ModelState
     __msgtype__: ClassVar[str]
@@ -2236,7 +2246,7 @@ class SetModelState_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetPhysicsProperties_Request:
+class SetPhysicsProperties_Request(ServiceRequest[SetPhysicsProperties_Request, SetPhysicsProperties_Response]):
     """`gazebo_msgs/srv/SetPhysicsProperties_Request`"""
     time_step: float
     max_update_rate: float
@@ -2252,7 +2262,7 @@ class SetPhysicsProperties_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class gazebo_msgs__srv__SpawnEntity_Request:
+class gazebo_msgs__srv__SpawnEntity_Request(ServiceRequest[gazebo_msgs__srv__SpawnEntity_Request, gazebo_msgs__srv__SpawnEntity_Response]):
     """`gazebo_msgs/srv/SpawnEntity_Request`"""
     name: str
     xml: str
@@ -2269,7 +2279,7 @@ class gazebo_msgs__srv__SpawnEntity_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SpawnModel_Request:
+class SpawnModel_Request(ServiceRequest[SpawnModel_Request, SpawnModel_Response]):
     """`gazebo_msgs/srv/SpawnModel_Request`"""
     model_name: str
     model_xml: str
@@ -2288,7 +2298,7 @@ class SpawnModel_Response:
 # gazebo_ros_link_attacher
 
 @dataclass
-class Attach_Request:
+class Attach_Request(ServiceRequest[Attach_Request, Attach_Response]):
     """`gazebo_ros_link_attacher/srv/Attach_Request`"""
     model_name_1: str
     link_name_1: str
@@ -2691,7 +2701,7 @@ class AudioNoteSequence_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class AudioNoteSequence_Goal:
+class AudioNoteSequence_Goal(ActionGoal[AudioNoteSequence_Goal, AudioNoteSequence_Result, AudioNoteSequence_Feedback]):
     """`irobot_create_msgs/action/AudioNoteSequence_Goal`"""
     iterations: int
     note_sequence: AudioNoteVector
@@ -2713,7 +2723,7 @@ class Dock_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class Dock_Goal:
+class Dock_Goal(ActionGoal[Dock_Goal, Dock_Result, Dock_Feedback]):
     """`irobot_create_msgs/action/Dock_Goal`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -2731,7 +2741,7 @@ class DriveArc_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class DriveArc_Goal:
+class DriveArc_Goal(ActionGoal[DriveArc_Goal, DriveArc_Result, DriveArc_Feedback]):
     """`irobot_create_msgs/action/DriveArc_Goal`"""
     translate_direction: int
     angle: float
@@ -2754,7 +2764,7 @@ class DriveDistance_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class DriveDistance_Goal:
+class DriveDistance_Goal(ActionGoal[DriveDistance_Goal, DriveDistance_Result, DriveDistance_Feedback]):
     """`irobot_create_msgs/action/DriveDistance_Goal`"""
     distance: float
     max_translation_speed: float
@@ -2773,7 +2783,7 @@ class LedAnimation_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class LedAnimation_Goal:
+class LedAnimation_Goal(ActionGoal[LedAnimation_Goal, LedAnimation_Result, LedAnimation_Feedback]):
     """`irobot_create_msgs/action/LedAnimation_Goal`"""
     animation_type: int
     lightring: LightringLeds
@@ -2800,7 +2810,7 @@ class NavigateToPosition_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class NavigateToPosition_Goal:
+class NavigateToPosition_Goal(ActionGoal[NavigateToPosition_Goal, NavigateToPosition_Result, NavigateToPosition_Feedback]):
     """`irobot_create_msgs/action/NavigateToPosition_Goal`"""
     goal_pose: PoseStamped
     achieve_goal_heading: bool
@@ -2821,7 +2831,7 @@ class RotateAngle_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class RotateAngle_Goal:
+class RotateAngle_Goal(ActionGoal[RotateAngle_Goal, RotateAngle_Result, RotateAngle_Feedback]):
     """`irobot_create_msgs/action/RotateAngle_Goal`"""
     angle: float
     max_rotation_speed: float
@@ -2840,7 +2850,7 @@ class Undock_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class Undock_Goal:
+class Undock_Goal(ActionGoal[Undock_Goal, Undock_Result, Undock_Feedback]):
     """`irobot_create_msgs/action/Undock_Goal`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -2858,7 +2868,7 @@ class WallFollow_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class WallFollow_Goal:
+class WallFollow_Goal(ActionGoal[WallFollow_Goal, WallFollow_Result, WallFollow_Feedback]):
     """`irobot_create_msgs/action/WallFollow_Goal`"""
     follow_side: int
     max_runtime: Duration
@@ -3040,7 +3050,7 @@ class WheelVels:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class EStop_Request:
+class EStop_Request(ServiceRequest[EStop_Request, EStop_Response]):
     """`irobot_create_msgs/srv/EStop_Request`"""
     e_stop_on: bool
     __msgtype__: ClassVar[str]
@@ -3053,7 +3063,7 @@ class EStop_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ResetPose_Request:
+class ResetPose_Request(ServiceRequest[ResetPose_Request, ResetPose_Response]):
     """`irobot_create_msgs/srv/ResetPose_Request`"""
     pose: Pose
     __msgtype__: ClassVar[str]
@@ -3065,7 +3075,7 @@ class ResetPose_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class RobotPower_Request:
+class RobotPower_Request(ServiceRequest[RobotPower_Request, RobotPower_Response]):
     """`irobot_create_msgs/srv/RobotPower_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -3087,7 +3097,7 @@ class AutoDocking_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class AutoDocking_Goal:
+class AutoDocking_Goal(ActionGoal[AutoDocking_Goal, AutoDocking_Result, AutoDocking_Feedback]):
     """`kobuki_msgs/action/AutoDocking_Goal`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -3480,7 +3490,7 @@ class TransitionEvent:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ChangeState_Request:
+class ChangeState_Request(ServiceRequest[ChangeState_Request, ChangeState_Response]):
     """`lifecycle_msgs/srv/ChangeState_Request`"""
     transition: Transition
     __msgtype__: ClassVar[str]
@@ -3492,7 +3502,7 @@ class ChangeState_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetAvailableStates_Request:
+class GetAvailableStates_Request(ServiceRequest[GetAvailableStates_Request, GetAvailableStates_Response]):
     """`lifecycle_msgs/srv/GetAvailableStates_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -3504,7 +3514,7 @@ class GetAvailableStates_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetAvailableTransitions_Request:
+class GetAvailableTransitions_Request(ServiceRequest[GetAvailableTransitions_Request, GetAvailableTransitions_Response]):
     """`lifecycle_msgs/srv/GetAvailableTransitions_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -3516,7 +3526,7 @@ class GetAvailableTransitions_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetState_Request:
+class GetState_Request(ServiceRequest[GetState_Request, GetState_Response]):
     """`lifecycle_msgs/srv/GetState_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -3530,7 +3540,7 @@ class GetState_Response:
 # linkattacher_msgs
 
 @dataclass
-class AttachLink_Request:
+class AttachLink_Request(ServiceRequest[AttachLink_Request, AttachLink_Response]):
     """`linkattacher_msgs/srv/AttachLink_Request`"""
     model1_name: str
     link1_name: str
@@ -3546,7 +3556,7 @@ class AttachLink_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class DetachLink_Request:
+class DetachLink_Request(ServiceRequest[DetachLink_Request, DetachLink_Response]):
     """`linkattacher_msgs/srv/DetachLink_Request`"""
     model1_name: str
     link1_name: str
@@ -3630,7 +3640,7 @@ class ProjectedMapInfo:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetMapROI_Request:
+class GetMapROI_Request(ServiceRequest[GetMapROI_Request, GetMapROI_Response]):
     """`map_msgs/srv/GetMapROI_Request`"""
     x: float
     y: float
@@ -3645,7 +3655,7 @@ class GetMapROI_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetPointMapROI_Request:
+class GetPointMapROI_Request(ServiceRequest[GetPointMapROI_Request, GetPointMapROI_Response]):
     """`map_msgs/srv/GetPointMapROI_Request`"""
     x: float
     y: float
@@ -3663,7 +3673,7 @@ class GetPointMapROI_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetPointMap_Request:
+class GetPointMap_Request(ServiceRequest[GetPointMap_Request, GetPointMap_Response]):
     """`map_msgs/srv/GetPointMap_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -3675,7 +3685,7 @@ class GetPointMap_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ProjectedMapsInfo_Request:
+class ProjectedMapsInfo_Request(ServiceRequest[ProjectedMapsInfo_Request, ProjectedMapsInfo_Response]):
     """`map_msgs/srv/ProjectedMapsInfo_Request`"""
     projected_maps_info: list[ProjectedMapInfo]
     __msgtype__: ClassVar[str]
@@ -3687,7 +3697,7 @@ class ProjectedMapsInfo_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SaveMap_Request:
+class SaveMap_Request(ServiceRequest[SaveMap_Request, SaveMap_Response]):
     """`map_msgs/srv/SaveMap_Request`"""
     filename: String
     __msgtype__: ClassVar[str]
@@ -3699,7 +3709,7 @@ class SaveMap_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetMapProjections_Request:
+class SetMapProjections_Request(ServiceRequest[SetMapProjections_Request, SetMapProjections_Response]):
     """`map_msgs/srv/SetMapProjections_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -4365,7 +4375,7 @@ class WaypointReached:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class CommandAck_Request:
+class CommandAck_Request(ServiceRequest[CommandAck_Request, CommandAck_Response]):
     """`mavros_msgs/srv/CommandAck_Request`"""
     command: int
     result: int
@@ -4381,7 +4391,7 @@ class CommandAck_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class CommandBool_Request:
+class CommandBool_Request(ServiceRequest[CommandBool_Request, CommandBool_Response]):
     """`mavros_msgs/srv/CommandBool_Request`"""
     value: bool
     __msgtype__: ClassVar[str]
@@ -4394,7 +4404,7 @@ class CommandBool_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class CommandHome_Request:
+class CommandHome_Request(ServiceRequest[CommandHome_Request, CommandHome_Response]):
     """`mavros_msgs/srv/CommandHome_Request`"""
     current_gps: bool
     yaw: float
@@ -4411,7 +4421,7 @@ class CommandHome_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class CommandInt_Request:
+class CommandInt_Request(ServiceRequest[CommandInt_Request, CommandInt_Response]):
     """`mavros_msgs/srv/CommandInt_Request`"""
     broadcast: bool
     frame: int
@@ -4434,7 +4444,7 @@ class CommandInt_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class CommandLong_Request:
+class CommandLong_Request(ServiceRequest[CommandLong_Request, CommandLong_Response]):
     """`mavros_msgs/srv/CommandLong_Request`"""
     broadcast: bool
     command: int
@@ -4456,7 +4466,7 @@ class CommandLong_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class CommandTOL_Request:
+class CommandTOL_Request(ServiceRequest[CommandTOL_Request, CommandTOL_Response]):
     """`mavros_msgs/srv/CommandTOL_Request`"""
     min_pitch: float
     yaw: float
@@ -4473,7 +4483,7 @@ class CommandTOL_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class CommandVtolTransition_Request:
+class CommandVtolTransition_Request(ServiceRequest[CommandVtolTransition_Request, CommandVtolTransition_Response]):
     """`mavros_msgs/srv/CommandVtolTransition_Request`"""
     header: Header
     state: int
@@ -4489,7 +4499,7 @@ class CommandVtolTransition_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class MessageInterval_Request:
+class MessageInterval_Request(ServiceRequest[MessageInterval_Request, MessageInterval_Response]):
     """`mavros_msgs/srv/MessageInterval_Request`"""
     message_id: int
     message_rate: float
@@ -4502,7 +4512,7 @@ class MessageInterval_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ParamGet_Request:
+class ParamGet_Request(ServiceRequest[ParamGet_Request, ParamGet_Response]):
     """`mavros_msgs/srv/ParamGet_Request`"""
     param_id: str
     __msgtype__: ClassVar[str]
@@ -4515,7 +4525,7 @@ class ParamGet_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ParamPull_Request:
+class ParamPull_Request(ServiceRequest[ParamPull_Request, ParamPull_Response]):
     """`mavros_msgs/srv/ParamPull_Request`"""
     force_pull: bool
     __msgtype__: ClassVar[str]
@@ -4528,7 +4538,7 @@ class ParamPull_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ParamSetV2_Request:
+class ParamSetV2_Request(ServiceRequest[ParamSetV2_Request, ParamSetV2_Response]):
     """`mavros_msgs/srv/ParamSetV2_Request`"""
     force_set: bool
     param_id: str
@@ -4543,7 +4553,7 @@ class ParamSetV2_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ParamSet_Request:
+class ParamSet_Request(ServiceRequest[ParamSet_Request, ParamSet_Response]):
     """`mavros_msgs/srv/ParamSet_Request`"""
     param_id: str
     value: ParamValue
@@ -4557,7 +4567,7 @@ class ParamSet_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetMavFrame_Request:
+class SetMavFrame_Request(ServiceRequest[SetMavFrame_Request, SetMavFrame_Response]):
     """`mavros_msgs/srv/SetMavFrame_Request`"""
     mav_frame: int
     FRAME_GLOBAL: ClassVar[int] = 0
@@ -4591,7 +4601,7 @@ class SetMavFrame_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetMode_Request:
+class SetMode_Request(ServiceRequest[SetMode_Request, SetMode_Response]):
     """`mavros_msgs/srv/SetMode_Request`"""
     base_mode: int
     custom_mode: str
@@ -4615,7 +4625,7 @@ class SetMode_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class StreamRate_Request:
+class StreamRate_Request(ServiceRequest[StreamRate_Request, StreamRate_Response]):
     """`mavros_msgs/srv/StreamRate_Request`"""
     stream_id: int
     message_rate: int
@@ -4638,7 +4648,7 @@ class StreamRate_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class WaypointClear_Request:
+class WaypointClear_Request(ServiceRequest[WaypointClear_Request, WaypointClear_Response]):
     """`mavros_msgs/srv/WaypointClear_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -4650,7 +4660,7 @@ class WaypointClear_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class WaypointPull_Request:
+class WaypointPull_Request(ServiceRequest[WaypointPull_Request, WaypointPull_Response]):
     """`mavros_msgs/srv/WaypointPull_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -4663,7 +4673,7 @@ class WaypointPull_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class WaypointPush_Request:
+class WaypointPush_Request(ServiceRequest[WaypointPush_Request, WaypointPush_Response]):
     """`mavros_msgs/srv/WaypointPush_Request`"""
     start_index: int
     waypoints: list[Waypoint]
@@ -4677,7 +4687,7 @@ class WaypointPush_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class WaypointSetCurrent_Request:
+class WaypointSetCurrent_Request(ServiceRequest[WaypointSetCurrent_Request, WaypointSetCurrent_Response]):
     """`mavros_msgs/srv/WaypointSetCurrent_Request`"""
     wp_seq: int
     __msgtype__: ClassVar[str]
@@ -4697,7 +4707,7 @@ class MoveBase_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class MoveBase_Goal:
+class MoveBase_Goal(ActionGoal[MoveBase_Goal, MoveBase_Result, MoveBase_Feedback]):
     """`move_base_msgs/action/MoveBase_Goal`"""
     target_pose: PoseStamped
     __msgtype__: ClassVar[str]
@@ -4726,7 +4736,7 @@ class ExecuteTrajectory_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ExecuteTrajectory_Goal:
+class ExecuteTrajectory_Goal(ActionGoal[ExecuteTrajectory_Goal, ExecuteTrajectory_Result, ExecuteTrajectory_Feedback]):
     """`moveit_msgs/action/ExecuteTrajectory_Goal`"""
     trajectory: RobotTrajectory
     controller_names: list[str]
@@ -4745,7 +4755,7 @@ class MoveGroupSequence_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class MoveGroupSequence_Goal:
+class MoveGroupSequence_Goal(ActionGoal[MoveGroupSequence_Goal, MoveGroupSequence_Result, MoveGroupSequence_Feedback]):
     """`moveit_msgs/action/MoveGroupSequence_Goal`"""
     request: MotionSequenceRequest
     planning_options: PlanningOptions
@@ -4764,7 +4774,7 @@ class MoveGroup_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class MoveGroup_Goal:
+class MoveGroup_Goal(ActionGoal[MoveGroup_Goal, MoveGroup_Result, MoveGroup_Feedback]):
     """`moveit_msgs/action/MoveGroup_Goal`"""
     request: MotionPlanRequest
     planning_options: PlanningOptions
@@ -4787,7 +4797,7 @@ class Pickup_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class Pickup_Goal:
+class Pickup_Goal(ActionGoal[Pickup_Goal, Pickup_Result, Pickup_Feedback]):
     """`moveit_msgs/action/Pickup_Goal`"""
     target_name: str
     group_name: str
@@ -4822,7 +4832,7 @@ class Place_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class Place_Goal:
+class Place_Goal(ActionGoal[Place_Goal, Place_Result, Place_Feedback]):
     """`moveit_msgs/action/Place_Goal`"""
     group_name: str
     attached_object_name: str
@@ -5341,7 +5351,7 @@ class WorkspaceParameters:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ApplyPlanningScene_Request:
+class ApplyPlanningScene_Request(ServiceRequest[ApplyPlanningScene_Request, ApplyPlanningScene_Response]):
     """`moveit_msgs/srv/ApplyPlanningScene_Request`"""
     scene: PlanningScene
     __msgtype__: ClassVar[str]
@@ -5353,7 +5363,7 @@ class ApplyPlanningScene_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ChangeControlDimensions_Request:
+class ChangeControlDimensions_Request(ServiceRequest[ChangeControlDimensions_Request, ChangeControlDimensions_Response]):
     """`moveit_msgs/srv/ChangeControlDimensions_Request`"""
     control_x_translation: bool
     control_y_translation: bool
@@ -5370,7 +5380,7 @@ class ChangeControlDimensions_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ChangeDriftDimensions_Request:
+class ChangeDriftDimensions_Request(ServiceRequest[ChangeDriftDimensions_Request, ChangeDriftDimensions_Response]):
     """`moveit_msgs/srv/ChangeDriftDimensions_Request`"""
     drift_x_translation: bool
     drift_y_translation: bool
@@ -5388,7 +5398,7 @@ class ChangeDriftDimensions_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class CheckIfRobotStateExistsInWarehouse_Request:
+class CheckIfRobotStateExistsInWarehouse_Request(ServiceRequest[CheckIfRobotStateExistsInWarehouse_Request, CheckIfRobotStateExistsInWarehouse_Response]):
     """`moveit_msgs/srv/CheckIfRobotStateExistsInWarehouse_Request`"""
     name: str
     robot: str
@@ -5401,7 +5411,7 @@ class CheckIfRobotStateExistsInWarehouse_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class DeleteRobotStateFromWarehouse_Request:
+class DeleteRobotStateFromWarehouse_Request(ServiceRequest[DeleteRobotStateFromWarehouse_Request, DeleteRobotStateFromWarehouse_Response]):
     """`moveit_msgs/srv/DeleteRobotStateFromWarehouse_Request`"""
     name: str
     robot: str
@@ -5414,7 +5424,7 @@ class DeleteRobotStateFromWarehouse_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ExecuteKnownTrajectory_Request:
+class ExecuteKnownTrajectory_Request(ServiceRequest[ExecuteKnownTrajectory_Request, ExecuteKnownTrajectory_Response]):
     """`moveit_msgs/srv/ExecuteKnownTrajectory_Request`"""
     trajectory: RobotTrajectory
     wait_for_execution: bool
@@ -5427,7 +5437,7 @@ class ExecuteKnownTrajectory_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetCartesianPath_Request:
+class GetCartesianPath_Request(ServiceRequest[GetCartesianPath_Request, GetCartesianPath_Response]):
     """`moveit_msgs/srv/GetCartesianPath_Request`"""
     header: Header
     start_state: RobotState
@@ -5456,7 +5466,7 @@ class GetCartesianPath_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetMotionPlan_Request:
+class GetMotionPlan_Request(ServiceRequest[GetMotionPlan_Request, GetMotionPlan_Response]):
     """`moveit_msgs/srv/GetMotionPlan_Request`"""
     motion_plan_request: MotionPlanRequest
     __msgtype__: ClassVar[str]
@@ -5468,7 +5478,7 @@ class GetMotionPlan_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetMotionSequence_Request:
+class GetMotionSequence_Request(ServiceRequest[GetMotionSequence_Request, GetMotionSequence_Response]):
     """`moveit_msgs/srv/GetMotionSequence_Request`"""
     request: MotionSequenceRequest
     __msgtype__: ClassVar[str]
@@ -5480,7 +5490,7 @@ class GetMotionSequence_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetPlannerParams_Request:
+class GetPlannerParams_Request(ServiceRequest[GetPlannerParams_Request, GetPlannerParams_Response]):
     """`moveit_msgs/srv/GetPlannerParams_Request`"""
     pipeline_id: str
     planner_config: str
@@ -5494,7 +5504,7 @@ class GetPlannerParams_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetPlanningScene_Request:
+class GetPlanningScene_Request(ServiceRequest[GetPlanningScene_Request, GetPlanningScene_Response]):
     """`moveit_msgs/srv/GetPlanningScene_Request`"""
     components: PlanningSceneComponents
     __msgtype__: ClassVar[str]
@@ -5506,7 +5516,7 @@ class GetPlanningScene_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetPositionFK_Request:
+class GetPositionFK_Request(ServiceRequest[GetPositionFK_Request, GetPositionFK_Response]):
     """`moveit_msgs/srv/GetPositionFK_Request`"""
     header: Header
     fk_link_names: list[str]
@@ -5522,7 +5532,7 @@ class GetPositionFK_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetPositionIK_Request:
+class GetPositionIK_Request(ServiceRequest[GetPositionIK_Request, GetPositionIK_Response]):
     """`moveit_msgs/srv/GetPositionIK_Request`"""
     ik_request: PositionIKRequest
     __msgtype__: ClassVar[str]
@@ -5535,7 +5545,7 @@ class GetPositionIK_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetRobotStateFromWarehouse_Request:
+class GetRobotStateFromWarehouse_Request(ServiceRequest[GetRobotStateFromWarehouse_Request, GetRobotStateFromWarehouse_Response]):
     """`moveit_msgs/srv/GetRobotStateFromWarehouse_Request`"""
     name: str
     robot: str
@@ -5548,7 +5558,7 @@ class GetRobotStateFromWarehouse_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetStateValidity_Request:
+class GetStateValidity_Request(ServiceRequest[GetStateValidity_Request, GetStateValidity_Response]):
     """`moveit_msgs/srv/GetStateValidity_Request`"""
     robot_state: RobotState
     group_name: str
@@ -5565,7 +5575,7 @@ class GetStateValidity_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GraspPlanning_Request:
+class GraspPlanning_Request(ServiceRequest[GraspPlanning_Request, GraspPlanning_Response]):
     """`moveit_msgs/srv/GraspPlanning_Request`"""
     group_name: str
     target: CollisionObject
@@ -5582,7 +5592,7 @@ class GraspPlanning_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ListRobotStatesInWarehouse_Request:
+class ListRobotStatesInWarehouse_Request(ServiceRequest[ListRobotStatesInWarehouse_Request, ListRobotStatesInWarehouse_Response]):
     """`moveit_msgs/srv/ListRobotStatesInWarehouse_Request`"""
     regex: str
     robot: str
@@ -5595,7 +5605,7 @@ class ListRobotStatesInWarehouse_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class moveit_msgs__srv__LoadMap_Request:
+class moveit_msgs__srv__LoadMap_Request(ServiceRequest[moveit_msgs__srv__LoadMap_Request, moveit_msgs__srv__LoadMap_Response]):
     """`moveit_msgs/srv/LoadMap_Request`"""
     filename: str
     __msgtype__: ClassVar[str]
@@ -5607,7 +5617,7 @@ class moveit_msgs__srv__LoadMap_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class QueryPlannerInterfaces_Request:
+class QueryPlannerInterfaces_Request(ServiceRequest[QueryPlannerInterfaces_Request, QueryPlannerInterfaces_Response]):
     """`moveit_msgs/srv/QueryPlannerInterfaces_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -5619,7 +5629,7 @@ class QueryPlannerInterfaces_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class RenameRobotStateInWarehouse_Request:
+class RenameRobotStateInWarehouse_Request(ServiceRequest[RenameRobotStateInWarehouse_Request, RenameRobotStateInWarehouse_Response]):
     """`moveit_msgs/srv/RenameRobotStateInWarehouse_Request`"""
     old_name: str
     new_name: str
@@ -5633,7 +5643,7 @@ class RenameRobotStateInWarehouse_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class moveit_msgs__srv__SaveMap_Request:
+class moveit_msgs__srv__SaveMap_Request(ServiceRequest[moveit_msgs__srv__SaveMap_Request, moveit_msgs__srv__SaveMap_Response]):
     """`moveit_msgs/srv/SaveMap_Request`"""
     filename: str
     __msgtype__: ClassVar[str]
@@ -5645,7 +5655,7 @@ class moveit_msgs__srv__SaveMap_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SaveRobotStateToWarehouse_Request:
+class SaveRobotStateToWarehouse_Request(ServiceRequest[SaveRobotStateToWarehouse_Request, SaveRobotStateToWarehouse_Response]):
     """`moveit_msgs/srv/SaveRobotStateToWarehouse_Request`"""
     name: str
     robot: str
@@ -5659,7 +5669,7 @@ class SaveRobotStateToWarehouse_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetPlannerParams_Request:
+class SetPlannerParams_Request(ServiceRequest[SetPlannerParams_Request, SetPlannerParams_Response]):
     """`moveit_msgs/srv/SetPlannerParams_Request`"""
     pipeline_id: str
     planner_config: str
@@ -5675,7 +5685,7 @@ class SetPlannerParams_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class UpdatePointcloudOctomap_Request:
+class UpdatePointcloudOctomap_Request(ServiceRequest[UpdatePointcloudOctomap_Request, UpdatePointcloudOctomap_Response]):
     """`moveit_msgs/srv/UpdatePointcloudOctomap_Request`"""
     cloud: PointCloud2
     __msgtype__: ClassVar[str]
@@ -5695,7 +5705,7 @@ class AssistedTeleop_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class AssistedTeleop_Goal:
+class AssistedTeleop_Goal(ActionGoal[AssistedTeleop_Goal, AssistedTeleop_Result, AssistedTeleop_Feedback]):
     """`nav2_msgs/action/AssistedTeleop_Goal`"""
     time_allowance: Duration
     __msgtype__: ClassVar[str]
@@ -5719,7 +5729,7 @@ class BackUp_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class BackUp_Goal:
+class BackUp_Goal(ActionGoal[BackUp_Goal, BackUp_Result, BackUp_Feedback]):
     """`nav2_msgs/action/BackUp_Goal`"""
     target: Point
     speed: float
@@ -5747,7 +5757,7 @@ class ComputePathThroughPoses_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ComputePathThroughPoses_Goal:
+class ComputePathThroughPoses_Goal(ActionGoal[ComputePathThroughPoses_Goal, ComputePathThroughPoses_Result, ComputePathThroughPoses_Feedback]):
     """`nav2_msgs/action/ComputePathThroughPoses_Goal`"""
     goals: list[PoseStamped]
     start: PoseStamped
@@ -5782,7 +5792,7 @@ class ComputePathToPose_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ComputePathToPose_Goal:
+class ComputePathToPose_Goal(ActionGoal[ComputePathToPose_Goal, ComputePathToPose_Result, ComputePathToPose_Feedback]):
     """`nav2_msgs/action/ComputePathToPose_Goal`"""
     goal: PoseStamped
     start: PoseStamped
@@ -5824,7 +5834,7 @@ class DockRobot_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class DockRobot_Goal:
+class DockRobot_Goal(ActionGoal[DockRobot_Goal, DockRobot_Result, DockRobot_Feedback]):
     """`nav2_msgs/action/DockRobot_Goal`"""
     use_dock_id: bool
     dock_id: str
@@ -5858,7 +5868,7 @@ class DriveOnHeading_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class DriveOnHeading_Goal:
+class DriveOnHeading_Goal(ActionGoal[DriveOnHeading_Goal, DriveOnHeading_Result, DriveOnHeading_Feedback]):
     """`nav2_msgs/action/DriveOnHeading_Goal`"""
     target: Point
     speed: float
@@ -5886,7 +5896,7 @@ class DummyBehavior_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class DummyBehavior_Goal:
+class DummyBehavior_Goal(ActionGoal[DummyBehavior_Goal, DummyBehavior_Result, DummyBehavior_Feedback]):
     """`nav2_msgs/action/DummyBehavior_Goal`"""
     command: String
     __msgtype__: ClassVar[str]
@@ -5906,7 +5916,7 @@ class FollowGPSWaypoints_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class FollowGPSWaypoints_Goal:
+class FollowGPSWaypoints_Goal(ActionGoal[FollowGPSWaypoints_Goal, FollowGPSWaypoints_Result, FollowGPSWaypoints_Feedback]):
     """`nav2_msgs/action/FollowGPSWaypoints_Goal`"""
     number_of_loops: int
     goal_index: int
@@ -5932,7 +5942,7 @@ class FollowPath_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class FollowPath_Goal:
+class FollowPath_Goal(ActionGoal[FollowPath_Goal, FollowPath_Result, FollowPath_Feedback]):
     """`nav2_msgs/action/FollowPath_Goal`"""
     path: Path
     controller_id: str
@@ -5964,7 +5974,7 @@ class FollowWaypoints_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class FollowWaypoints_Goal:
+class FollowWaypoints_Goal(ActionGoal[FollowWaypoints_Goal, FollowWaypoints_Result, FollowWaypoints_Feedback]):
     """`nav2_msgs/action/FollowWaypoints_Goal`"""
     number_of_loops: int
     goal_index: int
@@ -5994,7 +6004,7 @@ class NavigateThroughPoses_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class NavigateThroughPoses_Goal:
+class NavigateThroughPoses_Goal(ActionGoal[NavigateThroughPoses_Goal, NavigateThroughPoses_Result, NavigateThroughPoses_Feedback]):
     """`nav2_msgs/action/NavigateThroughPoses_Goal`"""
     poses: list[PoseStamped]
     behavior_tree: str
@@ -6019,7 +6029,7 @@ class NavigateToPose_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class NavigateToPose_Goal:
+class NavigateToPose_Goal(ActionGoal[NavigateToPose_Goal, NavigateToPose_Result, NavigateToPose_Feedback]):
     """`nav2_msgs/action/NavigateToPose_Goal`"""
     pose: PoseStamped
     behavior_tree: str
@@ -6040,7 +6050,7 @@ class SmoothPath_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SmoothPath_Goal:
+class SmoothPath_Goal(ActionGoal[SmoothPath_Goal, SmoothPath_Result, SmoothPath_Feedback]):
     """`nav2_msgs/action/SmoothPath_Goal`"""
     path: Path
     smoother_id: str
@@ -6072,7 +6082,7 @@ class Spin_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class Spin_Goal:
+class Spin_Goal(ActionGoal[Spin_Goal, Spin_Result, Spin_Feedback]):
     """`nav2_msgs/action/Spin_Goal`"""
     target_yaw: float
     time_allowance: Duration
@@ -6098,7 +6108,7 @@ class UndockRobot_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class UndockRobot_Goal:
+class UndockRobot_Goal(ActionGoal[UndockRobot_Goal, UndockRobot_Result, UndockRobot_Feedback]):
     """`nav2_msgs/action/UndockRobot_Goal`"""
     dock_type: str
     max_undocking_time: float
@@ -6123,7 +6133,7 @@ class Wait_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class Wait_Goal:
+class Wait_Goal(ActionGoal[Wait_Goal, Wait_Result, Wait_Feedback]):
     """`nav2_msgs/action/Wait_Goal`"""
     time: Duration
     __msgtype__: ClassVar[str]
@@ -6256,7 +6266,7 @@ class VoxelGrid:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ClearCostmapAroundPose_Request:
+class ClearCostmapAroundPose_Request(ServiceRequest[ClearCostmapAroundPose_Request, ClearCostmapAroundPose_Response]):
     """`nav2_msgs/srv/ClearCostmapAroundPose_Request`"""
     pose: PoseStamped
     reset_distance: float
@@ -6269,7 +6279,7 @@ class ClearCostmapAroundPose_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ClearCostmapAroundRobot_Request:
+class ClearCostmapAroundRobot_Request(ServiceRequest[ClearCostmapAroundRobot_Request, ClearCostmapAroundRobot_Response]):
     """`nav2_msgs/srv/ClearCostmapAroundRobot_Request`"""
     reset_distance: float
     __msgtype__: ClassVar[str]
@@ -6281,7 +6291,7 @@ class ClearCostmapAroundRobot_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ClearCostmapExceptRegion_Request:
+class ClearCostmapExceptRegion_Request(ServiceRequest[ClearCostmapExceptRegion_Request, ClearCostmapExceptRegion_Response]):
     """`nav2_msgs/srv/ClearCostmapExceptRegion_Request`"""
     reset_distance: float
     __msgtype__: ClassVar[str]
@@ -6293,7 +6303,7 @@ class ClearCostmapExceptRegion_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ClearEntireCostmap_Request:
+class ClearEntireCostmap_Request(ServiceRequest[ClearEntireCostmap_Request, ClearEntireCostmap_Response]):
     """`nav2_msgs/srv/ClearEntireCostmap_Request`"""
     request: Empty
     __msgtype__: ClassVar[str]
@@ -6305,7 +6315,7 @@ class ClearEntireCostmap_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetCostmap_Request:
+class GetCostmap_Request(ServiceRequest[GetCostmap_Request, GetCostmap_Response]):
     """`nav2_msgs/srv/GetCostmap_Request`"""
     specs: CostmapMetaData
     __msgtype__: ClassVar[str]
@@ -6317,7 +6327,7 @@ class GetCostmap_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class IsPathValid_Request:
+class IsPathValid_Request(ServiceRequest[IsPathValid_Request, IsPathValid_Response]):
     """`nav2_msgs/srv/IsPathValid_Request`"""
     path: Path
     __msgtype__: ClassVar[str]
@@ -6330,7 +6340,7 @@ class IsPathValid_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class nav2_msgs__srv__LoadMap_Request:
+class nav2_msgs__srv__LoadMap_Request(ServiceRequest[nav2_msgs__srv__LoadMap_Request, nav2_msgs__srv__LoadMap_Response]):
     """`nav2_msgs/srv/LoadMap_Request`"""
     map_url: str
     __msgtype__: ClassVar[str]
@@ -6348,7 +6358,7 @@ class nav2_msgs__srv__LoadMap_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ManageLifecycleNodes_Request:
+class ManageLifecycleNodes_Request(ServiceRequest[ManageLifecycleNodes_Request, ManageLifecycleNodes_Response]):
     """`nav2_msgs/srv/ManageLifecycleNodes_Request`"""
     command: int
     STARTUP: ClassVar[int] = 0
@@ -6367,7 +6377,7 @@ class ManageLifecycleNodes_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ReloadDockDatabase_Request:
+class ReloadDockDatabase_Request(ServiceRequest[ReloadDockDatabase_Request, ReloadDockDatabase_Response]):
     """`nav2_msgs/srv/ReloadDockDatabase_Request`"""
     filepath: str
     __msgtype__: ClassVar[str]
@@ -6379,7 +6389,7 @@ class ReloadDockDatabase_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class nav2_msgs__srv__SaveMap_Request:
+class nav2_msgs__srv__SaveMap_Request(ServiceRequest[nav2_msgs__srv__SaveMap_Request, nav2_msgs__srv__SaveMap_Response]):
     """`nav2_msgs/srv/SaveMap_Request`"""
     map_topic: str
     map_url: str
@@ -6396,7 +6406,7 @@ class nav2_msgs__srv__SaveMap_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetInitialPose_Request:
+class SetInitialPose_Request(ServiceRequest[SetInitialPose_Request, SetInitialPose_Response]):
     """`nav2_msgs/srv/SetInitialPose_Request`"""
     pose: PoseWithCovarianceStamped
     __msgtype__: ClassVar[str]
@@ -6460,7 +6470,7 @@ class Path:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetMap_Request:
+class GetMap_Request(ServiceRequest[GetMap_Request, GetMap_Response]):
     """`nav_msgs/srv/GetMap_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -6472,7 +6482,7 @@ class GetMap_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetPlan_Request:
+class GetPlan_Request(ServiceRequest[GetPlan_Request, GetPlan_Response]):
     """`nav_msgs/srv/GetPlan_Request`"""
     start: PoseStamped
     goal: PoseStamped
@@ -6486,7 +6496,7 @@ class GetPlan_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class LoadMap_Request:
+class LoadMap_Request(ServiceRequest[LoadMap_Request, LoadMap_Response]):
     """`nav_msgs/srv/LoadMap_Request`"""
     map_url: str
     __msgtype__: ClassVar[str]
@@ -6504,7 +6514,7 @@ class LoadMap_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetMap_Request:
+class SetMap_Request(ServiceRequest[SetMap_Request, SetMap_Response]):
     """`nav_msgs/srv/SetMap_Request`"""
     map: OccupancyGrid
     initial_pose: PoseWithCovarianceStamped
@@ -6525,7 +6535,7 @@ class ObjectRecognition_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ObjectRecognition_Goal:
+class ObjectRecognition_Goal(ActionGoal[ObjectRecognition_Goal, ObjectRecognition_Result, ObjectRecognition_Feedback]):
     """`object_recognition_msgs/action/ObjectRecognition_Goal`"""
     use_roi: bool
     filter_limits: NDArray[np.float32]
@@ -6588,7 +6598,7 @@ class TableArray:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetObjectInformation_Request:
+class GetObjectInformation_Request(ServiceRequest[GetObjectInformation_Request, GetObjectInformation_Response]):
     """`object_recognition_msgs/srv/GetObjectInformation_Request`"""
     type: ObjectType
     __msgtype__: ClassVar[str]
@@ -6620,7 +6630,7 @@ class OctomapWithPose:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class BoundingBoxQuery_Request:
+class BoundingBoxQuery_Request(ServiceRequest[BoundingBoxQuery_Request, BoundingBoxQuery_Response]):
     """`octomap_msgs/srv/BoundingBoxQuery_Request`"""
     min: Point
     max: Point
@@ -6633,7 +6643,7 @@ class BoundingBoxQuery_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetOctomap_Request:
+class GetOctomap_Request(ServiceRequest[GetOctomap_Request, GetOctomap_Response]):
     """`octomap_msgs/srv/GetOctomap_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -6661,7 +6671,7 @@ class VacuumGripperState:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class osrf_gear__srv__ConveyorBeltControl_Request:
+class osrf_gear__srv__ConveyorBeltControl_Request(ServiceRequest[osrf_gear__srv__ConveyorBeltControl_Request, osrf_gear__srv__ConveyorBeltControl_Response]):
     """`osrf_gear/srv/ConveyorBeltControl_Request`"""
     power: float
     __msgtype__: ClassVar[str]
@@ -6673,7 +6683,7 @@ class osrf_gear__srv__ConveyorBeltControl_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class VacuumGripperControl_Request:
+class VacuumGripperControl_Request(ServiceRequest[VacuumGripperControl_Request, VacuumGripperControl_Response]):
     """`osrf_gear/srv/VacuumGripperControl_Request`"""
     enable: bool
     __msgtype__: ClassVar[str]
@@ -6693,7 +6703,7 @@ class PlayMotion2Raw_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class PlayMotion2Raw_Goal:
+class PlayMotion2Raw_Goal(ActionGoal[PlayMotion2Raw_Goal, PlayMotion2Raw_Result, PlayMotion2Raw_Feedback]):
     """`play_motion2_msgs/action/PlayMotion2Raw_Goal`"""
     motion: Motion
     skip_planning: bool
@@ -6713,7 +6723,7 @@ class PlayMotion2_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class PlayMotion2_Goal:
+class PlayMotion2_Goal(ActionGoal[PlayMotion2_Goal, PlayMotion2_Result, PlayMotion2_Feedback]):
     """`play_motion2_msgs/action/PlayMotion2_Goal`"""
     motion_name: str
     skip_planning: bool
@@ -6739,7 +6749,7 @@ class Motion:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class AddMotion_Request:
+class AddMotion_Request(ServiceRequest[AddMotion_Request, AddMotion_Response]):
     """`play_motion2_msgs/srv/AddMotion_Request`"""
     motion: Motion
     overwrite: bool
@@ -6752,7 +6762,7 @@ class AddMotion_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetMotionInfo_Request:
+class GetMotionInfo_Request(ServiceRequest[GetMotionInfo_Request, GetMotionInfo_Response]):
     """`play_motion2_msgs/srv/GetMotionInfo_Request`"""
     motion_key: str
     __msgtype__: ClassVar[str]
@@ -6764,7 +6774,7 @@ class GetMotionInfo_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class IsJointListReady_Request:
+class IsJointListReady_Request(ServiceRequest[IsJointListReady_Request, IsJointListReady_Response]):
     """`play_motion2_msgs/srv/IsJointListReady_Request`"""
     joints: list[str]
     __msgtype__: ClassVar[str]
@@ -6776,7 +6786,7 @@ class IsJointListReady_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class IsMotionReady_Request:
+class IsMotionReady_Request(ServiceRequest[IsMotionReady_Request, IsMotionReady_Response]):
     """`play_motion2_msgs/srv/IsMotionReady_Request`"""
     motion_key: str
     __msgtype__: ClassVar[str]
@@ -6788,7 +6798,7 @@ class IsMotionReady_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class play_motion2_msgs__srv__ListMotions_Request:
+class play_motion2_msgs__srv__ListMotions_Request(ServiceRequest[play_motion2_msgs__srv__ListMotions_Request, play_motion2_msgs__srv__ListMotions_Response]):
     """`play_motion2_msgs/srv/ListMotions_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -6800,7 +6810,7 @@ class play_motion2_msgs__srv__ListMotions_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class RemoveMotion_Request:
+class RemoveMotion_Request(ServiceRequest[RemoveMotion_Request, RemoveMotion_Response]):
     """`play_motion2_msgs/srv/RemoveMotion_Request`"""
     motion_key: str
     __msgtype__: ClassVar[str]
@@ -6820,7 +6830,7 @@ class PlayMotion_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class PlayMotion_Goal:
+class PlayMotion_Goal(ActionGoal[PlayMotion_Goal, PlayMotion_Result, PlayMotion_Feedback]):
     """`play_motion_msgs/action/PlayMotion_Goal`"""
     motion_name: str
     skip_planning: bool
@@ -6852,7 +6862,7 @@ class MotionInfo:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class IsAlreadyThere_Request:
+class IsAlreadyThere_Request(ServiceRequest[IsAlreadyThere_Request, IsAlreadyThere_Response]):
     """`play_motion_msgs/srv/IsAlreadyThere_Request`"""
     motion_name: str
     tolerance: float
@@ -6865,7 +6875,7 @@ class IsAlreadyThere_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class play_motion_msgs__srv__ListMotions_Request:
+class play_motion_msgs__srv__ListMotions_Request(ServiceRequest[play_motion_msgs__srv__ListMotions_Request, play_motion_msgs__srv__ListMotions_Response]):
     """`play_motion_msgs/srv/ListMotions_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -7031,7 +7041,7 @@ class SetParametersResult:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class DescribeParameters_Request:
+class DescribeParameters_Request(ServiceRequest[DescribeParameters_Request, DescribeParameters_Response]):
     """`rcl_interfaces/srv/DescribeParameters_Request`"""
     names: list[str]
     __msgtype__: ClassVar[str]
@@ -7043,7 +7053,7 @@ class DescribeParameters_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetLoggerLevels_Request:
+class GetLoggerLevels_Request(ServiceRequest[GetLoggerLevels_Request, GetLoggerLevels_Response]):
     """`rcl_interfaces/srv/GetLoggerLevels_Request`"""
     names: list[str]
     __msgtype__: ClassVar[str]
@@ -7055,7 +7065,7 @@ class GetLoggerLevels_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetParameterTypes_Request:
+class GetParameterTypes_Request(ServiceRequest[GetParameterTypes_Request, GetParameterTypes_Response]):
     """`rcl_interfaces/srv/GetParameterTypes_Request`"""
     names: list[str]
     __msgtype__: ClassVar[str]
@@ -7067,7 +7077,7 @@ class GetParameterTypes_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetParameters_Request:
+class GetParameters_Request(ServiceRequest[GetParameters_Request, GetParameters_Response]):
     """`rcl_interfaces/srv/GetParameters_Request`"""
     names: list[str]
     __msgtype__: ClassVar[str]
@@ -7079,7 +7089,7 @@ class GetParameters_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ListParameters_Request:
+class ListParameters_Request(ServiceRequest[ListParameters_Request, ListParameters_Response]):
     """`rcl_interfaces/srv/ListParameters_Request`"""
     prefixes: list[str]
     depth: int
@@ -7093,7 +7103,7 @@ class ListParameters_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetLoggerLevels_Request:
+class SetLoggerLevels_Request(ServiceRequest[SetLoggerLevels_Request, SetLoggerLevels_Response]):
     """`rcl_interfaces/srv/SetLoggerLevels_Request`"""
     levels: list[LoggerLevel]
     __msgtype__: ClassVar[str]
@@ -7105,7 +7115,7 @@ class SetLoggerLevels_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetParametersAtomically_Request:
+class SetParametersAtomically_Request(ServiceRequest[SetParametersAtomically_Request, SetParametersAtomically_Response]):
     """`rcl_interfaces/srv/SetParametersAtomically_Request`"""
     parameters: list[Parameter]
     __msgtype__: ClassVar[str]
@@ -7117,7 +7127,7 @@ class SetParametersAtomically_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetParameters_Request:
+class SetParameters_Request(ServiceRequest[SetParameters_Request, SetParameters_Response]):
     """`rcl_interfaces/srv/SetParameters_Request`"""
     parameters: list[Parameter]
     __msgtype__: ClassVar[str]
@@ -7508,7 +7518,7 @@ class SpeedLimitedLane:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class LiftClearance_Request:
+class LiftClearance_Request(ServiceRequest[LiftClearance_Request, LiftClearance_Response]):
     """`rmf_fleet_msgs/srv/LiftClearance_Request`"""
     robot_name: str
     lift_name: str
@@ -7624,7 +7634,7 @@ class DynamicEvent_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class DynamicEvent_Goal:
+class DynamicEvent_Goal(ActionGoal[DynamicEvent_Goal, DynamicEvent_Result, DynamicEvent_Feedback]):
     """`rmf_task_msgs/action/DynamicEvent_Goal`"""
     dynamic_event_seq: int
     event_type: int
@@ -7937,7 +7947,7 @@ class Tow:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ApiService_Request:
+class ApiService_Request(ServiceRequest[ApiService_Request, ApiService_Response]):
     """`rmf_task_msgs/srv/ApiService_Request`"""
     json_msg: str
     __msgtype__: ClassVar[str]
@@ -7949,7 +7959,7 @@ class ApiService_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class CancelTask_Request:
+class CancelTask_Request(ServiceRequest[CancelTask_Request, CancelTask_Response]):
     """`rmf_task_msgs/srv/CancelTask_Request`"""
     requester: str
     task_id: str
@@ -7963,7 +7973,7 @@ class CancelTask_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetDispatchStates_Request:
+class GetDispatchStates_Request(ServiceRequest[GetDispatchStates_Request, GetDispatchStates_Response]):
     """`rmf_task_msgs/srv/GetDispatchStates_Request`"""
     task_ids: list[str]
     __msgtype__: ClassVar[str]
@@ -7976,7 +7986,7 @@ class GetDispatchStates_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ReviveTask_Request:
+class ReviveTask_Request(ServiceRequest[ReviveTask_Request, ReviveTask_Response]):
     """`rmf_task_msgs/srv/ReviveTask_Request`"""
     requester: str
     task_id: str
@@ -7989,7 +7999,7 @@ class ReviveTask_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SubmitTask_Request:
+class SubmitTask_Request(ServiceRequest[SubmitTask_Request, SubmitTask_Response]):
     """`rmf_task_msgs/srv/SubmitTask_Request`"""
     requester: str
     description: TaskDescription
@@ -8030,7 +8040,7 @@ class ParticipantEntitiesInfo:
 # robot_localization
 
 @dataclass
-class FromLL_Request:
+class FromLL_Request(ServiceRequest[FromLL_Request, FromLL_Response]):
     """`robot_localization/srv/FromLL_Request`"""
     ll_point: GeoPoint
     __msgtype__: ClassVar[str]
@@ -8042,7 +8052,7 @@ class FromLL_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class robot_localization__srv__GetState_Request:
+class robot_localization__srv__GetState_Request(ServiceRequest[robot_localization__srv__GetState_Request, robot_localization__srv__GetState_Response]):
     """`robot_localization/srv/GetState_Request`"""
     time_stamp: Time
     frame_id: str
@@ -8056,7 +8066,7 @@ class robot_localization__srv__GetState_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetDatum_Request:
+class SetDatum_Request(ServiceRequest[SetDatum_Request, SetDatum_Response]):
     """`robot_localization/srv/SetDatum_Request`"""
     geo_pose: GeoPose
     __msgtype__: ClassVar[str]
@@ -8068,7 +8078,7 @@ class SetDatum_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetPose_Request:
+class SetPose_Request(ServiceRequest[SetPose_Request, SetPose_Response]):
     """`robot_localization/srv/SetPose_Request`"""
     pose: PoseWithCovarianceStamped
     __msgtype__: ClassVar[str]
@@ -8080,7 +8090,7 @@ class SetPose_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetUTMZone_Request:
+class SetUTMZone_Request(ServiceRequest[SetUTMZone_Request, SetUTMZone_Response]):
     """`robot_localization/srv/SetUTMZone_Request`"""
     utm_zone: str
     __msgtype__: ClassVar[str]
@@ -8092,7 +8102,7 @@ class SetUTMZone_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ToLL_Request:
+class ToLL_Request(ServiceRequest[ToLL_Request, ToLL_Response]):
     """`robot_localization/srv/ToLL_Request`"""
     map_point: Point
     __msgtype__: ClassVar[str]
@@ -8104,7 +8114,7 @@ class ToLL_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ToggleFilterProcessing_Request:
+class ToggleFilterProcessing_Request(ServiceRequest[ToggleFilterProcessing_Request, ToggleFilterProcessing_Response]):
     """`robot_localization/srv/ToggleFilterProcessing_Request`"""
     on: bool
     __msgtype__: ClassVar[str]
@@ -8333,7 +8343,7 @@ class WorldStatistics:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ControlWorld_Request:
+class ControlWorld_Request(ServiceRequest[ControlWorld_Request, ControlWorld_Response]):
     """`ros_gz_interfaces/srv/ControlWorld_Request`"""
     world_control: WorldControl
     __msgtype__: ClassVar[str]
@@ -8345,7 +8355,7 @@ class ControlWorld_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ros_gz_interfaces__srv__DeleteEntity_Request:
+class ros_gz_interfaces__srv__DeleteEntity_Request(ServiceRequest[ros_gz_interfaces__srv__DeleteEntity_Request, ros_gz_interfaces__srv__DeleteEntity_Response]):
     """`ros_gz_interfaces/srv/DeleteEntity_Request`"""
     entity: Entity
     __msgtype__: ClassVar[str]
@@ -8357,7 +8367,7 @@ class ros_gz_interfaces__srv__DeleteEntity_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetEntityPose_Request:
+class SetEntityPose_Request(ServiceRequest[SetEntityPose_Request, SetEntityPose_Response]):
     """`ros_gz_interfaces/srv/SetEntityPose_Request`"""
     entity: Entity
     pose: Pose
@@ -8370,7 +8380,7 @@ class SetEntityPose_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ros_gz_interfaces__srv__SpawnEntity_Request:
+class ros_gz_interfaces__srv__SpawnEntity_Request(ServiceRequest[ros_gz_interfaces__srv__SpawnEntity_Request, ros_gz_interfaces__srv__SpawnEntity_Response]):
     """`ros_gz_interfaces/srv/SpawnEntity_Request`"""
     entity_factory: EntityFactory
     __msgtype__: ClassVar[str]
@@ -8409,7 +8419,7 @@ class Logger:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetLoggers_Request:
+class GetLoggers_Request(ServiceRequest[GetLoggers_Request, GetLoggers_Response]):
     """`roscpp/srv/GetLoggers_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -8421,7 +8431,7 @@ class GetLoggers_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetLoggerLevel_Request:
+class SetLoggerLevel_Request(ServiceRequest[SetLoggerLevel_Request, SetLoggerLevel_Response]):
     """`roscpp/srv/SetLoggerLevel_Request`"""
     logger: str
     level: str
@@ -8436,7 +8446,7 @@ class SetLoggerLevel_Response:
 # roscpp_tutorials
 
 @dataclass
-class TwoInts_Request:
+class TwoInts_Request(ServiceRequest[TwoInts_Request, TwoInts_Response]):
     """`roscpp_tutorials/srv/TwoInts_Request`"""
     a: int
     b: int
@@ -8472,7 +8482,7 @@ class HeaderString:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class rospy_tutorials__srv__AddTwoInts_Request:
+class rospy_tutorials__srv__AddTwoInts_Request(ServiceRequest[rospy_tutorials__srv__AddTwoInts_Request, rospy_tutorials__srv__AddTwoInts_Response]):
     """`rospy_tutorials/srv/AddTwoInts_Request`"""
     a: int
     b: int
@@ -8485,7 +8495,7 @@ class rospy_tutorials__srv__AddTwoInts_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class BadTwoInts_Request:
+class BadTwoInts_Request(ServiceRequest[BadTwoInts_Request, BadTwoInts_Response]):
     """`rospy_tutorials/srv/BadTwoInts_Request`"""
     a: int
     b: int
@@ -8824,7 +8834,7 @@ class TimeReference:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetCameraInfo_Request:
+class SetCameraInfo_Request(ServiceRequest[SetCameraInfo_Request, SetCameraInfo_Response]):
     """`sensor_msgs/srv/SetCameraInfo_Request`"""
     camera_info: CameraInfo
     __msgtype__: ClassVar[str]
@@ -8936,7 +8946,7 @@ class Wind:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class EntityRequest_Request:
+class EntityRequest_Request(ServiceRequest[EntityRequest_Request, EntityRequest_Response]):
     """`simkit_msgs/srv/EntityRequest_Request`"""
     entity: Entity
     __msgtype__: ClassVar[str]
@@ -8949,7 +8959,7 @@ class EntityRequest_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GenerateWorldSdf_Request:
+class GenerateWorldSdf_Request(ServiceRequest[GenerateWorldSdf_Request, GenerateWorldSdf_Response]):
     """`simkit_msgs/srv/GenerateWorldSdf_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -8963,7 +8973,7 @@ class GenerateWorldSdf_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetScene_Request:
+class GetScene_Request(ServiceRequest[GetScene_Request, GetScene_Response]):
     """`simkit_msgs/srv/GetScene_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -8982,7 +8992,7 @@ class GetScene_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetEntityPoses_Request:
+class SetEntityPoses_Request(ServiceRequest[SetEntityPoses_Request, SetEntityPoses_Response]):
     """`simkit_msgs/srv/SetEntityPoses_Request`"""
     entities: list[Entity]
     poses: list[Pose]
@@ -8996,7 +9006,7 @@ class SetEntityPoses_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetLight_Request:
+class SetLight_Request(ServiceRequest[SetLight_Request, SetLight_Response]):
     """`simkit_msgs/srv/SetLight_Request`"""
     light: Light
     __msgtype__: ClassVar[str]
@@ -9009,7 +9019,7 @@ class SetLight_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetMaterialColor_Request:
+class SetMaterialColor_Request(ServiceRequest[SetMaterialColor_Request, SetMaterialColor_Response]):
     """`simkit_msgs/srv/SetMaterialColor_Request`"""
     material_color: MaterialColor
     __msgtype__: ClassVar[str]
@@ -9022,7 +9032,7 @@ class SetMaterialColor_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetSphericalCoordinates_Request:
+class SetSphericalCoordinates_Request(ServiceRequest[SetSphericalCoordinates_Request, SetSphericalCoordinates_Response]):
     """`simkit_msgs/srv/SetSphericalCoordinates_Request`"""
     surface_model: int
     latitude_deg: float
@@ -9042,7 +9052,7 @@ class SetSphericalCoordinates_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetWheelSlip_Request:
+class SetWheelSlip_Request(ServiceRequest[SetWheelSlip_Request, SetWheelSlip_Response]):
     """`simkit_msgs/srv/SetWheelSlip_Request`"""
     entity: Entity
     slip_compliance_lateral: float
@@ -9057,7 +9067,7 @@ class SetWheelSlip_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SpawnEntities_Request:
+class SpawnEntities_Request(ServiceRequest[SpawnEntities_Request, SpawnEntities_Response]):
     """`simkit_msgs/srv/SpawnEntities_Request`"""
     entity_factories: list[EntityFactory]
     __msgtype__: ClassVar[str]
@@ -9070,7 +9080,7 @@ class SpawnEntities_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class WindInfo_Request:
+class WindInfo_Request(ServiceRequest[WindInfo_Request, WindInfo_Response]):
     """`simkit_msgs/srv/WindInfo_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -9092,7 +9102,7 @@ class SimulateSteps_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SimulateSteps_Goal:
+class SimulateSteps_Goal(ActionGoal[SimulateSteps_Goal, SimulateSteps_Result, SimulateSteps_Feedback]):
     """`simulation_interfaces/action/SimulateSteps_Goal`"""
     steps: int
     __msgtype__: ClassVar[str]
@@ -9284,7 +9294,7 @@ class WorldResource:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class simulation_interfaces__srv__DeleteEntity_Request:
+class simulation_interfaces__srv__DeleteEntity_Request(ServiceRequest[simulation_interfaces__srv__DeleteEntity_Request, simulation_interfaces__srv__DeleteEntity_Response]):
     """`simulation_interfaces/srv/DeleteEntity_Request`"""
     entity: str
     __msgtype__: ClassVar[str]
@@ -9296,7 +9306,7 @@ class simulation_interfaces__srv__DeleteEntity_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetAvailableWorlds_Request:
+class GetAvailableWorlds_Request(ServiceRequest[GetAvailableWorlds_Request, GetAvailableWorlds_Response]):
     """`simulation_interfaces/srv/GetAvailableWorlds_Request`"""
     additional_sources: list[str]
     filter: TagsFilter
@@ -9313,7 +9323,7 @@ class GetAvailableWorlds_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetCurrentWorld_Request:
+class GetCurrentWorld_Request(ServiceRequest[GetCurrentWorld_Request, GetCurrentWorld_Response]):
     """`simulation_interfaces/srv/GetCurrentWorld_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -9327,7 +9337,7 @@ class GetCurrentWorld_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetEntitiesStates_Request:
+class GetEntitiesStates_Request(ServiceRequest[GetEntitiesStates_Request, GetEntitiesStates_Response]):
     """`simulation_interfaces/srv/GetEntitiesStates_Request`"""
     filters: EntityFilters
     __msgtype__: ClassVar[str]
@@ -9341,7 +9351,7 @@ class GetEntitiesStates_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetEntities_Request:
+class GetEntities_Request(ServiceRequest[GetEntities_Request, GetEntities_Response]):
     """`simulation_interfaces/srv/GetEntities_Request`"""
     filters: EntityFilters
     __msgtype__: ClassVar[str]
@@ -9354,7 +9364,7 @@ class GetEntities_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetEntityBounds_Request:
+class GetEntityBounds_Request(ServiceRequest[GetEntityBounds_Request, GetEntityBounds_Response]):
     """`simulation_interfaces/srv/GetEntityBounds_Request`"""
     entity: str
     __msgtype__: ClassVar[str]
@@ -9367,7 +9377,7 @@ class GetEntityBounds_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetEntityInfo_Request:
+class GetEntityInfo_Request(ServiceRequest[GetEntityInfo_Request, GetEntityInfo_Response]):
     """`simulation_interfaces/srv/GetEntityInfo_Request`"""
     entity: str
     __msgtype__: ClassVar[str]
@@ -9380,7 +9390,7 @@ class GetEntityInfo_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class simulation_interfaces__srv__GetEntityState_Request:
+class simulation_interfaces__srv__GetEntityState_Request(ServiceRequest[simulation_interfaces__srv__GetEntityState_Request, simulation_interfaces__srv__GetEntityState_Response]):
     """`simulation_interfaces/srv/GetEntityState_Request`"""
     entity: str
     __msgtype__: ClassVar[str]
@@ -9393,7 +9403,7 @@ class simulation_interfaces__srv__GetEntityState_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetNamedPoseBounds_Request:
+class GetNamedPoseBounds_Request(ServiceRequest[GetNamedPoseBounds_Request, GetNamedPoseBounds_Response]):
     """`simulation_interfaces/srv/GetNamedPoseBounds_Request`"""
     name: str
     __msgtype__: ClassVar[str]
@@ -9406,7 +9416,7 @@ class GetNamedPoseBounds_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetNamedPoses_Request:
+class GetNamedPoses_Request(ServiceRequest[GetNamedPoses_Request, GetNamedPoses_Response]):
     """`simulation_interfaces/srv/GetNamedPoses_Request`"""
     tags: TagsFilter
     __msgtype__: ClassVar[str]
@@ -9419,7 +9429,7 @@ class GetNamedPoses_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetSimulationState_Request:
+class GetSimulationState_Request(ServiceRequest[GetSimulationState_Request, GetSimulationState_Response]):
     """`simulation_interfaces/srv/GetSimulationState_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -9432,7 +9442,7 @@ class GetSimulationState_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetSimulatorFeatures_Request:
+class GetSimulatorFeatures_Request(ServiceRequest[GetSimulatorFeatures_Request, GetSimulatorFeatures_Response]):
     """`simulation_interfaces/srv/GetSimulatorFeatures_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -9444,7 +9454,7 @@ class GetSimulatorFeatures_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetSpawnables_Request:
+class GetSpawnables_Request(ServiceRequest[GetSpawnables_Request, GetSpawnables_Response]):
     """`simulation_interfaces/srv/GetSpawnables_Request`"""
     sources: list[str]
     __msgtype__: ClassVar[str]
@@ -9457,7 +9467,7 @@ class GetSpawnables_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class LoadWorld_Request:
+class LoadWorld_Request(ServiceRequest[LoadWorld_Request, LoadWorld_Response]):
     """`simulation_interfaces/srv/LoadWorld_Request`"""
     world_resource: Resource
     fail_on_unsupported_element: bool
@@ -9478,7 +9488,7 @@ class LoadWorld_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ResetSimulation_Request:
+class ResetSimulation_Request(ServiceRequest[ResetSimulation_Request, ResetSimulation_Response]):
     """`simulation_interfaces/srv/ResetSimulation_Request`"""
     scope: int
     SCOPE_DEFAULT: ClassVar[int] = 0
@@ -9495,7 +9505,7 @@ class ResetSimulation_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetEntityInfo_Request:
+class SetEntityInfo_Request(ServiceRequest[SetEntityInfo_Request, SetEntityInfo_Response]):
     """`simulation_interfaces/srv/SetEntityInfo_Request`"""
     entity: str
     info: EntityInfo
@@ -9508,7 +9518,7 @@ class SetEntityInfo_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class simulation_interfaces__srv__SetEntityState_Request:
+class simulation_interfaces__srv__SetEntityState_Request(ServiceRequest[simulation_interfaces__srv__SetEntityState_Request, simulation_interfaces__srv__SetEntityState_Response]):
     """`simulation_interfaces/srv/SetEntityState_Request`"""
     entity: str
     state: simulation_interfaces__msg__EntityState
@@ -9525,7 +9535,7 @@ class simulation_interfaces__srv__SetEntityState_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetSimulationState_Request:
+class SetSimulationState_Request(ServiceRequest[SetSimulationState_Request, SetSimulationState_Response]):
     """`simulation_interfaces/srv/SetSimulationState_Request`"""
     state: SimulationState
     __msgtype__: ClassVar[str]
@@ -9540,7 +9550,7 @@ class SetSimulationState_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class simulation_interfaces__srv__SpawnEntities_Request:
+class simulation_interfaces__srv__SpawnEntities_Request(ServiceRequest[simulation_interfaces__srv__SpawnEntities_Request, simulation_interfaces__srv__SpawnEntities_Response]):
     """`simulation_interfaces/srv/SpawnEntities_Request`"""
     spawn_requests: list[SpawnEntity]
     __msgtype__: ClassVar[str]
@@ -9554,7 +9564,7 @@ class simulation_interfaces__srv__SpawnEntities_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class simulation_interfaces__srv__SpawnEntity_Request:
+class simulation_interfaces__srv__SpawnEntity_Request(ServiceRequest[simulation_interfaces__srv__SpawnEntity_Request, simulation_interfaces__srv__SpawnEntity_Response]):
     """`simulation_interfaces/srv/SpawnEntity_Request`"""
     name: str
     allow_renaming: bool
@@ -9580,7 +9590,7 @@ class simulation_interfaces__srv__SpawnEntity_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class StepSimulation_Request:
+class StepSimulation_Request(ServiceRequest[StepSimulation_Request, StepSimulation_Response]):
     """`simulation_interfaces/srv/StepSimulation_Request`"""
     steps: int
     __msgtype__: ClassVar[str]
@@ -9592,7 +9602,7 @@ class StepSimulation_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class UnloadWorld_Request:
+class UnloadWorld_Request(ServiceRequest[UnloadWorld_Request, UnloadWorld_Response]):
     """`simulation_interfaces/srv/UnloadWorld_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -9607,7 +9617,7 @@ class UnloadWorld_Response:
 # slam_toolbox
 
 @dataclass
-class AddSubmap_Request:
+class AddSubmap_Request(ServiceRequest[AddSubmap_Request, AddSubmap_Response]):
     """`slam_toolbox/srv/AddSubmap_Request`"""
     filename: str
     __msgtype__: ClassVar[str]
@@ -9619,7 +9629,7 @@ class AddSubmap_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ClearQueue_Request:
+class ClearQueue_Request(ServiceRequest[ClearQueue_Request, ClearQueue_Response]):
     """`slam_toolbox/srv/ClearQueue_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -9631,7 +9641,7 @@ class ClearQueue_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class Clear_Request:
+class Clear_Request(ServiceRequest[Clear_Request, Clear_Response]):
     """`slam_toolbox/srv/Clear_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -9643,7 +9653,7 @@ class Clear_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class DeserializePoseGraph_Request:
+class DeserializePoseGraph_Request(ServiceRequest[DeserializePoseGraph_Request, DeserializePoseGraph_Response]):
     """`slam_toolbox/srv/DeserializePoseGraph_Request`"""
     filename: str
     match_type: int
@@ -9661,7 +9671,7 @@ class DeserializePoseGraph_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class LoopClosure_Request:
+class LoopClosure_Request(ServiceRequest[LoopClosure_Request, LoopClosure_Response]):
     """`slam_toolbox/srv/LoopClosure_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -9673,7 +9683,7 @@ class LoopClosure_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class MergeMaps_Request:
+class MergeMaps_Request(ServiceRequest[MergeMaps_Request, MergeMaps_Response]):
     """`slam_toolbox/srv/MergeMaps_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -9685,7 +9695,7 @@ class MergeMaps_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class Pause_Request:
+class Pause_Request(ServiceRequest[Pause_Request, Pause_Response]):
     """`slam_toolbox/srv/Pause_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -9697,7 +9707,7 @@ class Pause_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class Reset_Request:
+class Reset_Request(ServiceRequest[Reset_Request, Reset_Response]):
     """`slam_toolbox/srv/Reset_Request`"""
     pause_new_measurements: bool
     __msgtype__: ClassVar[str]
@@ -9710,7 +9720,7 @@ class Reset_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class slam_toolbox__srv__SaveMap_Request:
+class slam_toolbox__srv__SaveMap_Request(ServiceRequest[slam_toolbox__srv__SaveMap_Request, slam_toolbox__srv__SaveMap_Response]):
     """`slam_toolbox/srv/SaveMap_Request`"""
     name: String
     __msgtype__: ClassVar[str]
@@ -9725,7 +9735,7 @@ class slam_toolbox__srv__SaveMap_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SerializePoseGraph_Request:
+class SerializePoseGraph_Request(ServiceRequest[SerializePoseGraph_Request, SerializePoseGraph_Response]):
     """`slam_toolbox/srv/SerializePoseGraph_Request`"""
     filename: str
     __msgtype__: ClassVar[str]
@@ -9739,7 +9749,7 @@ class SerializePoseGraph_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ToggleInteractive_Request:
+class ToggleInteractive_Request(ServiceRequest[ToggleInteractive_Request, ToggleInteractive_Response]):
     """`slam_toolbox/srv/ToggleInteractive_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -9985,7 +9995,7 @@ class UInt8MultiArray:
 # std_srvs
 
 @dataclass
-class Empty_Request:
+class Empty_Request(ServiceRequest[Empty_Request, Empty_Response]):
     """`std_srvs/srv/Empty_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -9997,7 +10007,7 @@ class Empty_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetBool_Request:
+class SetBool_Request(ServiceRequest[SetBool_Request, SetBool_Response]):
     """`std_srvs/srv/SetBool_Request`"""
     data: bool
     __msgtype__: ClassVar[str]
@@ -10010,7 +10020,7 @@ class SetBool_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class Trigger_Request:
+class Trigger_Request(ServiceRequest[Trigger_Request, Trigger_Response]):
     """`std_srvs/srv/Trigger_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -10040,7 +10050,7 @@ class DisparityImage:
 # tf
 
 @dataclass
-class tf__srv__FrameGraph_Request:
+class tf__srv__FrameGraph_Request(ServiceRequest[tf__srv__FrameGraph_Request, tf__srv__FrameGraph_Response]):
     """`tf/srv/FrameGraph_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -10060,7 +10070,7 @@ class LookupTransform_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class LookupTransform_Goal:
+class LookupTransform_Goal(ActionGoal[LookupTransform_Goal, LookupTransform_Result, LookupTransform_Feedback]):
     """`tf2_msgs/action/LookupTransform_Goal`"""
     target_frame: str
     source_frame: str
@@ -10099,7 +10109,7 @@ class TFMessage:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class tf2_msgs__srv__FrameGraph_Request:
+class tf2_msgs__srv__FrameGraph_Request(ServiceRequest[tf2_msgs__srv__FrameGraph_Request, tf2_msgs__srv__FrameGraph_Response]):
     """`tf2_msgs/srv/FrameGraph_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -10126,7 +10136,7 @@ class Packet:
 # topic_tools
 
 @dataclass
-class topic_tools__srv__DemuxAdd_Request:
+class topic_tools__srv__DemuxAdd_Request(ServiceRequest[topic_tools__srv__DemuxAdd_Request, topic_tools__srv__DemuxAdd_Response]):
     """`topic_tools/srv/DemuxAdd_Request`"""
     topic: str
     __msgtype__: ClassVar[str]
@@ -10138,7 +10148,7 @@ class topic_tools__srv__DemuxAdd_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class topic_tools__srv__DemuxDelete_Request:
+class topic_tools__srv__DemuxDelete_Request(ServiceRequest[topic_tools__srv__DemuxDelete_Request, topic_tools__srv__DemuxDelete_Response]):
     """`topic_tools/srv/DemuxDelete_Request`"""
     topic: str
     __msgtype__: ClassVar[str]
@@ -10150,7 +10160,7 @@ class topic_tools__srv__DemuxDelete_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class topic_tools__srv__DemuxList_Request:
+class topic_tools__srv__DemuxList_Request(ServiceRequest[topic_tools__srv__DemuxList_Request, topic_tools__srv__DemuxList_Response]):
     """`topic_tools/srv/DemuxList_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -10162,7 +10172,7 @@ class topic_tools__srv__DemuxList_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class topic_tools__srv__DemuxSelect_Request:
+class topic_tools__srv__DemuxSelect_Request(ServiceRequest[topic_tools__srv__DemuxSelect_Request, topic_tools__srv__DemuxSelect_Response]):
     """`topic_tools/srv/DemuxSelect_Request`"""
     topic: str
     __msgtype__: ClassVar[str]
@@ -10174,7 +10184,7 @@ class topic_tools__srv__DemuxSelect_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class topic_tools__srv__MuxAdd_Request:
+class topic_tools__srv__MuxAdd_Request(ServiceRequest[topic_tools__srv__MuxAdd_Request, topic_tools__srv__MuxAdd_Response]):
     """`topic_tools/srv/MuxAdd_Request`"""
     topic: str
     __msgtype__: ClassVar[str]
@@ -10186,7 +10196,7 @@ class topic_tools__srv__MuxAdd_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class topic_tools__srv__MuxDelete_Request:
+class topic_tools__srv__MuxDelete_Request(ServiceRequest[topic_tools__srv__MuxDelete_Request, topic_tools__srv__MuxDelete_Response]):
     """`topic_tools/srv/MuxDelete_Request`"""
     topic: str
     __msgtype__: ClassVar[str]
@@ -10198,7 +10208,7 @@ class topic_tools__srv__MuxDelete_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class topic_tools__srv__MuxList_Request:
+class topic_tools__srv__MuxList_Request(ServiceRequest[topic_tools__srv__MuxList_Request, topic_tools__srv__MuxList_Response]):
     """`topic_tools/srv/MuxList_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -10210,7 +10220,7 @@ class topic_tools__srv__MuxList_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class topic_tools__srv__MuxSelect_Request:
+class topic_tools__srv__MuxSelect_Request(ServiceRequest[topic_tools__srv__MuxSelect_Request, topic_tools__srv__MuxSelect_Response]):
     """`topic_tools/srv/MuxSelect_Request`"""
     topic: str
     __msgtype__: ClassVar[str]
@@ -10224,7 +10234,7 @@ class topic_tools__srv__MuxSelect_Response:
 # topic_tools_interfaces
 
 @dataclass
-class topic_tools_interfaces__srv__DemuxAdd_Request:
+class topic_tools_interfaces__srv__DemuxAdd_Request(ServiceRequest[topic_tools_interfaces__srv__DemuxAdd_Request, topic_tools_interfaces__srv__DemuxAdd_Response]):
     """`topic_tools_interfaces/srv/DemuxAdd_Request`"""
     topic: str
     __msgtype__: ClassVar[str]
@@ -10236,7 +10246,7 @@ class topic_tools_interfaces__srv__DemuxAdd_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class topic_tools_interfaces__srv__DemuxDelete_Request:
+class topic_tools_interfaces__srv__DemuxDelete_Request(ServiceRequest[topic_tools_interfaces__srv__DemuxDelete_Request, topic_tools_interfaces__srv__DemuxDelete_Response]):
     """`topic_tools_interfaces/srv/DemuxDelete_Request`"""
     topic: str
     __msgtype__: ClassVar[str]
@@ -10248,7 +10258,7 @@ class topic_tools_interfaces__srv__DemuxDelete_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class topic_tools_interfaces__srv__DemuxList_Request:
+class topic_tools_interfaces__srv__DemuxList_Request(ServiceRequest[topic_tools_interfaces__srv__DemuxList_Request, topic_tools_interfaces__srv__DemuxList_Response]):
     """`topic_tools_interfaces/srv/DemuxList_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -10260,7 +10270,7 @@ class topic_tools_interfaces__srv__DemuxList_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class topic_tools_interfaces__srv__DemuxSelect_Request:
+class topic_tools_interfaces__srv__DemuxSelect_Request(ServiceRequest[topic_tools_interfaces__srv__DemuxSelect_Request, topic_tools_interfaces__srv__DemuxSelect_Response]):
     """`topic_tools_interfaces/srv/DemuxSelect_Request`"""
     topic: str
     __msgtype__: ClassVar[str]
@@ -10273,7 +10283,7 @@ class topic_tools_interfaces__srv__DemuxSelect_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class topic_tools_interfaces__srv__MuxAdd_Request:
+class topic_tools_interfaces__srv__MuxAdd_Request(ServiceRequest[topic_tools_interfaces__srv__MuxAdd_Request, topic_tools_interfaces__srv__MuxAdd_Response]):
     """`topic_tools_interfaces/srv/MuxAdd_Request`"""
     topic: str
     __msgtype__: ClassVar[str]
@@ -10285,7 +10295,7 @@ class topic_tools_interfaces__srv__MuxAdd_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class topic_tools_interfaces__srv__MuxDelete_Request:
+class topic_tools_interfaces__srv__MuxDelete_Request(ServiceRequest[topic_tools_interfaces__srv__MuxDelete_Request, topic_tools_interfaces__srv__MuxDelete_Response]):
     """`topic_tools_interfaces/srv/MuxDelete_Request`"""
     topic: str
     __msgtype__: ClassVar[str]
@@ -10297,7 +10307,7 @@ class topic_tools_interfaces__srv__MuxDelete_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class topic_tools_interfaces__srv__MuxList_Request:
+class topic_tools_interfaces__srv__MuxList_Request(ServiceRequest[topic_tools_interfaces__srv__MuxList_Request, topic_tools_interfaces__srv__MuxList_Response]):
     """`topic_tools_interfaces/srv/MuxList_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -10309,7 +10319,7 @@ class topic_tools_interfaces__srv__MuxList_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class topic_tools_interfaces__srv__MuxSelect_Request:
+class topic_tools_interfaces__srv__MuxSelect_Request(ServiceRequest[topic_tools_interfaces__srv__MuxSelect_Request, topic_tools_interfaces__srv__MuxSelect_Response]):
     """`topic_tools_interfaces/srv/MuxSelect_Request`"""
     topic: str
     __msgtype__: ClassVar[str]
@@ -10367,7 +10377,7 @@ class Patrol_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class Patrol_Goal:
+class Patrol_Goal(ActionGoal[Patrol_Goal, Patrol_Result, Patrol_Feedback]):
     """`turtlebot3_msgs/action/Patrol_Goal`"""
     goal: Vector3
     __msgtype__: ClassVar[str]
@@ -10426,7 +10436,7 @@ class turtlebot3_msgs__msg__VersionInfo:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class Dqn_Request:
+class Dqn_Request(ServiceRequest[Dqn_Request, Dqn_Response]):
     """`turtlebot3_msgs/srv/Dqn_Request`"""
     action: int
     init: bool
@@ -10441,7 +10451,7 @@ class Dqn_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class Goal_Request:
+class Goal_Request(ServiceRequest[Goal_Request, Goal_Response]):
     """`turtlebot3_msgs/srv/Goal_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -10455,7 +10465,7 @@ class Goal_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class Sound_Request:
+class Sound_Request(ServiceRequest[Sound_Request, Sound_Response]):
     """`turtlebot3_msgs/srv/Sound_Request`"""
     value: int
     __msgtype__: ClassVar[str]
@@ -10508,7 +10518,7 @@ class turtlesim__action__RotateAbsolute_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class turtlesim__action__RotateAbsolute_Goal:
+class turtlesim__action__RotateAbsolute_Goal(ActionGoal[turtlesim__action__RotateAbsolute_Goal, turtlesim__action__RotateAbsolute_Result, turtlesim__action__RotateAbsolute_Feedback]):
     """`turtlesim/action/RotateAbsolute_Goal`"""
     theta: float
     __msgtype__: ClassVar[str]
@@ -10538,7 +10548,7 @@ class turtlesim__msg__Pose:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class turtlesim__srv__Kill_Request:
+class turtlesim__srv__Kill_Request(ServiceRequest[turtlesim__srv__Kill_Request, turtlesim__srv__Kill_Response]):
     """`turtlesim/srv/Kill_Request`"""
     name: str
     __msgtype__: ClassVar[str]
@@ -10550,7 +10560,7 @@ class turtlesim__srv__Kill_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class turtlesim__srv__SetPen_Request:
+class turtlesim__srv__SetPen_Request(ServiceRequest[turtlesim__srv__SetPen_Request, turtlesim__srv__SetPen_Response]):
     """`turtlesim/srv/SetPen_Request`"""
     r: int
     g: int
@@ -10566,7 +10576,7 @@ class turtlesim__srv__SetPen_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class turtlesim__srv__Spawn_Request:
+class turtlesim__srv__Spawn_Request(ServiceRequest[turtlesim__srv__Spawn_Request, turtlesim__srv__Spawn_Response]):
     """`turtlesim/srv/Spawn_Request`"""
     x: float
     y: float
@@ -10581,7 +10591,7 @@ class turtlesim__srv__Spawn_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class turtlesim__srv__TeleportAbsolute_Request:
+class turtlesim__srv__TeleportAbsolute_Request(ServiceRequest[turtlesim__srv__TeleportAbsolute_Request, turtlesim__srv__TeleportAbsolute_Response]):
     """`turtlesim/srv/TeleportAbsolute_Request`"""
     x: float
     y: float
@@ -10595,7 +10605,7 @@ class turtlesim__srv__TeleportAbsolute_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class turtlesim__srv__TeleportRelative_Request:
+class turtlesim__srv__TeleportRelative_Request(ServiceRequest[turtlesim__srv__TeleportRelative_Request, turtlesim__srv__TeleportRelative_Response]):
     """`turtlesim/srv/TeleportRelative_Request`"""
     linear: float
     angular: float
@@ -10616,7 +10626,7 @@ class turtlesim_msgs__action__RotateAbsolute_Feedback:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class turtlesim_msgs__action__RotateAbsolute_Goal:
+class turtlesim_msgs__action__RotateAbsolute_Goal(ActionGoal[turtlesim_msgs__action__RotateAbsolute_Goal, turtlesim_msgs__action__RotateAbsolute_Result, turtlesim_msgs__action__RotateAbsolute_Feedback]):
     """`turtlesim_msgs/action/RotateAbsolute_Goal`"""
     theta: float
     __msgtype__: ClassVar[str]
@@ -10646,7 +10656,7 @@ class turtlesim_msgs__msg__Pose:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class turtlesim_msgs__srv__Kill_Request:
+class turtlesim_msgs__srv__Kill_Request(ServiceRequest[turtlesim_msgs__srv__Kill_Request, turtlesim_msgs__srv__Kill_Response]):
     """`turtlesim_msgs/srv/Kill_Request`"""
     name: str
     __msgtype__: ClassVar[str]
@@ -10658,7 +10668,7 @@ class turtlesim_msgs__srv__Kill_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class turtlesim_msgs__srv__SetPen_Request:
+class turtlesim_msgs__srv__SetPen_Request(ServiceRequest[turtlesim_msgs__srv__SetPen_Request, turtlesim_msgs__srv__SetPen_Response]):
     """`turtlesim_msgs/srv/SetPen_Request`"""
     r: int
     g: int
@@ -10674,7 +10684,7 @@ class turtlesim_msgs__srv__SetPen_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class turtlesim_msgs__srv__Spawn_Request:
+class turtlesim_msgs__srv__Spawn_Request(ServiceRequest[turtlesim_msgs__srv__Spawn_Request, turtlesim_msgs__srv__Spawn_Response]):
     """`turtlesim_msgs/srv/Spawn_Request`"""
     x: float
     y: float
@@ -10689,7 +10699,7 @@ class turtlesim_msgs__srv__Spawn_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class turtlesim_msgs__srv__TeleportAbsolute_Request:
+class turtlesim_msgs__srv__TeleportAbsolute_Request(ServiceRequest[turtlesim_msgs__srv__TeleportAbsolute_Request, turtlesim_msgs__srv__TeleportAbsolute_Response]):
     """`turtlesim_msgs/srv/TeleportAbsolute_Request`"""
     x: float
     y: float
@@ -10703,7 +10713,7 @@ class turtlesim_msgs__srv__TeleportAbsolute_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class turtlesim_msgs__srv__TeleportRelative_Request:
+class turtlesim_msgs__srv__TeleportRelative_Request(ServiceRequest[turtlesim_msgs__srv__TeleportRelative_Request, turtlesim_msgs__srv__TeleportRelative_Response]):
     """`turtlesim_msgs/srv/TeleportRelative_Request`"""
     linear: float
     angular: float
@@ -10853,7 +10863,7 @@ class TypeSource:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetTypeDescription_Request:
+class GetTypeDescription_Request(ServiceRequest[GetTypeDescription_Request, GetTypeDescription_Response]):
     """`type_description_interfaces/srv/GetTypeDescription_Request`"""
     type_name: str
     type_hash: str
@@ -10985,7 +10995,7 @@ class ToolDataMsg:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetIO_Request:
+class SetIO_Request(ServiceRequest[SetIO_Request, SetIO_Response]):
     """`ur_msgs/srv/SetIO_Request`"""
     fun: int
     pin: int
@@ -11028,7 +11038,7 @@ class SetIO_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetPayload_Request:
+class SetPayload_Request(ServiceRequest[SetPayload_Request, SetPayload_Response]):
     """`ur_msgs/srv/SetPayload_Request`"""
     mass: float
     center_of_gravity: Vector3
@@ -11041,7 +11051,7 @@ class SetPayload_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetSpeedSliderFraction_Request:
+class SetSpeedSliderFraction_Request(ServiceRequest[SetSpeedSliderFraction_Request, SetSpeedSliderFraction_Response]):
     """`ur_msgs/srv/SetSpeedSliderFraction_Request`"""
     speed_slider_fraction: float
     __msgtype__: ClassVar[str]
@@ -11089,7 +11099,7 @@ class UnderwaterObjectModel:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetFloat_Request:
+class GetFloat_Request(ServiceRequest[GetFloat_Request, GetFloat_Response]):
     """`uuv_gazebo_ros_plugins_msgs/srv/GetFloat_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -11101,7 +11111,7 @@ class GetFloat_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetListParam_Request:
+class GetListParam_Request(ServiceRequest[GetListParam_Request, GetListParam_Response]):
     """`uuv_gazebo_ros_plugins_msgs/srv/GetListParam_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -11115,7 +11125,7 @@ class GetListParam_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class uuv_gazebo_ros_plugins_msgs__srv__GetModelProperties_Request:
+class uuv_gazebo_ros_plugins_msgs__srv__GetModelProperties_Request(ServiceRequest[uuv_gazebo_ros_plugins_msgs__srv__GetModelProperties_Request, uuv_gazebo_ros_plugins_msgs__srv__GetModelProperties_Response]):
     """`uuv_gazebo_ros_plugins_msgs/srv/GetModelProperties_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -11128,7 +11138,7 @@ class uuv_gazebo_ros_plugins_msgs__srv__GetModelProperties_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetThrusterConversionFcn_Request:
+class GetThrusterConversionFcn_Request(ServiceRequest[GetThrusterConversionFcn_Request, GetThrusterConversionFcn_Response]):
     """`uuv_gazebo_ros_plugins_msgs/srv/GetThrusterConversionFcn_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -11140,7 +11150,7 @@ class GetThrusterConversionFcn_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetThrusterEfficiency_Request:
+class GetThrusterEfficiency_Request(ServiceRequest[GetThrusterEfficiency_Request, GetThrusterEfficiency_Response]):
     """`uuv_gazebo_ros_plugins_msgs/srv/GetThrusterEfficiency_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -11152,7 +11162,7 @@ class GetThrusterEfficiency_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetThrusterState_Request:
+class GetThrusterState_Request(ServiceRequest[GetThrusterState_Request, GetThrusterState_Response]):
     """`uuv_gazebo_ros_plugins_msgs/srv/GetThrusterState_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -11164,7 +11174,7 @@ class GetThrusterState_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetFloat_Request:
+class SetFloat_Request(ServiceRequest[SetFloat_Request, SetFloat_Response]):
     """`uuv_gazebo_ros_plugins_msgs/srv/SetFloat_Request`"""
     data: float
     __msgtype__: ClassVar[str]
@@ -11177,7 +11187,7 @@ class SetFloat_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetThrusterEfficiency_Request:
+class SetThrusterEfficiency_Request(ServiceRequest[SetThrusterEfficiency_Request, SetThrusterEfficiency_Response]):
     """`uuv_gazebo_ros_plugins_msgs/srv/SetThrusterEfficiency_Request`"""
     efficiency: float
     __msgtype__: ClassVar[str]
@@ -11189,7 +11199,7 @@ class SetThrusterEfficiency_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetThrusterState_Request:
+class SetThrusterState_Request(ServiceRequest[SetThrusterState_Request, SetThrusterState_Response]):
     """`uuv_gazebo_ros_plugins_msgs/srv/SetThrusterState_Request`"""
     on: bool
     __msgtype__: ClassVar[str]
@@ -11201,7 +11211,7 @@ class SetThrusterState_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class SetUseGlobalCurrentVel_Request:
+class SetUseGlobalCurrentVel_Request(ServiceRequest[SetUseGlobalCurrentVel_Request, SetUseGlobalCurrentVel_Response]):
     """`uuv_gazebo_ros_plugins_msgs/srv/SetUseGlobalCurrentVel_Request`"""
     use_global: bool
     __msgtype__: ClassVar[str]
@@ -11273,7 +11283,7 @@ class Salinity:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class ChangeSensorState_Request:
+class ChangeSensorState_Request(ServiceRequest[ChangeSensorState_Request, ChangeSensorState_Response]):
     """`uuv_sensor_ros_plugins_msgs/srv/ChangeSensorState_Request`"""
     on: bool
     __msgtype__: ClassVar[str]
@@ -11288,7 +11298,7 @@ class ChangeSensorState_Response:
 # uuv_world_ros_plugins_msgs
 
 @dataclass
-class uuv_world_ros_plugins_msgs__srv__GetCurrentModel_Request:
+class uuv_world_ros_plugins_msgs__srv__GetCurrentModel_Request(ServiceRequest[uuv_world_ros_plugins_msgs__srv__GetCurrentModel_Request, uuv_world_ros_plugins_msgs__srv__GetCurrentModel_Response]):
     """`uuv_world_ros_plugins_msgs/srv/GetCurrentModel_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -11304,7 +11314,7 @@ class uuv_world_ros_plugins_msgs__srv__GetCurrentModel_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class uuv_world_ros_plugins_msgs__srv__GetOriginSphericalCoord_Request:
+class uuv_world_ros_plugins_msgs__srv__GetOriginSphericalCoord_Request(ServiceRequest[uuv_world_ros_plugins_msgs__srv__GetOriginSphericalCoord_Request, uuv_world_ros_plugins_msgs__srv__GetOriginSphericalCoord_Response]):
     """`uuv_world_ros_plugins_msgs/srv/GetOriginSphericalCoord_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -11318,7 +11328,7 @@ class uuv_world_ros_plugins_msgs__srv__GetOriginSphericalCoord_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class uuv_world_ros_plugins_msgs__srv__SetCurrentDirection_Request:
+class uuv_world_ros_plugins_msgs__srv__SetCurrentDirection_Request(ServiceRequest[uuv_world_ros_plugins_msgs__srv__SetCurrentDirection_Request, uuv_world_ros_plugins_msgs__srv__SetCurrentDirection_Response]):
     """`uuv_world_ros_plugins_msgs/srv/SetCurrentDirection_Request`"""
     angle: float
     __msgtype__: ClassVar[str]
@@ -11330,7 +11340,7 @@ class uuv_world_ros_plugins_msgs__srv__SetCurrentDirection_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class uuv_world_ros_plugins_msgs__srv__SetCurrentModel_Request:
+class uuv_world_ros_plugins_msgs__srv__SetCurrentModel_Request(ServiceRequest[uuv_world_ros_plugins_msgs__srv__SetCurrentModel_Request, uuv_world_ros_plugins_msgs__srv__SetCurrentModel_Response]):
     """`uuv_world_ros_plugins_msgs/srv/SetCurrentModel_Request`"""
     mean: float
     min: float
@@ -11346,7 +11356,7 @@ class uuv_world_ros_plugins_msgs__srv__SetCurrentModel_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class uuv_world_ros_plugins_msgs__srv__SetCurrentVelocity_Request:
+class uuv_world_ros_plugins_msgs__srv__SetCurrentVelocity_Request(ServiceRequest[uuv_world_ros_plugins_msgs__srv__SetCurrentVelocity_Request, uuv_world_ros_plugins_msgs__srv__SetCurrentVelocity_Response]):
     """`uuv_world_ros_plugins_msgs/srv/SetCurrentVelocity_Request`"""
     velocity: float
     horizontal_angle: float
@@ -11360,7 +11370,7 @@ class uuv_world_ros_plugins_msgs__srv__SetCurrentVelocity_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class uuv_world_ros_plugins_msgs__srv__SetOriginSphericalCoord_Request:
+class uuv_world_ros_plugins_msgs__srv__SetOriginSphericalCoord_Request(ServiceRequest[uuv_world_ros_plugins_msgs__srv__SetOriginSphericalCoord_Request, uuv_world_ros_plugins_msgs__srv__SetOriginSphericalCoord_Response]):
     """`uuv_world_ros_plugins_msgs/srv/SetOriginSphericalCoord_Request`"""
     latitude_deg: float
     longitude_deg: float
@@ -11374,7 +11384,7 @@ class uuv_world_ros_plugins_msgs__srv__SetOriginSphericalCoord_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class uuv_world_ros_plugins_msgs__srv__TransformFromSphericalCoord_Request:
+class uuv_world_ros_plugins_msgs__srv__TransformFromSphericalCoord_Request(ServiceRequest[uuv_world_ros_plugins_msgs__srv__TransformFromSphericalCoord_Request, uuv_world_ros_plugins_msgs__srv__TransformFromSphericalCoord_Response]):
     """`uuv_world_ros_plugins_msgs/srv/TransformFromSphericalCoord_Request`"""
     latitude_deg: float
     longitude_deg: float
@@ -11388,7 +11398,7 @@ class uuv_world_ros_plugins_msgs__srv__TransformFromSphericalCoord_Response:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class uuv_world_ros_plugins_msgs__srv__TransformToSphericalCoord_Request:
+class uuv_world_ros_plugins_msgs__srv__TransformToSphericalCoord_Request(ServiceRequest[uuv_world_ros_plugins_msgs__srv__TransformToSphericalCoord_Request, uuv_world_ros_plugins_msgs__srv__TransformToSphericalCoord_Response]):
     """`uuv_world_ros_plugins_msgs/srv/TransformToSphericalCoord_Request`"""
     input: Vector3
     __msgtype__: ClassVar[str]
@@ -11712,7 +11722,7 @@ class UVCoordinate:
     __msgtype__: ClassVar[str]
 
 @dataclass
-class GetInteractiveMarkers_Request:
+class GetInteractiveMarkers_Request(ServiceRequest[GetInteractiveMarkers_Request, GetInteractiveMarkers_Response]):
     """`visualization_msgs/srv/GetInteractiveMarkers_Request`"""
     structure_needs_at_least_one_member: int = 0
     __msgtype__: ClassVar[str]
@@ -11723,3 +11733,1310 @@ class GetInteractiveMarkers_Response:
     sequence_number: int
     markers: list[InteractiveMarker]
     __msgtype__: ClassVar[str]
+
+__all__: list[str] = [
+    "Accel",
+    "AccelStamped",
+    "AccelWithCovariance",
+    "AccelWithCovarianceStamped",
+    "AckermannDrive",
+    "AckermannDriveStamped",
+    "ActuatorControl",
+    "Actuators",
+    "Adcp",
+    "AddDiagnostics_Request",
+    "AddDiagnostics_Response",
+    "AddMotion_Request",
+    "AddMotion_Response",
+    "AddSubmap_Request",
+    "AddSubmap_Response",
+    "AddTwoInts_Request",
+    "AddTwoInts_Response",
+    "AdmittanceControllerState",
+    "AirSpeed",
+    "Alert",
+    "AlertParameter",
+    "AlertResponse",
+    "AllowedCollisionEntry",
+    "AllowedCollisionMatrix",
+    "Altimeter",
+    "Altitude",
+    "Analog",
+    "ApiRequest",
+    "ApiResponse",
+    "ApiService_Request",
+    "ApiService_Response",
+    "ApplyBodyWrench_Request",
+    "ApplyBodyWrench_Response",
+    "ApplyJointEffort_Request",
+    "ApplyJointEffort_Response",
+    "ApplyLinkWrench_Request",
+    "ApplyLinkWrench_Response",
+    "ApplyPlanningScene_Request",
+    "ApplyPlanningScene_Response",
+    "AprilTagDetection",
+    "AprilTagDetectionArray",
+    "ArucoMarkers",
+    "AssemblyState",
+    "Assignment",
+    "AssistedTeleop_Feedback",
+    "AssistedTeleop_Goal",
+    "AssistedTeleop_Result",
+    "AttachLink_Request",
+    "AttachLink_Response",
+    "Attach_Request",
+    "Attach_Response",
+    "AttachedCollisionObject",
+    "AttitudeTarget",
+    "AttitudeThrust",
+    "AudioNote",
+    "AudioNoteSequence_Feedback",
+    "AudioNoteSequence_Goal",
+    "AudioNoteSequence_Result",
+    "AudioNoteVector",
+    "AutoDocking_Feedback",
+    "AutoDocking_Goal",
+    "AutoDocking_Result",
+    "Averaging_Feedback",
+    "Averaging_Goal",
+    "Averaging_Result",
+    "BackUp_Feedback",
+    "BackUp_Goal",
+    "BackUp_Result",
+    "BadTwoInts_Request",
+    "BadTwoInts_Response",
+    "BatteryState",
+    "BeaconState",
+    "Behavior",
+    "BehaviorParameter",
+    "BehaviorTreeLog",
+    "BehaviorTreeStatusChange",
+    "BidNotice",
+    "BidProposal",
+    "BidResponse",
+    "BodyRequest_Request",
+    "BodyRequest_Response",
+    "Bool",
+    "BoundingBox",
+    "BoundingBox2D",
+    "BoundingBox2DArray",
+    "BoundingBox3D",
+    "BoundingBox3DArray",
+    "BoundingBoxQuery_Request",
+    "BoundingBoxQuery_Response",
+    "BoundingVolume",
+    "Bounds",
+    "BumperEvent",
+    "Button",
+    "Byte",
+    "ByteMultiArray",
+    "CameraInfo",
+    "CancelGoal_Request",
+    "CancelGoal_Response",
+    "CancelTask_Request",
+    "CancelTask_Response",
+    "CartesianPoint",
+    "CartesianTrajectory",
+    "CartesianTrajectoryPoint",
+    "ChainConnection",
+    "ChangeControlDimensions_Request",
+    "ChangeControlDimensions_Response",
+    "ChangeDriftDimensions_Request",
+    "ChangeDriftDimensions_Response",
+    "ChangeSensorState_Request",
+    "ChangeSensorState_Response",
+    "ChangeState_Request",
+    "ChangeState_Response",
+    "ChannelFloat32",
+    "Char",
+    "ChargingAssignment",
+    "ChargingAssignments",
+    "CheckIfRobotStateExistsInWarehouse_Request",
+    "CheckIfRobotStateExistsInWarehouse_Response",
+    "ChemicalParticleConcentration",
+    "Classification",
+    "Clean",
+    "ClearCostmapAroundPose_Request",
+    "ClearCostmapAroundPose_Response",
+    "ClearCostmapAroundRobot_Request",
+    "ClearCostmapAroundRobot_Response",
+    "ClearCostmapExceptRegion_Request",
+    "ClearCostmapExceptRegion_Response",
+    "ClearEntireCostmap_Request",
+    "ClearEntireCostmap_Response",
+    "ClearQueue_Request",
+    "ClearQueue_Response",
+    "Clear_Request",
+    "Clear_Response",
+    "CliffEvent",
+    "Clock",
+    "ClosedLanes",
+    "CollisionDetectorState",
+    "CollisionMonitorState",
+    "CollisionObject",
+    "ColorRGBA",
+    "CommandAck_Request",
+    "CommandAck_Response",
+    "CommandBool_Request",
+    "CommandBool_Response",
+    "CommandCode",
+    "CommandHome_Request",
+    "CommandHome_Response",
+    "CommandInt_Request",
+    "CommandInt_Response",
+    "CommandLong_Request",
+    "CommandLong_Response",
+    "CommandTOL_Request",
+    "CommandTOL_Response",
+    "CommandVtolTransition_Request",
+    "CommandVtolTransition_Response",
+    "CompressedImage",
+    "ComputePathThroughPoses_Feedback",
+    "ComputePathThroughPoses_Goal",
+    "ComputePathThroughPoses_Result",
+    "ComputePathToPose_Feedback",
+    "ComputePathToPose_Goal",
+    "ComputePathToPose_Result",
+    "ConfigureController_Request",
+    "ConfigureController_Response",
+    "ConstraintEvalResult",
+    "Constraints",
+    "Contact",
+    "ContactInformation",
+    "ContactState",
+    "Contacts",
+    "ContactsState",
+    "Control",
+    "ControlWorld_Request",
+    "ControlWorld_Response",
+    "ControllerInfo",
+    "ControllerState",
+    "ConveyorBeltControl_Request",
+    "ConveyorBeltControl_Response",
+    "ConveyorBeltState",
+    "CostSource",
+    "Costmap",
+    "CostmapFilterInfo",
+    "CostmapMetaData",
+    "CostmapUpdate",
+    "CustomMsg",
+    "CustomPoint",
+    "DVLTarget",
+    "Dataframe",
+    "DeleteLight_Request",
+    "DeleteLight_Response",
+    "DeleteModel_Request",
+    "DeleteModel_Response",
+    "DeleteRobotStateFromWarehouse_Request",
+    "DeleteRobotStateFromWarehouse_Response",
+    "Delivery",
+    "DeliveryAlert",
+    "DeliveryAlertAction",
+    "DeliveryAlertCategory",
+    "DeliveryAlertTier",
+    "DescribeParameters_Request",
+    "DescribeParameters_Response",
+    "DeserializePoseGraph_Request",
+    "DeserializePoseGraph_Response",
+    "DestinationRequest",
+    "DetachLink_Request",
+    "DetachLink_Response",
+    "Detection2D",
+    "Detection2DArray",
+    "Detection3D",
+    "Detection3DArray",
+    "DiagnosticArray",
+    "DiagnosticStatus",
+    "Digital",
+    "DigitalInputEvent",
+    "DigitalOutput",
+    "DisparityImage",
+    "DispatchAck",
+    "DispatchCommand",
+    "DispatchState",
+    "DispatchStates",
+    "DispenserRequest",
+    "DispenserRequestItem",
+    "DispenserResult",
+    "DispenserState",
+    "DisplayRobotState",
+    "DisplayTrajectory",
+    "Dock",
+    "DockInfraRed",
+    "DockParameter",
+    "DockRobot_Feedback",
+    "DockRobot_Goal",
+    "DockRobot_Result",
+    "DockStatus",
+    "DockSummary",
+    "Dock_Feedback",
+    "Dock_Goal",
+    "Dock_Result",
+    "DoorMode",
+    "DoorRequest",
+    "DoorSessions",
+    "DoorState",
+    "Dqn_Request",
+    "Dqn_Response",
+    "DriveArc_Feedback",
+    "DriveArc_Goal",
+    "DriveArc_Result",
+    "DriveDistance_Feedback",
+    "DriveDistance_Goal",
+    "DriveDistance_Result",
+    "DriveOnHeading_Feedback",
+    "DriveOnHeading_Goal",
+    "DriveOnHeading_Result",
+    "DsHeader",
+    "DummyBehavior_Feedback",
+    "DummyBehavior_Goal",
+    "DummyBehavior_Result",
+    "Duration",
+    "Dvl",
+    "DynamicEventDescription",
+    "DynamicEventStatus",
+    "DynamicEvent_Feedback",
+    "DynamicEvent_Goal",
+    "DynamicEvent_Result",
+    "DynamicInterfaceGroupValues",
+    "DynamicInterfaceValues",
+    "DynamicJointState",
+    "EStop_Request",
+    "EStop_Response",
+    "EmergencySignal",
+    "Empty",
+    "Empty_Request",
+    "Empty_Response",
+    "EndEffectorCommand",
+    "EndEffectorProperties",
+    "EndEffectorState",
+    "EndpointState",
+    "Entity",
+    "EntityCategory",
+    "EntityFactory",
+    "EntityFilters",
+    "EntityInfo",
+    "EntityRequest_Request",
+    "EntityRequest_Response",
+    "EntityState",
+    "EntityWrench",
+    "ExecuteKnownTrajectory_Request",
+    "ExecuteKnownTrajectory_Response",
+    "ExecuteTrajectory_Feedback",
+    "ExecuteTrajectory_Goal",
+    "ExecuteTrajectory_Result",
+    "ExtendedState",
+    "ExternalPower",
+    "Fibonacci_Feedback",
+    "Fibonacci_Goal",
+    "Fibonacci_Result",
+    "Field",
+    "FieldType",
+    "FilteredSensorData",
+    "FleetState",
+    "Float32",
+    "Float32Array",
+    "Float32MultiArray",
+    "Float64",
+    "Float64MultiArray",
+    "FloatStamped",
+    "FloatingPointRange",
+    "Floats",
+    "FluidPressure",
+    "FollowGPSWaypoints_Feedback",
+    "FollowGPSWaypoints_Goal",
+    "FollowGPSWaypoints_Result",
+    "FollowJointTrajectory_Feedback",
+    "FollowJointTrajectory_Goal",
+    "FollowJointTrajectory_Result",
+    "FollowPath_Feedback",
+    "FollowPath_Goal",
+    "FollowPath_Result",
+    "FollowWaypoints_Feedback",
+    "FollowWaypoints_Goal",
+    "FollowWaypoints_Result",
+    "FromLL_Request",
+    "FromLL_Response",
+    "GPSFix",
+    "GPSStatus",
+    "GenerateWorldSdf_Request",
+    "GenerateWorldSdf_Response",
+    "GenericTrajectory",
+    "GeoPath",
+    "GeoPoint",
+    "GeoPointStamped",
+    "GeoPose",
+    "GeoPoseStamped",
+    "GeoPoseWithCovariance",
+    "GeoPoseWithCovarianceStamped",
+    "GetAvailableStates_Request",
+    "GetAvailableStates_Response",
+    "GetAvailableTransitions_Request",
+    "GetAvailableTransitions_Response",
+    "GetAvailableWorlds_Request",
+    "GetAvailableWorlds_Response",
+    "GetCartesianPath_Request",
+    "GetCartesianPath_Response",
+    "GetCostmap_Request",
+    "GetCostmap_Response",
+    "GetCurrentWorld_Request",
+    "GetCurrentWorld_Response",
+    "GetDispatchStates_Request",
+    "GetDispatchStates_Response",
+    "GetEntitiesStates_Request",
+    "GetEntitiesStates_Response",
+    "GetEntities_Request",
+    "GetEntities_Response",
+    "GetEntityBounds_Request",
+    "GetEntityBounds_Response",
+    "GetEntityInfo_Request",
+    "GetEntityInfo_Response",
+    "GetEntityState_Request",
+    "GetEntityState_Response",
+    "GetFloat_Request",
+    "GetFloat_Response",
+    "GetInteractiveMarkers_Request",
+    "GetInteractiveMarkers_Response",
+    "GetJointProperties_Request",
+    "GetJointProperties_Response",
+    "GetLightProperties_Request",
+    "GetLightProperties_Response",
+    "GetLinkProperties_Request",
+    "GetLinkProperties_Response",
+    "GetLinkState_Request",
+    "GetLinkState_Response",
+    "GetListParam_Request",
+    "GetListParam_Response",
+    "GetLoggerLevels_Request",
+    "GetLoggerLevels_Response",
+    "GetLoggers_Request",
+    "GetLoggers_Response",
+    "GetMapROI_Request",
+    "GetMapROI_Response",
+    "GetMap_Request",
+    "GetMap_Response",
+    "GetModelList_Request",
+    "GetModelList_Response",
+    "GetModelProperties_Request",
+    "GetModelProperties_Response",
+    "GetModelState_Request",
+    "GetModelState_Response",
+    "GetMotionInfo_Request",
+    "GetMotionInfo_Response",
+    "GetMotionPlan_Request",
+    "GetMotionPlan_Response",
+    "GetMotionSequence_Request",
+    "GetMotionSequence_Response",
+    "GetNamedPoseBounds_Request",
+    "GetNamedPoseBounds_Response",
+    "GetNamedPoses_Request",
+    "GetNamedPoses_Response",
+    "GetObjectInformation_Request",
+    "GetObjectInformation_Response",
+    "GetOctomap_Request",
+    "GetOctomap_Response",
+    "GetParameterTypes_Request",
+    "GetParameterTypes_Response",
+    "GetParameters_Request",
+    "GetParameters_Response",
+    "GetPhysicsProperties_Request",
+    "GetPhysicsProperties_Response",
+    "GetPlan_Request",
+    "GetPlan_Response",
+    "GetPlannerParams_Request",
+    "GetPlannerParams_Response",
+    "GetPlanningScene_Request",
+    "GetPlanningScene_Response",
+    "GetPointMapROI_Request",
+    "GetPointMapROI_Response",
+    "GetPointMap_Request",
+    "GetPointMap_Response",
+    "GetPositionFK_Request",
+    "GetPositionFK_Response",
+    "GetPositionIK_Request",
+    "GetPositionIK_Response",
+    "GetRobotStateFromWarehouse_Request",
+    "GetRobotStateFromWarehouse_Response",
+    "GetScene_Request",
+    "GetScene_Response",
+    "GetSimulationState_Request",
+    "GetSimulationState_Response",
+    "GetSimulatorFeatures_Request",
+    "GetSimulatorFeatures_Response",
+    "GetSpawnables_Request",
+    "GetSpawnables_Response",
+    "GetStateValidity_Request",
+    "GetStateValidity_Response",
+    "GetState_Request",
+    "GetState_Response",
+    "GetThrusterConversionFcn_Request",
+    "GetThrusterConversionFcn_Response",
+    "GetThrusterEfficiency_Request",
+    "GetThrusterEfficiency_Response",
+    "GetThrusterState_Request",
+    "GetThrusterState_Response",
+    "GetTypeDescription_Request",
+    "GetTypeDescription_Response",
+    "GetWorldProperties_Request",
+    "GetWorldProperties_Response",
+    "Gid",
+    "GlobalPositionTarget",
+    "GoalID",
+    "GoalInfo",
+    "Goal_Request",
+    "Goal_Response",
+    "Goals",
+    "Grasp",
+    "GraspPlanning_Request",
+    "GraspPlanning_Response",
+    "GridCells",
+    "GripperCommand",
+    "GripperCommand_Feedback",
+    "GripperCommand_Goal",
+    "GripperCommand_Result",
+    "GripperTranslation",
+    "HardwareComponentState",
+    "HardwareInterface",
+    "HazardDetection",
+    "HazardDetectionVector",
+    "HeadPanCommand",
+    "HeadState",
+    "Header",
+    "HeaderString",
+    "HomePosition",
+    "IOStates",
+    "Illuminance",
+    "Image",
+    "ImageMarker",
+    "Imu",
+    "IndividualTypeDescription",
+    "Inertia",
+    "InertiaStamped",
+    "IngestorRequest",
+    "IngestorRequestItem",
+    "IngestorResult",
+    "IngestorState",
+    "Int16",
+    "Int16MultiArray",
+    "Int32",
+    "Int32MultiArray",
+    "Int64",
+    "Int64MultiArray",
+    "Int8",
+    "Int8MultiArray",
+    "IntegerRange",
+    "InteractiveMarker",
+    "InteractiveMarkerControl",
+    "InteractiveMarkerFeedback",
+    "InteractiveMarkerInit",
+    "InteractiveMarkerPose",
+    "InteractiveMarkerUpdate",
+    "InterfaceButtons",
+    "InterfaceValue",
+    "InterruptRequest",
+    "IrIntensity",
+    "IrIntensityVector",
+    "IrOpcode",
+    "IsAlreadyThere_Request",
+    "IsAlreadyThere_Response",
+    "IsJointListReady_Request",
+    "IsJointListReady_Response",
+    "IsMotionReady_Request",
+    "IsMotionReady_Response",
+    "IsPathValid_Request",
+    "IsPathValid_Response",
+    "JointCommand",
+    "JointComponentTolerance",
+    "JointConstraint",
+    "JointControllerState",
+    "JointJog",
+    "JointLimits",
+    "JointRequest_Request",
+    "JointRequest_Response",
+    "JointState",
+    "JointTolerance",
+    "JointTrajectory",
+    "JointTrajectoryControllerState",
+    "JointTrajectoryPoint",
+    "JointTrajectory_Feedback",
+    "JointTrajectory_Goal",
+    "JointTrajectory_Result",
+    "JointWrench",
+    "Joy",
+    "JoyFeedback",
+    "JoyFeedbackArray",
+    "KidnapStatus",
+    "KinematicSolverInfo",
+    "LabelInfo",
+    "LandingTarget",
+    "LaneRequest",
+    "LaneStates",
+    "LaserEcho",
+    "LaserScan",
+    "Led",
+    "LedAnimation_Feedback",
+    "LedAnimation_Goal",
+    "LedAnimation_Result",
+    "LedColor",
+    "LiftClearance_Request",
+    "LiftClearance_Response",
+    "LiftRequest",
+    "LiftState",
+    "Light",
+    "LightringLeds",
+    "LinkPadding",
+    "LinkRequest_Request",
+    "LinkRequest_Response",
+    "LinkScale",
+    "LinkState",
+    "LinkStates",
+    "ListControllerTypes_Request",
+    "ListControllerTypes_Response",
+    "ListControllers_Request",
+    "ListControllers_Response",
+    "ListHardwareComponents_Request",
+    "ListHardwareComponents_Response",
+    "ListHardwareInterfaces_Request",
+    "ListHardwareInterfaces_Response",
+    "ListParametersResult",
+    "ListParameters_Request",
+    "ListParameters_Response",
+    "ListRobotStatesInWarehouse_Request",
+    "ListRobotStatesInWarehouse_Response",
+    "LoadController_Request",
+    "LoadController_Response",
+    "LoadMap_Request",
+    "LoadMap_Response",
+    "LoadWorld_Request",
+    "LoadWorld_Response",
+    "Location",
+    "Log",
+    "LogEntry",
+    "LogPlaybackStatistics",
+    "Logger",
+    "LoggerLevel",
+    "LogicalCameraImage",
+    "LogicalCameraImageModel",
+    "LogicalCameraSensor",
+    "LookupTransform_Feedback",
+    "LookupTransform_Goal",
+    "LookupTransform_Result",
+    "Loop",
+    "LoopClosure_Request",
+    "LoopClosure_Response",
+    "MagneticField",
+    "ManageLifecycleNodes_Request",
+    "ManageLifecycleNodes_Response",
+    "ManualControl",
+    "MapMetaData",
+    "Marker",
+    "MarkerArray",
+    "MasterboardDataMsg",
+    "MaterialColor",
+    "MecanumDriveControllerState",
+    "MenuEntry",
+    "MergeMaps_Request",
+    "MergeMaps_Response",
+    "Mesh",
+    "MeshFile",
+    "MeshTriangle",
+    "MessageInterval_Request",
+    "MessageInterval_Response",
+    "MetricsMessage",
+    "MissedWaypoint",
+    "ModeParameter",
+    "ModeRequest",
+    "ModelState",
+    "ModelStates",
+    "Motion",
+    "MotionInfo",
+    "MotionPlanDetailedResponse",
+    "MotionPlanRequest",
+    "MotionPlanResponse",
+    "MotionSequenceItem",
+    "MotionSequenceRequest",
+    "MotionSequenceResponse",
+    "MotorPower",
+    "MountControl",
+    "Mouse",
+    "MoveBase_Feedback",
+    "MoveBase_Goal",
+    "MoveBase_Result",
+    "MoveGroupSequence_Feedback",
+    "MoveGroupSequence_Goal",
+    "MoveGroupSequence_Result",
+    "MoveGroup_Feedback",
+    "MoveGroup_Goal",
+    "MoveGroup_Result",
+    "MoveItErrorCodes",
+    "MultiArrayDimension",
+    "MultiArrayLayout",
+    "MultiDOFCommand",
+    "MultiDOFJointState",
+    "MultiDOFJointTrajectory",
+    "MultiDOFJointTrajectoryPoint",
+    "MultiDOFStateStamped",
+    "MultiEchoLaserScan",
+    "MutexGroupAssignment",
+    "MutexGroupManualRelease",
+    "MutexGroupRequest",
+    "MutexGroupStates",
+    "NamedPose",
+    "NavSatFix",
+    "NavSatStatus",
+    "NavigateThroughPoses_Feedback",
+    "NavigateThroughPoses_Goal",
+    "NavigateThroughPoses_Result",
+    "NavigateToPose_Feedback",
+    "NavigateToPose_Goal",
+    "NavigateToPose_Result",
+    "NavigateToPosition_Feedback",
+    "NavigateToPosition_Goal",
+    "NavigateToPosition_Result",
+    "NodeEntitiesInfo",
+    "ODEJointProperties",
+    "ODEPhysics",
+    "ObjectColor",
+    "ObjectHypothesis",
+    "ObjectHypothesisWithPose",
+    "ObjectInformation",
+    "ObjectRecognition_Feedback",
+    "ObjectRecognition_Goal",
+    "ObjectRecognition_Result",
+    "ObjectType",
+    "OccupancyGrid",
+    "OccupancyGridUpdate",
+    "Octomap",
+    "OctomapWithPose",
+    "Odometry",
+    "OrientationConstraint",
+    "OrientedBoundingBox",
+    "OverrideRCIn",
+    "Packet",
+    "ParallelGripperCommand_Feedback",
+    "ParallelGripperCommand_Goal",
+    "ParallelGripperCommand_Result",
+    "Param",
+    "ParamGet_Request",
+    "ParamGet_Response",
+    "ParamPull_Request",
+    "ParamPull_Response",
+    "ParamSetV2_Request",
+    "ParamSetV2_Response",
+    "ParamSet_Request",
+    "ParamSet_Response",
+    "ParamValue",
+    "ParamVec",
+    "Parameter",
+    "ParameterDescriptor",
+    "ParameterEvent",
+    "ParameterEventDescriptors",
+    "ParameterType",
+    "ParameterValue",
+    "ParticipantEntitiesInfo",
+    "Particle",
+    "ParticleCloud",
+    "Path",
+    "PathRequest",
+    "Patrol_Feedback",
+    "Patrol_Goal",
+    "Patrol_Result",
+    "PauseRequest",
+    "Pause_Request",
+    "Pause_Response",
+    "PerformanceMetrics",
+    "PerformerStatus",
+    "Pickup_Feedback",
+    "Pickup_Goal",
+    "Pickup_Result",
+    "PidState",
+    "PlaceLocation",
+    "Place_Feedback",
+    "Place_Goal",
+    "Place_Result",
+    "Plane",
+    "PlannerInterfaceDescription",
+    "PlannerParams",
+    "PlanningOptions",
+    "PlanningScene",
+    "PlanningSceneComponents",
+    "PlanningSceneWorld",
+    "PlayMotion2Raw_Feedback",
+    "PlayMotion2Raw_Goal",
+    "PlayMotion2Raw_Result",
+    "PlayMotion2_Feedback",
+    "PlayMotion2_Goal",
+    "PlayMotion2_Result",
+    "PlayMotion_Feedback",
+    "PlayMotion_Goal",
+    "PlayMotion_Result",
+    "Point",
+    "Point2D",
+    "Point32",
+    "PointCloud",
+    "PointCloud2",
+    "PointCloud2Update",
+    "PointField",
+    "PointHead_Feedback",
+    "PointHead_Goal",
+    "PointHead_Result",
+    "PointStamped",
+    "Polygon",
+    "PolygonInstance",
+    "PolygonInstanceStamped",
+    "PolygonStamped",
+    "Pose",
+    "Pose2D",
+    "PoseArray",
+    "PoseStamped",
+    "PoseWithCovariance",
+    "PoseWithCovarianceStamped",
+    "PositionConstraint",
+    "PositionIKRequest",
+    "PositionTarget",
+    "PositionWithCovariance",
+    "PositionWithCovarianceStamped",
+    "PowerSystemEvent",
+    "Priority",
+    "ProjectedMap",
+    "ProjectedMapInfo",
+    "ProjectedMapsInfo_Request",
+    "ProjectedMapsInfo_Response",
+    "Quaternion",
+    "QuaternionStamped",
+    "QueryCalibrationState_Request",
+    "QueryCalibrationState_Response",
+    "QueryPlannerInterfaces_Request",
+    "QueryPlannerInterfaces_Response",
+    "QueryTrajectoryState_Request",
+    "QueryTrajectoryState_Response",
+    "RCIn",
+    "RCOut",
+    "Range",
+    "Range3D",
+    "Ranges3D",
+    "RateThrust",
+    "ReadSplitEvent",
+    "RecognizedObject",
+    "RecognizedObjectArray",
+    "RecoveryStatus",
+    "RegionOfInterest",
+    "RelativeHumidity",
+    "ReloadControllerLibraries_Request",
+    "ReloadControllerLibraries_Response",
+    "ReloadDockDatabase_Request",
+    "ReloadDockDatabase_Response",
+    "RemoveMotion_Request",
+    "RemoveMotion_Response",
+    "RenameRobotStateInWarehouse_Request",
+    "RenameRobotStateInWarehouse_Response",
+    "ResetPose_Request",
+    "ResetPose_Response",
+    "ResetSimulation_Request",
+    "ResetSimulation_Response",
+    "Reset_Request",
+    "Reset_Response",
+    "Resource",
+    "Result",
+    "ReviveTask_Request",
+    "ReviveTask_Response",
+    "RobotCollision",
+    "RobotMode",
+    "RobotModeDataMsg",
+    "RobotPower_Request",
+    "RobotPower_Response",
+    "RobotState",
+    "RobotStateEvent",
+    "RobotStateRTMsg",
+    "RobotTrajectory",
+    "RollPitchYawrateThrust",
+    "RotateAngle_Feedback",
+    "RotateAngle_Goal",
+    "RotateAngle_Result",
+    "SEAJointState",
+    "Salinity",
+    "SaveMap_Request",
+    "SaveMap_Response",
+    "SaveRobotStateToWarehouse_Request",
+    "SaveRobotStateToWarehouse_Response",
+    "ScanAngle",
+    "SceneEntity",
+    "SelfTest_Request",
+    "SelfTest_Response",
+    "SensorPerformanceMetric",
+    "SensorState",
+    "SerializePoseGraph_Request",
+    "SerializePoseGraph_Response",
+    "ServiceEventInfo",
+    "Session",
+    "SetBool_Request",
+    "SetBool_Response",
+    "SetCameraInfo_Request",
+    "SetCameraInfo_Response",
+    "SetDatum_Request",
+    "SetDatum_Response",
+    "SetEntityInfo_Request",
+    "SetEntityInfo_Response",
+    "SetEntityPose_Request",
+    "SetEntityPose_Response",
+    "SetEntityPoses_Request",
+    "SetEntityPoses_Response",
+    "SetEntityState_Request",
+    "SetEntityState_Response",
+    "SetFloat_Request",
+    "SetFloat_Response",
+    "SetHardwareComponentState_Request",
+    "SetHardwareComponentState_Response",
+    "SetIO_Request",
+    "SetIO_Response",
+    "SetInitialPose_Request",
+    "SetInitialPose_Response",
+    "SetJointProperties_Request",
+    "SetJointProperties_Response",
+    "SetJointTrajectory_Request",
+    "SetJointTrajectory_Response",
+    "SetLightProperties_Request",
+    "SetLightProperties_Response",
+    "SetLight_Request",
+    "SetLight_Response",
+    "SetLinkProperties_Request",
+    "SetLinkProperties_Response",
+    "SetLinkState_Request",
+    "SetLinkState_Response",
+    "SetLoggerLevel_Request",
+    "SetLoggerLevel_Response",
+    "SetLoggerLevelsResult",
+    "SetLoggerLevels_Request",
+    "SetLoggerLevels_Response",
+    "SetMapProjections_Request",
+    "SetMapProjections_Response",
+    "SetMap_Request",
+    "SetMap_Response",
+    "SetMaterialColor_Request",
+    "SetMaterialColor_Response",
+    "SetMavFrame_Request",
+    "SetMavFrame_Response",
+    "SetMode_Request",
+    "SetMode_Response",
+    "SetModelConfiguration_Request",
+    "SetModelConfiguration_Response",
+    "SetModelState_Request",
+    "SetModelState_Response",
+    "SetParametersAtomically_Request",
+    "SetParametersAtomically_Response",
+    "SetParametersResult",
+    "SetParameters_Request",
+    "SetParameters_Response",
+    "SetPayload_Request",
+    "SetPayload_Response",
+    "SetPhysicsProperties_Request",
+    "SetPhysicsProperties_Response",
+    "SetPlannerParams_Request",
+    "SetPlannerParams_Response",
+    "SetPose_Request",
+    "SetPose_Response",
+    "SetSimulationState_Request",
+    "SetSimulationState_Response",
+    "SetSpeedSliderFraction_Request",
+    "SetSpeedSliderFraction_Response",
+    "SetSphericalCoordinates_Request",
+    "SetSphericalCoordinates_Response",
+    "SetStratifiedCurrentDirection_Request",
+    "SetStratifiedCurrentDirection_Response",
+    "SetStratifiedCurrentVelocity_Request",
+    "SetStratifiedCurrentVelocity_Response",
+    "SetThrusterEfficiency_Request",
+    "SetThrusterEfficiency_Response",
+    "SetThrusterState_Request",
+    "SetThrusterState_Response",
+    "SetUTMZone_Request",
+    "SetUTMZone_Response",
+    "SetUseGlobalCurrentVel_Request",
+    "SetUseGlobalCurrentVel_Response",
+    "SetWheelSlip_Request",
+    "SetWheelSlip_Response",
+    "SimulateSteps_Feedback",
+    "SimulateSteps_Goal",
+    "SimulateSteps_Result",
+    "SimulationState",
+    "SimulatorFeatures",
+    "SingleDOFState",
+    "SingleDOFStateStamped",
+    "SingleJointPosition_Feedback",
+    "SingleJointPosition_Goal",
+    "SingleJointPosition_Result",
+    "SlipStatus",
+    "SmoothPath_Feedback",
+    "SmoothPath_Goal",
+    "SmoothPath_Result",
+    "SolidPrimitive",
+    "SolvePositionIK_Request",
+    "SolvePositionIK_Response",
+    "Sound_Request",
+    "Sound_Response",
+    "SpawnEntities_Request",
+    "SpawnEntities_Response",
+    "SpawnEntity",
+    "SpawnModel_Request",
+    "SpawnModel_Response",
+    "SpawnResult",
+    "Spawnable",
+    "SpeedLimit",
+    "SpeedLimitRequest",
+    "SpeedLimitedLane",
+    "SpeedScalingFactor",
+    "Spin_Feedback",
+    "Spin_Goal",
+    "Spin_Result",
+    "State",
+    "Station",
+    "StatisticDataPoint",
+    "StatisticDataType",
+    "Status",
+    "StatusText",
+    "SteeringControllerStatus",
+    "StepSimulation_Request",
+    "StepSimulation_Response",
+    "StopStatus",
+    "StratifiedCurrentDatabase",
+    "StratifiedCurrentVelocity",
+    "StreamRate_Request",
+    "StreamRate_Response",
+    "String",
+    "SubmitTask_Request",
+    "SubmitTask_Response",
+    "SupervisorHeartbeat",
+    "SwitchController_Request",
+    "SwitchController_Response",
+    "SysStatus",
+    "TF2Error",
+    "TFMessage",
+    "Table",
+    "TableArray",
+    "TagsFilter",
+    "TaskDescription",
+    "TaskProfile",
+    "TaskSummary",
+    "TaskType",
+    "Tasks",
+    "Temperature",
+    "TestRequest_Feedback",
+    "TestRequest_Goal",
+    "TestRequest_Result",
+    "Test_Feedback",
+    "Test_Goal",
+    "Test_Result",
+    "Thrust",
+    "ThrusterConversionFcn",
+    "Time",
+    "TimeReference",
+    "TimesyncStatus",
+    "ToLL_Request",
+    "ToLL_Response",
+    "ToggleFilterProcessing_Request",
+    "ToggleFilterProcessing_Response",
+    "ToggleInteractive_Request",
+    "ToggleInteractive_Response",
+    "ToolDataMsg",
+    "TorqueThrust",
+    "Tow",
+    "TrajectoryConstraints",
+    "Transform",
+    "TransformStamped",
+    "Transition",
+    "TransitionDescription",
+    "TransitionEvent",
+    "Trigger_Request",
+    "Trigger_Response",
+    "Twist",
+    "TwistStamped",
+    "TwistWithCovariance",
+    "TwistWithCovarianceStamped",
+    "TwoInts_Feedback",
+    "TwoInts_Goal",
+    "TwoInts_Request",
+    "TwoInts_Response",
+    "TwoInts_Result",
+    "TypeDescription",
+    "TypeSource",
+    "UInt16",
+    "UInt16MultiArray",
+    "UInt32",
+    "UInt32MultiArray",
+    "UInt64",
+    "UInt64MultiArray",
+    "UInt8",
+    "UInt8MultiArray",
+    "UUID",
+    "UVCoordinate",
+    "UnderwaterObjectModel",
+    "UndockRobot_Feedback",
+    "UndockRobot_Goal",
+    "UndockRobot_Result",
+    "Undock_Feedback",
+    "Undock_Goal",
+    "Undock_Result",
+    "UnloadController_Request",
+    "UnloadController_Response",
+    "UnloadWorld_Request",
+    "UnloadWorld_Response",
+    "UpdatePointcloudOctomap_Request",
+    "UpdatePointcloudOctomap_Response",
+    "UserButton",
+    "UserDisplay",
+    "UserLed",
+    "VacuumGripperControl_Request",
+    "VacuumGripperControl_Response",
+    "VacuumGripperState",
+    "Vector3",
+    "Vector3Stamped",
+    "VelocityStamped",
+    "VfrHud",
+    "VisibilityConstraint",
+    "VisionClass",
+    "VisionInfo",
+    "VoxelGrid",
+    "WString",
+    "Wait_Feedback",
+    "Wait_Goal",
+    "Wait_Result",
+    "WallFollow_Feedback",
+    "WallFollow_Goal",
+    "WallFollow_Result",
+    "WaterCurrentProfile",
+    "Waypoint",
+    "WaypointClear_Request",
+    "WaypointClear_Response",
+    "WaypointList",
+    "WaypointPull_Request",
+    "WaypointPull_Response",
+    "WaypointPush_Request",
+    "WaypointPush_Response",
+    "WaypointReached",
+    "WaypointSetCurrent_Request",
+    "WaypointSetCurrent_Response",
+    "WheelDropEvent",
+    "WheelSlip",
+    "WheelStatus",
+    "WheelTicks",
+    "WheelVels",
+    "Wind",
+    "WindInfo_Request",
+    "WindInfo_Response",
+    "WorkspaceParameters",
+    "WorldControl",
+    "WorldReset",
+    "WorldResource",
+    "WorldState",
+    "WorldStatistics",
+    "Wrench",
+    "WrenchStamped",
+    "WriteSplitEvent",
+    "action_msgs__msg__GoalStatus",
+    "action_msgs__msg__GoalStatusArray",
+    "action_tutorials_interfaces__action__Fibonacci_Feedback",
+    "action_tutorials_interfaces__action__Fibonacci_Goal",
+    "action_tutorials_interfaces__action__Fibonacci_Result",
+    "actionlib_msgs__msg__GoalStatus",
+    "actionlib_msgs__msg__GoalStatusArray",
+    "actionlib_tutorials__action__Fibonacci_Feedback",
+    "actionlib_tutorials__action__Fibonacci_Goal",
+    "actionlib_tutorials__action__Fibonacci_Result",
+    "apriltag_msgs__msg__Point",
+    "aruco_msgs__msg__Marker",
+    "aruco_msgs__msg__MarkerArray",
+    "dave_gazebo_ros_plugins__srv__GetCurrentModel_Request",
+    "dave_gazebo_ros_plugins__srv__GetCurrentModel_Response",
+    "dave_gazebo_ros_plugins__srv__GetOriginSphericalCoord_Request",
+    "dave_gazebo_ros_plugins__srv__GetOriginSphericalCoord_Response",
+    "dave_gazebo_ros_plugins__srv__SetCurrentDirection_Request",
+    "dave_gazebo_ros_plugins__srv__SetCurrentDirection_Response",
+    "dave_gazebo_ros_plugins__srv__SetCurrentModel_Request",
+    "dave_gazebo_ros_plugins__srv__SetCurrentModel_Response",
+    "dave_gazebo_ros_plugins__srv__SetCurrentVelocity_Request",
+    "dave_gazebo_ros_plugins__srv__SetCurrentVelocity_Response",
+    "dave_gazebo_ros_plugins__srv__SetOriginSphericalCoord_Request",
+    "dave_gazebo_ros_plugins__srv__SetOriginSphericalCoord_Response",
+    "dave_gazebo_ros_plugins__srv__TransformFromSphericalCoord_Request",
+    "dave_gazebo_ros_plugins__srv__TransformFromSphericalCoord_Response",
+    "dave_gazebo_ros_plugins__srv__TransformToSphericalCoord_Request",
+    "dave_gazebo_ros_plugins__srv__TransformToSphericalCoord_Response",
+    "dave_interfaces__msg__DVL",
+    "dave_interfaces__msg__DVLBeam",
+    "diagnostic_msgs__msg__KeyValue",
+    "example_interfaces__msg__Bool",
+    "example_interfaces__msg__Byte",
+    "example_interfaces__msg__ByteMultiArray",
+    "example_interfaces__msg__Char",
+    "example_interfaces__msg__Empty",
+    "example_interfaces__msg__Float32",
+    "example_interfaces__msg__Float32MultiArray",
+    "example_interfaces__msg__Float64",
+    "example_interfaces__msg__Float64MultiArray",
+    "example_interfaces__msg__Int16",
+    "example_interfaces__msg__Int16MultiArray",
+    "example_interfaces__msg__Int32",
+    "example_interfaces__msg__Int32MultiArray",
+    "example_interfaces__msg__Int64",
+    "example_interfaces__msg__Int64MultiArray",
+    "example_interfaces__msg__Int8",
+    "example_interfaces__msg__Int8MultiArray",
+    "example_interfaces__msg__MultiArrayDimension",
+    "example_interfaces__msg__MultiArrayLayout",
+    "example_interfaces__msg__String",
+    "example_interfaces__msg__UInt16",
+    "example_interfaces__msg__UInt16MultiArray",
+    "example_interfaces__msg__UInt32",
+    "example_interfaces__msg__UInt32MultiArray",
+    "example_interfaces__msg__UInt64",
+    "example_interfaces__msg__UInt64MultiArray",
+    "example_interfaces__msg__UInt8",
+    "example_interfaces__msg__UInt8MultiArray",
+    "example_interfaces__srv__SetBool_Request",
+    "example_interfaces__srv__SetBool_Response",
+    "example_interfaces__srv__Trigger_Request",
+    "example_interfaces__srv__Trigger_Response",
+    "gazebo_msgs__srv__DeleteEntity_Request",
+    "gazebo_msgs__srv__DeleteEntity_Response",
+    "gazebo_msgs__srv__SpawnEntity_Request",
+    "gazebo_msgs__srv__SpawnEntity_Response",
+    "geographic_msgs__msg__KeyValue",
+    "kobuki_msgs__msg__BumperEvent",
+    "kobuki_msgs__msg__CliffEvent",
+    "kobuki_msgs__msg__DockInfraRed",
+    "kobuki_msgs__msg__MotorPower",
+    "kobuki_msgs__msg__SensorState",
+    "kobuki_msgs__msg__Sound",
+    "kobuki_msgs__msg__VersionInfo",
+    "kobuki_msgs__msg__WheelDropEvent",
+    "mav_msgs__msg__Actuators",
+    "mavros_msgs__msg__State",
+    "moveit_msgs__srv__LoadMap_Request",
+    "moveit_msgs__srv__LoadMap_Response",
+    "moveit_msgs__srv__SaveMap_Request",
+    "moveit_msgs__srv__SaveMap_Response",
+    "nav2_msgs__srv__LoadMap_Request",
+    "nav2_msgs__srv__LoadMap_Response",
+    "nav2_msgs__srv__SaveMap_Request",
+    "nav2_msgs__srv__SaveMap_Response",
+    "osrf_gear__msg__ConveyorBeltState",
+    "osrf_gear__srv__ConveyorBeltControl_Request",
+    "osrf_gear__srv__ConveyorBeltControl_Response",
+    "play_motion2_msgs__srv__ListMotions_Request",
+    "play_motion2_msgs__srv__ListMotions_Response",
+    "play_motion_msgs__srv__ListMotions_Request",
+    "play_motion_msgs__srv__ListMotions_Response",
+    "rmf_fleet_msgs__msg__RobotState",
+    "robot_localization__srv__GetState_Request",
+    "robot_localization__srv__GetState_Response",
+    "ros_gz_interfaces__srv__DeleteEntity_Request",
+    "ros_gz_interfaces__srv__DeleteEntity_Response",
+    "ros_gz_interfaces__srv__SpawnEntity_Request",
+    "ros_gz_interfaces__srv__SpawnEntity_Response",
+    "rospy_tutorials__srv__AddTwoInts_Request",
+    "rospy_tutorials__srv__AddTwoInts_Response",
+    "simulation_interfaces__msg__EntityState",
+    "simulation_interfaces__srv__DeleteEntity_Request",
+    "simulation_interfaces__srv__DeleteEntity_Response",
+    "simulation_interfaces__srv__GetEntityState_Request",
+    "simulation_interfaces__srv__GetEntityState_Response",
+    "simulation_interfaces__srv__SetEntityState_Request",
+    "simulation_interfaces__srv__SetEntityState_Response",
+    "simulation_interfaces__srv__SpawnEntities_Request",
+    "simulation_interfaces__srv__SpawnEntities_Response",
+    "simulation_interfaces__srv__SpawnEntity_Request",
+    "simulation_interfaces__srv__SpawnEntity_Response",
+    "slam_toolbox__srv__SaveMap_Request",
+    "slam_toolbox__srv__SaveMap_Response",
+    "tf2_msgs__srv__FrameGraph_Request",
+    "tf2_msgs__srv__FrameGraph_Response",
+    "tf__srv__FrameGraph_Request",
+    "tf__srv__FrameGraph_Response",
+    "topic_tools__srv__DemuxAdd_Request",
+    "topic_tools__srv__DemuxAdd_Response",
+    "topic_tools__srv__DemuxDelete_Request",
+    "topic_tools__srv__DemuxDelete_Response",
+    "topic_tools__srv__DemuxList_Request",
+    "topic_tools__srv__DemuxList_Response",
+    "topic_tools__srv__DemuxSelect_Request",
+    "topic_tools__srv__DemuxSelect_Response",
+    "topic_tools__srv__MuxAdd_Request",
+    "topic_tools__srv__MuxAdd_Response",
+    "topic_tools__srv__MuxDelete_Request",
+    "topic_tools__srv__MuxDelete_Response",
+    "topic_tools__srv__MuxList_Request",
+    "topic_tools__srv__MuxList_Response",
+    "topic_tools__srv__MuxSelect_Request",
+    "topic_tools__srv__MuxSelect_Response",
+    "topic_tools_interfaces__srv__DemuxAdd_Request",
+    "topic_tools_interfaces__srv__DemuxAdd_Response",
+    "topic_tools_interfaces__srv__DemuxDelete_Request",
+    "topic_tools_interfaces__srv__DemuxDelete_Response",
+    "topic_tools_interfaces__srv__DemuxList_Request",
+    "topic_tools_interfaces__srv__DemuxList_Response",
+    "topic_tools_interfaces__srv__DemuxSelect_Request",
+    "topic_tools_interfaces__srv__DemuxSelect_Response",
+    "topic_tools_interfaces__srv__MuxAdd_Request",
+    "topic_tools_interfaces__srv__MuxAdd_Response",
+    "topic_tools_interfaces__srv__MuxDelete_Request",
+    "topic_tools_interfaces__srv__MuxDelete_Response",
+    "topic_tools_interfaces__srv__MuxList_Request",
+    "topic_tools_interfaces__srv__MuxList_Response",
+    "topic_tools_interfaces__srv__MuxSelect_Request",
+    "topic_tools_interfaces__srv__MuxSelect_Response",
+    "turtlebot3_msgs__msg__SensorState",
+    "turtlebot3_msgs__msg__Sound",
+    "turtlebot3_msgs__msg__VersionInfo",
+    "turtlesim__action__RotateAbsolute_Feedback",
+    "turtlesim__action__RotateAbsolute_Goal",
+    "turtlesim__action__RotateAbsolute_Result",
+    "turtlesim__msg__Color",
+    "turtlesim__msg__Pose",
+    "turtlesim__srv__Kill_Request",
+    "turtlesim__srv__Kill_Response",
+    "turtlesim__srv__SetPen_Request",
+    "turtlesim__srv__SetPen_Response",
+    "turtlesim__srv__Spawn_Request",
+    "turtlesim__srv__Spawn_Response",
+    "turtlesim__srv__TeleportAbsolute_Request",
+    "turtlesim__srv__TeleportAbsolute_Response",
+    "turtlesim__srv__TeleportRelative_Request",
+    "turtlesim__srv__TeleportRelative_Response",
+    "turtlesim_msgs__action__RotateAbsolute_Feedback",
+    "turtlesim_msgs__action__RotateAbsolute_Goal",
+    "turtlesim_msgs__action__RotateAbsolute_Result",
+    "turtlesim_msgs__msg__Color",
+    "turtlesim_msgs__msg__Pose",
+    "turtlesim_msgs__srv__Kill_Request",
+    "turtlesim_msgs__srv__Kill_Response",
+    "turtlesim_msgs__srv__SetPen_Request",
+    "turtlesim_msgs__srv__SetPen_Response",
+    "turtlesim_msgs__srv__Spawn_Request",
+    "turtlesim_msgs__srv__Spawn_Response",
+    "turtlesim_msgs__srv__TeleportAbsolute_Request",
+    "turtlesim_msgs__srv__TeleportAbsolute_Response",
+    "turtlesim_msgs__srv__TeleportRelative_Request",
+    "turtlesim_msgs__srv__TeleportRelative_Response",
+    "type_description_interfaces__msg__KeyValue",
+    "uuv_gazebo_ros_plugins_msgs__srv__GetModelProperties_Request",
+    "uuv_gazebo_ros_plugins_msgs__srv__GetModelProperties_Response",
+    "uuv_sensor_ros_plugins_msgs__msg__DVL",
+    "uuv_sensor_ros_plugins_msgs__msg__DVLBeam",
+    "uuv_world_ros_plugins_msgs__srv__GetCurrentModel_Request",
+    "uuv_world_ros_plugins_msgs__srv__GetCurrentModel_Response",
+    "uuv_world_ros_plugins_msgs__srv__GetOriginSphericalCoord_Request",
+    "uuv_world_ros_plugins_msgs__srv__GetOriginSphericalCoord_Response",
+    "uuv_world_ros_plugins_msgs__srv__SetCurrentDirection_Request",
+    "uuv_world_ros_plugins_msgs__srv__SetCurrentDirection_Response",
+    "uuv_world_ros_plugins_msgs__srv__SetCurrentModel_Request",
+    "uuv_world_ros_plugins_msgs__srv__SetCurrentModel_Response",
+    "uuv_world_ros_plugins_msgs__srv__SetCurrentVelocity_Request",
+    "uuv_world_ros_plugins_msgs__srv__SetCurrentVelocity_Response",
+    "uuv_world_ros_plugins_msgs__srv__SetOriginSphericalCoord_Request",
+    "uuv_world_ros_plugins_msgs__srv__SetOriginSphericalCoord_Response",
+    "uuv_world_ros_plugins_msgs__srv__TransformFromSphericalCoord_Request",
+    "uuv_world_ros_plugins_msgs__srv__TransformFromSphericalCoord_Response",
+    "uuv_world_ros_plugins_msgs__srv__TransformToSphericalCoord_Request",
+    "uuv_world_ros_plugins_msgs__srv__TransformToSphericalCoord_Response",
+    "vision_msgs__msg__Pose2D",
+]

@@ -36,10 +36,16 @@ if TYPE_CHECKING:
     from typing_extensions import TypeVar  # the types of the standard library contain it
 
     M = TypeVar("M", default=Any)
+    M_co = TypeVar("M_co", default=Any, covariant=True)
+    R = TypeVar("R", default=Any)
+    F = TypeVar("F", default=Any)
 else:
     from typing import TypeVar
 
-    M = TypeVar("M")  # class of a message; Any if it is not given
+    M = TypeVar("M")  # class of a message, a request or a goal; Any if it is not given
+    M_co = TypeVar("M_co", covariant=True)
+    R = TypeVar("R")  # class of a response or a result
+    F = TypeVar("F")  # class of a feedback message
 
 # Message of any type: an object of a dataclass that rosbags creates at run time.
 Message = Any

@@ -30,8 +30,10 @@ from simkit.topic_logger import TopicLogger
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.deferred_response import DeferredResponse
     from simkit.msgs import Message
-    from simkit.msgs.message_types import M
+    from simkit.msgs.message_classes import ActionGoal, ServiceRequest
+    from simkit.msgs.message_types import F, M, R
     from simkit.run_spec import PluginErrorPolicy
     from simkit.runtime import Simulation
     from simkit.runtime.array_rules import PluginRule
@@ -227,7 +229,12 @@ class Plugin(abc.ABC):
         return subscription
 
     @overload
-    def offer(self, service: str, type_name: type[M], handler: Callable[[M], object]) -> Service: ...
+    def offer(
+        self,
+        service: str,
+        type_name: type[ServiceRequest[M, R]],
+        handler: Callable[[M], R | Mapping[str, object] | DeferredResponse | None],
+    ) -> Service: ...
 
     @overload
     def offer(self, service: str, type_name: str, handler: Callable[[Message], object]) -> Service: ...
@@ -247,7 +254,7 @@ class Plugin(abc.ABC):
     def act(
         self,
         action: str,
-        type_name: type[M],
+        type_name: type[ActionGoal[M, R, F]],
         on_goal: Callable[[GoalHandle[M]], None],
         on_cancel: Callable[[GoalHandle[M]], bool | None] | None = None,
     ) -> Action: ...

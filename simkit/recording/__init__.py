@@ -25,4 +25,5 @@ _MODULES = {
     "simkit.recording.export": ("ExportOptions", "export_bag"),
 }
 
-__getattr__, __dir__ = lazy_attributes(__name__, _MODULES)
+if not TYPE_CHECKING:  # hidden from type checkers, so that they report unknown names
+    __getattr__, __dir__ = lazy_attributes(__name__, _MODULES)

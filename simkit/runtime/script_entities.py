@@ -8,6 +8,7 @@ from simkit.runtime.contact.collision_contacts import Contact, list_contacts
 from simkit.runtime.handles.find_sensor import checked_class, find_sensor
 
 if TYPE_CHECKING:
+    from simkit.extend import Sensor
     from simkit.runtime.engine.engine import Engine
     from simkit.runtime.handles.joint import Joint
     from simkit.runtime.handles.light import Light
@@ -49,18 +50,18 @@ class ScriptEntities:
         return self.contents.open_handles.joint(name)
 
     @property
-    def sensors(self) -> dict[str, Any]:
+    def sensors(self) -> dict[str, Sensor[Any]]:
         """All sensors by scoped name, also those of nested models."""
         self.engine.check_open()
         return self.contents.sensors
 
     @overload
-    def sensor(self, name: str) -> Any: ...
+    def sensor(self, name: str) -> Sensor[Any]: ...
 
     @overload
     def sensor(self, name: str, type: type[S]) -> S: ...
 
-    def sensor(self, name: str, type: type | None = None) -> Any:
+    def sensor(self, name: str, type: type | None = None) -> object:
         """Return a sensor by scoped name, or by its last name if only one sensor has it.
 
         Args:

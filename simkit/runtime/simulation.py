@@ -27,6 +27,7 @@ from simkit.runtime.engine.simulated_time import Clock
 from simkit.runtime.engine.snapshot import Snapshot, Snapshots, Stateful
 from simkit.runtime.engine.step_tasks import StepTasks
 from simkit.runtime.handles.model import Model
+from simkit.runtime.handles.notebook_tables import world_html
 from simkit.runtime.portable_snapshot import PortableSnapshot, pack_snapshot, unpack_snapshot
 from simkit.runtime.script_entities import ScriptEntities
 from simkit.runtime.world_contents import WorldContents
@@ -555,6 +556,9 @@ class Simulation(ScriptEntities, ScriptGraph, InProcess):
         plural = "" if len(self.contents.models) == 1 else "s"
         state = "closed" if self.engine.is_closed else f"t={self.time:g} s, {len(self.contents.models)} model{plural}"
         return f"<Simulation {self.world.name!r}: {state}>"
+
+    def _repr_html_(self) -> str:
+        return world_html(repr(self), {} if self.engine.is_closed else self.models)
 
     def __enter__(self) -> Simulation:
         self.engine.check_open()

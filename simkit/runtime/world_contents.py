@@ -21,6 +21,7 @@ from simkit.runtime.world_source import ModelLoader, WorldSource
 from simkit.scene import SceneLink
 
 if TYPE_CHECKING:
+    from simkit.extend import Sensor
     from simkit.runtime.communication.communication import Communication
     from simkit.runtime.engine.engine import Engine
     from simkit.runtime.engine.snapshot import Snapshots
@@ -72,7 +73,7 @@ class WorldContents:
         return dict(self.handles.tables["light"])
 
     @property
-    def sensors(self) -> dict[str, Any]:
+    def sensors(self) -> dict[str, Sensor[Any]]:
         """Sensors by scoped name."""
         return dict(self.handles.tables["sensor"])
 
@@ -174,7 +175,7 @@ class WorldContents:
             raise
 
     @journaled
-    def add_sensor(self, name: str, sensor: str | Mapping[str, object]) -> Any:
+    def add_sensor(self, name: str, sensor: str | Mapping[str, object]) -> Sensor[Any]:
         """Add a sensor to a link or a joint during the run; no other output changes in any bit.
 
         Snapshots, resets and removals include the sensor. It is removed with its model, and by a reset or restore to an
@@ -196,7 +197,8 @@ class WorldContents:
         self._engine.check_open()
         scoped = self.spawner.add_sensor(name, sensor)
         self._engine.reschedule()
-        return self.handles.find("sensor", scoped)
+        added: Sensor[Any] = self.handles.find("sensor", scoped)
+        return added
 
     @journaled
     def make_movable(self, name: str) -> None:

@@ -77,7 +77,8 @@ _MODULES = {
     "simkit.sensors.rays.sonar": ("Sonar",),
 }
 
-__getattr__, __dir__ = lazy_attributes(__name__, _MODULES)
+if not TYPE_CHECKING:  # hidden from type checkers, so that they report unknown names
+    __getattr__, __dir__ = lazy_attributes(__name__, _MODULES)
 
 GROUP = "simkit.sensors"
 

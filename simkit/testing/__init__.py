@@ -46,4 +46,5 @@ _MODULES = {
     "simkit.testing.scenarios.scenario_run": ("open_scenario", "run_scenario"),
 }
 
-__getattr__, __dir__ = lazy_attributes(__name__, _MODULES)
+if not TYPE_CHECKING:  # hidden from type checkers, so that they report unknown names
+    __getattr__, __dir__ = lazy_attributes(__name__, _MODULES)

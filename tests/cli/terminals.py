@@ -73,6 +73,12 @@ class Terminal:
         self.seen = self.seen[found.end() :]
         return found
 
+    def read(self, seconds: float) -> None:
+        """Reads for a time: a program whose output nobody reads stops."""
+        end = time.monotonic() + seconds
+        while self._read(end):
+            pass
+
     def wait(self) -> int:
         """Reads until the program ends; its exit code."""
         end = time.monotonic() + _PATIENCE

@@ -34,8 +34,8 @@ def test_every_message_type_has_one_class_name() -> None:
 
 def test_a_stub_has_the_fields_and_constants_of_the_class() -> None:
     stubs = {n.name: n for n in ast.parse(STUBS.read_text("utf-8")).body if isinstance(n, ast.ClassDef)}
-    assert set(stubs) == set(class_names())
-    for name, stub in stubs.items():
+    assert set(stubs) == {*class_names(), "ServiceRequest", "ActionGoal"}  # bases for type checkers only
+    for name, stub in ((name, stubs[name]) for name in class_names()):
         found = [n.target.id for n in stub.body if isinstance(n, ast.AnnAssign) and isinstance(n.target, ast.Name)]
         cls = getattr(msgs, name)
         assert [f.name for f in dataclasses.fields(cls)] == found, name

@@ -5,19 +5,21 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final, overload
 
 from simkit import msgs
 from simkit.argument_checks import check_kind, checked_number
 from simkit.bridges.live.client_graph import DEFAULT_DEPTH, ClientGraph, absolute, check_callback
-from simkit.bridges.live.client_handles import LiveGoal, LivePublisher, LiveSubscription
+from simkit.bridges.live.client_handles import LiveGoal, LiveSubscription
 from simkit.bridges.live.discovery import find_socket
 from simkit.bridges.live.protocol import JsonObject, JsonValue, LiveClosed, LiveError
 from simkit.bridges.live.server_link import CONNECT_PERIOD
-from simkit.msgs.message_types import Message
+from simkit.msgs.message_arguments import typed_message
+from simkit.msgs.message_types import F, M, Message, R, named_type
 
 if TYPE_CHECKING:
     from simkit.bridges.live.client_transforms import LiveTransforms
+    from simkit.msgs.message_classes import ActionGoal, ServiceRequest
 
 NO_ANSWER: Final = "SK-SERVICE-010"
 
@@ -121,9 +123,34 @@ class Client(ClientGraph):
 
     # ------------------------------------------------------------------ topics
 
+    @overload
     def subscribe(
-        self, topic: str, callback: Callable[[Message], object] | None = None, depth: int = DEFAULT_DEPTH
-    ) -> LiveSubscription:
+        self,
+        topic: str,
+        callback: Callable[[M], object] | None = None,
+        depth: int = DEFAULT_DEPTH,
+        *,
+        type: type[M],
+    ) -> LiveSubscription[M]: ...
+
+    @overload
+    def subscribe(
+        self,
+        topic: str,
+        callback: Callable[[Message], object] | None = None,
+        depth: int = DEFAULT_DEPTH,
+        *,
+        type: str | None = None,
+    ) -> LiveSubscription[Any]: ...
+
+    def subscribe(
+        self,
+        topic: str,
+        callback: Callable[[Message], object] | None = None,
+        depth: int = DEFAULT_DEPTH,
+        *,
+        type: str | type | None = None,
+    ) -> LiveSubscription[Any]:
         """Subscribe to a topic. The topic need not exist yet.
 
         Args:
@@ -131,26 +158,34 @@ class Client(ClientGraph):
             callback: function that receives each message while the client receives, for example in `spin`. Without it,
                 the messages wait in the subscription.
             depth: highest number of queued messages; if more arrive, the oldest are dropped and counted.
+            type: class that the messages must have, such as `msgs.LaserScan`, or its type name; None for any. Type
+                checkers then know the class of the messages.
+
+        Raises:
+            LiveError: SK-MSG-001 the topic has another type. If the topic gets another type later, the method that
+                receives its first message raises the error.
         """
         if callback is not None:
             check_callback(callback, "callback")
-        return self.subscribe_all([topic], depth, callback)[0]
+        return self.subscribe_all([topic], depth, callback, "" if type is None else msgs.full_name(named_type(type)))[0]
 
     def subscribe_all(
         self,
         topics: Iterable[str],
         depth: int = DEFAULT_DEPTH,
         callback: Callable[[Message], object] | None = None,
+        expected: str = "",
     ) -> list[LiveSubscription]:
-        """Subscribe to several topics at once.
+        """Subscribe to several topics at once, which must have the type `expected`, if it is not empty.
 
         All requests are sent before the first answer is read, because a simulation with slow steps answers only once
         per step.
         """
-        opened, requests = [], []
+        opened: list[LiveSubscription] = []
+        requests = []
         for topic in topics:
             number = self.next_number()
-            subscription = LiveSubscription(self, number, absolute(topic), depth, callback)
+            subscription = LiveSubscription[Any](self, number, absolute(topic), depth, callback, expected)
             self.subscriptions[number] = subscription.take  # the first messages may arrive together with the answer
             opened.append(subscription)
             args = {"number": number, "topic": topic, "depth": depth}
@@ -158,30 +193,21 @@ class Client(ClientGraph):
         failed: LiveError | None = None
         for subscription, number in zip(opened, requests, strict=True):
             try:
-                self.answer(number)
+                found = self.answer(number)[0]["type"]
             except LiveClosed:
                 raise
             except LiveError as error:
                 del self.subscriptions[subscription.number]
                 failed = failed or error
+                continue
+            try:
+                subscription.check_type(found or expected)
+            except LiveError:
+                subscription.close()
+                raise
         if failed is not None:
             raise failed
         return opened
-
-    def advertise(self, topic: str, type_name: str | None = None, latched: bool = False) -> LivePublisher:
-        """Open a topic for publishing.
-
-        Args:
-            topic: name of the topic; a leading `/` is added if it is missing.
-            type_name: type of the messages; default: the type that the topic already has.
-            latched: send the last message to a later subscriber (transient local).
-
-        Raises:
-            LiveError: the topic has another type, or the type is unknown.
-        """
-        number = self.next_number()
-        answer = self.ask("advertise", number=number, topic=topic, type=type_name, latched=latched)
-        return LivePublisher(self, number, answer["topic"], answer["type"])
 
     @cached_property
     def tf(self) -> LiveTransforms:
@@ -197,18 +223,47 @@ class Client(ClientGraph):
         type_by_service: dict[str, str] = self.ask("services")
         return type_by_service
 
-    def call(self, name: str, request: object = None, timeout: float | None = None) -> Message:
+    @overload
+    def call(self, name: str, request: ServiceRequest[M, R], timeout: float | None = None) -> R: ...
+
+    @overload
+    def call(
+        self,
+        name: str,
+        request: Mapping[str, object] | None = None,
+        timeout: float | None = None,
+        *,
+        type: type[ServiceRequest[M, R]],
+    ) -> R: ...
+
+    @overload
+    def call(
+        self,
+        name: str,
+        request: Mapping[str, object] | None = None,
+        timeout: float | None = None,
+        *,
+        type: str | None = None,
+    ) -> Any: ...
+
+    def call(
+        self, name: str, request: Message = None, timeout: float | None = None, *, type: str | type | None = None
+    ) -> Any:
         """Call a service and return its response. The service has finished when this method returns.
 
         Args:
             name: name of the service; a leading `/` is added if it is missing.
             request: a dict of fields, a message, or None for a request with all fields zero.
             timeout: longest wait for the response [s], wall time; None for the timeout of the client.
+            type: type that the service must have, or the class of its requests, such as `msgs.SetBool_Request`; None
+                for any. Type checkers then know the class of the response, as for a request that is a message.
 
         Raises:
+            MessageError: the request does not match `type`.
             LiveError: the service does not exist, the request does not match its type, the service failed, or it gives
                 no response in time.
         """
+        request = typed_message(request, type, "Request", repr(absolute(name)))
         try:
             _, data, type_name = self._request_with_message("call", name, request, timeout)
         except LiveError as error:
@@ -224,18 +279,55 @@ class Client(ClientGraph):
         type_by_action: dict[str, str] = self.ask("actions")
         return type_by_action
 
+    @overload
     def send_goal(
-        self, name: str, goal: object = None, on_feedback: Callable[[Message], None] | None = None
-    ) -> LiveGoal:
+        self, name: str, goal: ActionGoal[M, R, F], on_feedback: Callable[[F], object] | None = None
+    ) -> LiveGoal[M]: ...
+
+    @overload
+    def send_goal(
+        self,
+        name: str,
+        goal: Mapping[str, object] | None = None,
+        on_feedback: Callable[[F], object] | None = None,
+        *,
+        type: type[ActionGoal[M, R, F]],
+    ) -> LiveGoal[M]: ...
+
+    @overload
+    def send_goal(
+        self,
+        name: str,
+        goal: Mapping[str, object] | None = None,
+        on_feedback: Callable[[Message], object] | None = None,
+        *,
+        type: str | None = None,
+    ) -> LiveGoal[Any]: ...
+
+    def send_goal(
+        self,
+        name: str,
+        goal: Message = None,
+        on_feedback: Callable[[Message], object] | None = None,
+        *,
+        type: str | type | None = None,
+    ) -> LiveGoal[Any]:
         """Send a goal to an action.
 
         Args:
             name: name of the action; a leading `/` is added if it is missing.
             goal: a dict of fields, a message, or None for a goal with all fields zero.
             on_feedback: callback for each feedback message; called while the client receives.
+            type: type that the action must have, or the class of its goals, such as `msgs.Fibonacci_Goal`; None for
+                any. Type checkers then know the classes of feedback and result, as for a goal that is a message.
+
+        Raises:
+            MessageError: the goal does not match `type`.
+            LiveError: the action does not exist, or the goal does not match its type.
         """
+        goal = typed_message(goal, type, "Goal", repr(absolute(name)))
         number = self.next_number()
-        handle = LiveGoal(self, number, on_feedback)
+        handle = LiveGoal[Any](self, number, on_feedback)
         self.goals[number] = handle.take
         try:
             handle.action, handle.id = self._request_with_message("goal", name, goal, number=number)[0]

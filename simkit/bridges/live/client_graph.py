@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import cached_property
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Any, Final, overload
 
 from simkit import msgs
 from simkit.bridges.live.client_handles import LivePublisher
@@ -23,7 +23,11 @@ from simkit.bridges.live.client_servers import (
 from simkit.bridges.live.protocol import JsonObject, JsonValue, LiveClosed, LiveError
 from simkit.bridges.live.server_link import ServerLink
 from simkit.errors import ArgumentTypeError, MessageError
-from simkit.msgs.message_types import Message
+from simkit.msgs.message_types import F, M, Message, R, interface_type, named_type
+
+if TYPE_CHECKING:
+    from simkit.deferred_response import DeferredResponse
+    from simkit.msgs.message_classes import ActionGoal, ServiceRequest
 
 DEFAULT_DEPTH = 1000
 """Default number of messages that a subscription queues at most, in the client and in the simulation."""
@@ -94,19 +98,26 @@ class ClientGraph(ServerLink):
         """Logger of this node: prints messages of the level INFO and above, and publishes them on `/rosout`."""
         return LiveLogger(self, self.next_number(), str(self.info["node"]))
 
-    def advertise(self, topic: str, type_name: str | None = None, latched: bool = False) -> LivePublisher:
+    @overload
+    def advertise(self, topic: str, type_name: type[M], latched: bool = False) -> LivePublisher[M]: ...
+
+    @overload
+    def advertise(self, topic: str, type_name: str | None = None, latched: bool = False) -> LivePublisher[Any]: ...
+
+    def advertise(self, topic: str, type_name: str | type | None = None, latched: bool = False) -> LivePublisher[Any]:
         """Open a topic for publishing.
 
         Args:
             topic: name of the topic; a leading `/` is added if it is missing.
-            type_name: type of the messages; default: the type that the topic already has.
+            type_name: type of the messages, or their class; default: the type that the topic already has.
             latched: send the last message to a later subscriber (transient local).
 
         Raises:
             LiveError: the topic has another type, or the type is unknown.
         """
         number = self.next_number()
-        answer = self.request("advertise", {"number": number, "topic": topic, "type": type_name, "latched": latched})[0]
+        kind = None if type_name is None else named_type(type_name)
+        answer = self.request("advertise", {"number": number, "topic": topic, "type": kind, "latched": latched})[0]
         return LivePublisher(self, number, answer["topic"], answer["type"])
 
     def publish(self, topic: str, message: object) -> None:
@@ -126,14 +137,28 @@ class ClientGraph(ServerLink):
             self._publishers[name] = self.advertise(name, type_name if isinstance(type_name, str) else None)
         self._publishers[name].publish(message)
 
+    @overload
+    def listen(
+        self, topic: str, types: type[M], callback: Callable[[M], object], depth: int = DEFAULT_DEPTH
+    ) -> LiveInput[M]: ...
+
+    @overload
     def listen(
         self, topic: str, types: str | Sequence[str], callback: Callable[[Message], object], depth: int = DEFAULT_DEPTH
-    ) -> LiveInput:
+    ) -> LiveInput[Any]: ...
+
+    def listen(
+        self,
+        topic: str,
+        types: str | type | Sequence[str],
+        callback: Callable[[Message], object],
+        depth: int = DEFAULT_DEPTH,
+    ) -> LiveInput[Any]:
         """Open a topic for commands: `callback(message)` is called for each message, while the client receives.
 
         Args:
             topic: name of the topic; a leading `/` is added if it is missing.
-            types: accepted type or types.
+            types: accepted type or types, or the class of the messages.
             callback: function that receives each message.
             depth: highest number of queued messages; if more arrive, the oldest are dropped and counted.
 
@@ -142,9 +167,10 @@ class ClientGraph(ServerLink):
         """
         check_callback(callback, "callback")
         number = self.next_number()
-        opened = LiveInput(self, number, absolute(topic), depth, callback)
+        kinds = [types] if isinstance(types, (str, type)) else types
+        names = [named_type(kind) for kind in kinds]
+        opened = LiveInput[Any](self, number, absolute(topic), depth, callback)
         self.subscriptions[number] = opened.take
-        names = list(types) if isinstance(types, (list, tuple)) else [types]
         try:
             self.request("listen", {"number": number, "topic": topic, "types": names, "depth": depth})[0]
         except LiveError:
@@ -164,12 +190,23 @@ class ClientGraph(ServerLink):
             if error.code != "SK-LIVE-005" or not self.is_closed:
                 raise
 
-    def offer(self, name: str, type_name: str, handler: Callable[[Message], object]) -> LiveService:
+    @overload
+    def offer(
+        self,
+        name: str,
+        type_name: type[ServiceRequest[M, R]],
+        handler: Callable[[M], R | Mapping[str, object] | DeferredResponse | None],
+    ) -> LiveService: ...
+
+    @overload
+    def offer(self, name: str, type_name: str, handler: Callable[[Message], object]) -> LiveService: ...
+
+    def offer(self, name: str, type_name: str | type, handler: Callable[[Message], object]) -> LiveService:
         """Open a service, which the client answers while it receives, for example in `spin`.
 
         Args:
             name: name of the service; a leading `/` is added if it is missing.
-            type_name: service type, such as `std_srvs/srv/Trigger`.
+            type_name: service type, such as `std_srvs/srv/Trigger`, or the class of its requests.
             handler: function that receives a request and returns the response: a message, a dict of its fields, or None
                 for a message whose fields are all zero.
 
@@ -177,15 +214,34 @@ class ClientGraph(ServerLink):
             LiveError: a service of that name exists, or the type is unknown.
         """
         check_callback(handler, "handler")
+        type_name = interface_type(type_name, "Request")
         self._load_type(f"{type_name}_Request")  # now, because a caller waits for the first request
         opened = LiveService(self, self.next_number(), absolute(name), type_name, handler)
         self._open_endpoint(opened, "offer", {"name": name, "type": type_name})
         return opened
 
+    @overload
+    def act(
+        self,
+        name: str,
+        type_name: type[ActionGoal[M, R, F]],
+        callback: Callable[[LiveServerGoal[M]], R | Mapping[str, object] | None],
+        on_cancel: Callable[[LiveServerGoal[M]], bool | None] | None = None,
+    ) -> LiveAction: ...
+
+    @overload
     def act(
         self,
         name: str,
         type_name: str,
+        callback: Callable[[LiveServerGoal], object],
+        on_cancel: Callable[[LiveServerGoal], bool | None] | None = None,
+    ) -> LiveAction: ...
+
+    def act(
+        self,
+        name: str,
+        type_name: str | type,
         callback: Callable[[LiveServerGoal], object],
         on_cancel: Callable[[LiveServerGoal], bool | None] | None = None,
     ) -> LiveAction:
@@ -193,7 +249,7 @@ class ClientGraph(ServerLink):
 
         Args:
             name: name of the action; a leading `/` is added if it is missing.
-            type_name: action type, such as `example_interfaces/action/Fibonacci`.
+            type_name: action type, such as `example_interfaces/action/Fibonacci`, or the class of its goals.
             callback: function that receives each new goal. It may reject the goal, or return the result: a message or a
                 dict of its fields. Otherwise the goal is active until its method `succeed`, `abort` or `canceled` is
                 called.
@@ -206,6 +262,7 @@ class ClientGraph(ServerLink):
         check_callback(callback, "callback")
         if on_cancel is not None:
             check_callback(on_cancel, "on_cancel")
+        type_name = interface_type(type_name, "Goal")
         self._load_type(f"{type_name}_Goal")
         opened = LiveAction(self, self.next_number(), absolute(name), type_name, callback, on_cancel)
         self._open_endpoint(opened, "act", {"name": name, "type": type_name, "cancels": on_cancel is not None})

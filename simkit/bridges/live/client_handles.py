@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple
 
 from simkit import msgs
 from simkit.bridges.live.protocol import JsonObject, LiveClosed, LiveError, message_frame
@@ -13,11 +13,14 @@ from simkit.bridges.live.server_link import ServerLink
 from simkit.errors import callback_name
 from simkit.msgs.goal_status import GoalStatus
 from simkit.msgs.message_arguments import checked_message
-from simkit.msgs.message_types import Message
+from simkit.msgs.message_types import F, M, M_co, Message, R
+
+if TYPE_CHECKING:
+    from simkit.msgs.message_classes import ActionGoal
 
 
-class Received(NamedTuple):
-    """Message with its time and type, as it was received.
+class Received(NamedTuple, Generic[M]):
+    """Message with its time and type, as it was received; the type parameter is the class of the message.
 
     Attributes:
         time_ns: simulated time of publication [ns].
@@ -30,13 +33,16 @@ class Received(NamedTuple):
     data: bytes
 
     @property
-    def message(self) -> Message:
+    def message(self) -> M:
         """Decoded message."""
-        return msgs.deserialize(self.data, self.type_name)
+        message: M = msgs.deserialize(self.data, self.type_name)
+        return message
 
 
-class LiveSubscription:
+class LiveSubscription(Generic[M]):
     """Subscription to a topic. Its callback, if it has one, is called while the client receives.
+
+    The type parameter is the class of the messages.
 
     `for time_ns, type_name, cdr in subscription` waits for each message until the simulation ends.
 
@@ -47,10 +53,16 @@ class LiveSubscription:
     """
 
     def __init__(
-        self, link: ServerLink, number: int, topic: str, depth: int, callback: Callable[[Message], object] | None = None
+        self,
+        link: ServerLink,
+        number: int,
+        topic: str,
+        depth: int,
+        callback: Callable[[M], object] | None = None,
+        expected: str = "",
     ) -> None:
-        self._link, self.number, self.topic, self._callback = link, number, topic, callback
-        self.waiting: deque[Received] = deque()
+        self._link, self.number, self.topic, self._callback, self._expected = link, number, topic, callback, expected
+        self.waiting: deque[Received[M]] = deque()
         self._depth, self._lost_there, self._lost_here = max(1, depth), 0, 0
         self._closed = False
 
@@ -58,7 +70,7 @@ class LiveSubscription:
     def lost(self) -> int:
         return self._lost_there + self._lost_here
 
-    def get(self, timeout: float | None = None) -> Received | None:
+    def get(self, timeout: float | None = None) -> Received[M] | None:
         """Return the next message, or None after the timeout [s]. Without a timeout, wait for ever.
 
         Raises:
@@ -71,10 +83,10 @@ class LiveSubscription:
     def __repr__(self) -> str:
         return f"<LiveSubscription {self.topic!r}, {len(self.waiting)} waiting, {self.lost} lost>"
 
-    def __iter__(self) -> Iterator[Received]:
+    def __iter__(self) -> Iterator[Received[M]]:
         return self
 
-    def __next__(self) -> Received:
+    def __next__(self) -> Received[M]:
         try:
             message = self.get()
         except LiveClosed:
@@ -91,8 +103,14 @@ class LiveSubscription:
             if not self._link.is_closed:
                 self._link.request("unsubscribe", {"number": self.number})
 
+    def check_type(self, type_name: str) -> None:
+        """Raise LiveError if a topic with messages of this type does not fit the type that the client named."""
+        if self._expected and type_name != self._expected:
+            raise LiveError("SK-MSG-001", f"topic {self.topic!r} has type {type_name}, got type={self._expected}")
+
     def take(self, time_ns: int, type_name: str, data: bytes, lost: int) -> None:
-        """Queue a message that has arrived."""
+        """Queue a message that has arrived; raise LiveError if it has another type than the client named."""
+        self.check_type(type_name)
         self._lost_there = lost
         if len(self.waiting) >= self._depth:
             self.waiting.popleft()
@@ -116,8 +134,10 @@ class LiveSubscription:
                 raise LiveError("SK-TOPIC-002", f"subscriber {name} of {self.topic!r} raised: {error!r}") from error
 
 
-class LivePublisher:
+class LivePublisher(Generic[M]):
     """Publisher of a topic. `client.flush()` waits until the simulation has processed the messages.
+
+    The type parameter is the class of the messages.
 
     Attributes:
         topic: absolute name of the topic.
@@ -132,7 +152,7 @@ class LivePublisher:
         """Number of subscriptions and command inputs of the topic; several clients count as one."""
         return int(self._link.request("subscribers", {"number": self.number})[0])
 
-    def publish(self, message: object) -> None:
+    def publish(self, message: M | Mapping[str, object] | bytes | bytearray | memoryview) -> None:
         """Send a message, given as a message, a dict of its fields, or CDR.
 
         Raises:
@@ -154,25 +174,35 @@ class LivePublisher:
             self._link.request("unadvertise", {"number": self.number})
 
 
-class LiveGoal:
+class LiveGoal(Generic[M_co]):
     """Goal that was sent to an action.
+
+    The type parameter is the class of the goal message, from which type checkers know those of result and feedback.
 
     Attributes:
         action: name of the action.
         id: number that the simulation gave to the goal.
         status: newest status of the goal.
-        result: result message, once the goal has one.
-        feedback: newest feedback message.
         reason: reason for the rejection, or the message that came with the final status.
     """
 
-    def __init__(self, link: ServerLink, number: int, on_feedback: Callable[[Message], None] | None) -> None:
+    def __init__(self, link: ServerLink, number: int, on_feedback: Callable[[Message], object] | None) -> None:
         self._link, self.number, self._on_feedback = link, number, on_feedback
         self.action, self.id = "", 0
         self.status = GoalStatus.UNKNOWN
-        self.result: Message | None = None
-        self.feedback: Message | None = None
+        self._result: Message = None
+        self._feedback: Message = None
         self.reason = ""
+
+    @property
+    def result(self: LiveGoal[ActionGoal[M, R, F]]) -> R | Any:  # `Any` stands for None, as in `Subscription.latest`
+        """Result message; None before the goal has one."""
+        return self._result
+
+    @property
+    def feedback(self: LiveGoal[ActionGoal[M, R, F]]) -> F | Any:  # as `result`
+        """Newest feedback message; None before the first."""
+        return self._feedback
 
     @property
     def is_done(self) -> bool:
@@ -203,10 +233,10 @@ class LiveGoal:
         """Process feedback, a status or a result from the simulation."""
         message = msgs.deserialize(data, str(update["type"])) if "type" in update else None
         if "status" not in update:
-            self.feedback = message
+            self._feedback = message
             if self._on_feedback is not None:
                 self._link.callbacks.append(partial(self._on_feedback, message))
             return
         self.status, self.reason = GoalStatus(int(update["status"])), str(update.get("reason", ""))
         if message is not None:
-            self.result = message
+            self._result = message

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, Generic
 
 from simkit import msgs
 from simkit.bridges.live.client_handles import LiveSubscription
@@ -13,7 +13,10 @@ from simkit.bridges.live.server_link import ServerLink
 from simkit.deferred_response import DeferredResponse
 from simkit.errors import callback_name
 from simkit.msgs.message_arguments import checked_message
-from simkit.msgs.message_types import Message
+from simkit.msgs.message_types import F, M, M_co, Message, R
+
+if TYPE_CHECKING:
+    from simkit.msgs.message_classes import ActionGoal
 
 CALLBACK_ERROR = "SK-TOPIC-002"
 """Code of the error for a callback that raised, as in the process of the simulation."""
@@ -88,8 +91,8 @@ class LiveService(LiveEndpoint):
         self._link.post("respond", {**words, "type": msgs.type_name(response)}, msgs.serialize(response))
 
 
-class LiveServerGoal:
-    """Goal of an action of this client.
+class LiveServerGoal(Generic[M_co]):
+    """Goal of an action of this client; the type parameter is the class of the goal message.
 
     Attributes:
         request: goal message.
@@ -97,11 +100,11 @@ class LiveServerGoal:
         is_done: True after the end of the goal.
     """
 
-    def __init__(self, link: ServerLink, action: LiveAction, number: int, request: Message) -> None:
+    def __init__(self, link: ServerLink, action: LiveAction, number: int, request: M_co) -> None:
         self._link, self._action, self._number, self.request = link, action, number, request
         self.is_cancel_requested = self.is_done = False
 
-    def publish_feedback(self, feedback: Message) -> None:
+    def publish_feedback(self: LiveServerGoal[ActionGoal[M, R, F]], feedback: F | Mapping[str, object]) -> None:
         """Send feedback, a message or a dict of its fields, and receive what has arrived for this client."""
         if not self.is_done:
             content, type_name = self._encoded(feedback, "Feedback")
@@ -112,15 +115,21 @@ class LiveServerGoal:
         """Reject the goal, which the callback of the action has just received."""
         self._end("REJECTED", None, reason)
 
-    def succeed(self, result: Message = None, reason: str = "") -> None:
+    def succeed(
+        self: LiveServerGoal[ActionGoal[M, R, F]], result: R | Mapping[str, object] | None = None, reason: str = ""
+    ) -> None:
         """End the goal as succeeded."""
         self._end("SUCCEEDED", result, reason)
 
-    def abort(self, result: Message = None, reason: str = "") -> None:
+    def abort(
+        self: LiveServerGoal[ActionGoal[M, R, F]], result: R | Mapping[str, object] | None = None, reason: str = ""
+    ) -> None:
         """End the goal as aborted."""
         self._end("ABORTED", result, reason)
 
-    def canceled(self, result: Message = None, reason: str = "") -> None:
+    def canceled(
+        self: LiveServerGoal[ActionGoal[M, R, F]], result: R | Mapping[str, object] | None = None, reason: str = ""
+    ) -> None:
         """End the goal as cancelled."""
         self._end("CANCELED", result, reason)
 
@@ -212,7 +221,7 @@ class LiveAction(LiveEndpoint):
             raise raised(self._on_cancel, "action", self.name, error) from error
 
 
-class LiveInput(LiveSubscription):
+class LiveInput(LiveSubscription[M]):
     """Command input of this client; its callback is called while the client receives."""
 
     def close(self) -> None:

@@ -319,7 +319,7 @@ def goal(request: Request) -> object:
             words = {"tell": "goal", "number": number, "type": msgs.type_name(feedback)}
             request.peer.send_json(TELL, words, msgs.serialize(feedback))
 
-    sent = request.sim.send_goal(request.arg("name", str), request.message(), on_feedback)
+    sent = request.sim.communication.actions.send(request.arg("name", str), request.message(), on_feedback)
     request.peer.goals[number] = sent, int(sent.status)
     return [sent.action.name, sent.id]
 

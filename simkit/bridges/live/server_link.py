@@ -69,8 +69,8 @@ class ServerLink:
         self.subscriptions: dict[int, MessageReceiver] = {}
         self.goals: dict[int, GoalListener] = {}
         self.endpoints: dict[int, GoalListener] = {}
-        self.requests: deque[Callable[[], None]] = deque()
-        self.callbacks: deque[Callable[[], None]] = deque()
+        self.requests: deque[Callable[[], object]] = deque()
+        self.callbacks: deque[Callable[[], object]] = deque()
         self._is_in_callback = False
         self._abandoned: set[int] = set()
         self._numbers = itertools.count(1)

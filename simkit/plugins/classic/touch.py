@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, cast
 
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.runtime import Model
     from simkit.scene import SceneModel
+    from simkit.sensors.devices.contact import Contact
 
 
 class ClassicTouchPluginOptions(TouchOptions):
@@ -52,5 +53,5 @@ class ClassicTouchPlugin(TouchTimer):
                 element.error("SK-PLUGIN-003", message, did_you_mean(element.value, sensors.values()))
 
     def load(self, parent: Model, params: Params) -> None:
-        sensors = [self.sim.sensor(scoped) for scoped in self._sensors]
+        sensors = cast("list[Contact]", [self.sim.sensor(scoped) for scoped in self._sensors])
         self._watch([name for sensor in sensors for name in sensor.collisions], params)

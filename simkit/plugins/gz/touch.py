@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, ClassVar, Final
+from typing import TYPE_CHECKING, ClassVar, Final, cast
 
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.runtime import Model
     from simkit.scene import SceneCollision, SceneModel
+    from simkit.sensors.devices.contact import Contact
 
 BOOL: Final = "std_msgs/msg/Bool"
 SET_BOOL: Final = "std_srvs/srv/SetBool"
@@ -162,7 +163,7 @@ class TouchPlugin(TouchTimer):
         sensors = [
             s for s in self.sim.contents.sensors.values() if s.kind == "contact" and s.scene.parent in self._links
         ]
-        watched = [name for sensor in sensors for name in sensor.collisions]
+        watched = [name for sensor in cast("list[Contact]", sensors) for name in sensor.collisions]
         if self._named:
             watched = [name for name in self._named if self._may_create or name in watched]
         if not watched:

@@ -10,44 +10,47 @@ The plugin receives goals and cancel requests between two steps, in the order in
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Generic
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, Generic
 
 from simkit.argument_checks import check_function
 from simkit.errors import ActionError, InputError, PluginError, SimkitError, SubscriberError, callback_name, cause_text
 from simkit.in_process import InProcess
 from simkit.msgs import Message
 from simkit.msgs.goal_status import GoalStatus
-from simkit.msgs.message_arguments import checked_message
-from simkit.msgs.message_types import M, interface_type
+from simkit.msgs.message_arguments import checked_message, typed_message
+from simkit.msgs.message_types import F, M, M_co, R, interface_type
 from simkit.msgs.topic_names import absolute_name
 from simkit.runtime.communication.endpoint_table import EndpointTable
 from simkit.runtime.communication.script_callback import ScriptCallback
 from simkit.runtime.communication.subscription import Callback
 
 if TYPE_CHECKING:
+    from simkit.msgs.message_classes import ActionGoal
     from simkit.runtime.communication.topic_bus import TopicBus
     from simkit.runtime.engine.engine import Engine
 
 
-EndCallback = Callable[["GoalHandle"], None]
+EndCallback = Callable[["GoalHandle"], object]
 """Function that receives a goal that has ended."""
 GoalCallback = Callable[["GoalHandle"], None]
 CancelCallback = Callable[["GoalHandle"], bool | None]
 
 
-class GoalHandle(InProcess, Generic[M]):
+GoalState = tuple[GoalStatus, Message, Message, str]
+"""Status, result, feedback and reason of a goal."""
+
+
+class GoalHandle(InProcess, Generic[M_co]):
     """Goal, as seen by the client that sent it and by the plugin that executes it.
 
-    The type parameter is the class of the goal message.
+    The type parameter is the class of the goal message, from which type checkers know those of result and feedback.
 
     Attributes:
         action: action that executes the goal.
         id: 1, 2, … in the order in which goals were sent.
         request: goal message.
         status: present status; see `GoalStatus`.
-        result: result message; None before the end.
-        feedback: newest feedback message.
         reason: text of the plugin about the end of the goal, such as the reason for a rejection.
         sent_ns: simulated time at which the goal was sent [ns].
     """
@@ -56,7 +59,7 @@ class GoalHandle(InProcess, Generic[M]):
         self,
         action: Action,
         number: int,
-        request: M,
+        request: M_co,
         sent_ns: int,
         on_feedback: Callback | None = None,
         on_done: EndCallback | None = None,
@@ -65,11 +68,21 @@ class GoalHandle(InProcess, Generic[M]):
         self.action, self.id, self.request, self.sent_ns = action, number, request, sent_ns
         self._on_feedback, self._on_done, self._on_accept = on_feedback, on_done, on_accept
         self.status = GoalStatus.UNKNOWN
-        self.result: Message = None
-        self.feedback: Message = None
+        self._result: Message = None
+        self._feedback: Message = None
         self.reason = ""
 
     # ------------------------------------------------------------------ for the client
+
+    @property
+    def result(self: GoalHandle[ActionGoal[M, R, F]]) -> R | Any:  # `Any` stands for None, as in `Subscription.latest`
+        """Result message; None before the end."""
+        return self._result
+
+    @property
+    def feedback(self: GoalHandle[ActionGoal[M, R, F]]) -> F | Any:  # as `result`
+        """Newest feedback message; None before the first."""
+        return self._feedback
 
     @property
     def is_done(self) -> bool:
@@ -115,7 +128,7 @@ class GoalHandle(InProcess, Generic[M]):
             raise ActionError(f"goal {self.id} of {self.action.name!r} was accepted already; abort it")
         self.end(GoalStatus.REJECTED, None, reason)
 
-    def publish_feedback(self, feedback: Message) -> None:
+    def publish_feedback(self: GoalHandle[ActionGoal[M, R, F]], feedback: F | Mapping[str, object]) -> None:
         """Send feedback to the client. After the end of the goal, feedback is ignored.
 
         Args:
@@ -125,18 +138,24 @@ class GoalHandle(InProcess, Generic[M]):
             return
         message = self._as_message(feedback, "Feedback")
         with self.action.bus.passing("send_feedback", goal=self.id, feedback=message):
-            self.feedback = message
+            self._feedback = message
             self._notify(self._on_feedback, message, "feedback")
 
-    def succeed(self, result: Message = None, reason: str = "") -> None:
+    def succeed(
+        self: GoalHandle[ActionGoal[M, R, F]], result: R | Mapping[str, object] | None = None, reason: str = ""
+    ) -> None:
         """End the goal as succeeded."""
         self.end(GoalStatus.SUCCEEDED, result, reason)
 
-    def abort(self, result: Message = None, reason: str = "") -> None:
+    def abort(
+        self: GoalHandle[ActionGoal[M, R, F]], result: R | Mapping[str, object] | None = None, reason: str = ""
+    ) -> None:
         """End the goal as aborted."""
         self.end(GoalStatus.ABORTED, result, reason)
 
-    def canceled(self, result: Message = None, reason: str = "") -> None:
+    def canceled(
+        self: GoalHandle[ActionGoal[M, R, F]], result: R | Mapping[str, object] | None = None, reason: str = ""
+    ) -> None:
         """End the goal as cancelled."""
         self.end(GoalStatus.CANCELED, result, reason)
 
@@ -152,8 +171,16 @@ class GoalHandle(InProcess, Generic[M]):
             raise ActionError(f"goal {self.id} of {self.action.name!r} has ended already ({self.status.name})")
         message = None if status is GoalStatus.REJECTED else self._as_message(result, "Result")
         with self.action.bus.passing("end_goal", goal=self.id, status=status, result=message, reason=reason):
-            self.result, self.status, self.reason = message, status, reason
+            self._result, self.status, self.reason = message, status, reason
             self._notify(self._on_done, self, "get_result")
+
+    def get_state(self) -> GoalState:
+        """Return the state of the goal."""
+        return self.status, self._result, self._feedback, self.reason
+
+    def set_state(self, state: GoalState) -> None:
+        """Restore a state from `get_state`."""
+        self.status, self._result, self._feedback, self.reason = state
 
     def _notify(self, callback: Callback | None, argument: Message, part: str) -> None:
         """Call a callback of the client. An exception of the callback does not count as an error of the plugin."""
@@ -275,8 +302,8 @@ def _succeeding(on_goal: Callable[[GoalHandle], Message]) -> GoalCallback:
     return execute
 
 
-GoalStates = tuple[int, tuple[tuple[GoalHandle, tuple[GoalStatus, Message, Message, str]], ...]]
-"""Number of sent goals, and status, result, feedback and reason of each goal."""
+GoalStates = tuple[int, tuple[tuple[GoalHandle, GoalState], ...]]
+"""Number of sent goals, and the state of each goal."""
 
 
 class ActionTable(EndpointTable[Action]):
@@ -338,6 +365,7 @@ class ActionTable(EndpointTable[Action]):
         on_done: EndCallback | None = None,
         *,
         on_accept: EndCallback | None = None,
+        type_: str | type | None = None,
     ) -> GoalHandle:
         """Send a goal; the plugin receives it before the next step.
 
@@ -348,6 +376,7 @@ class ActionTable(EndpointTable[Action]):
             on_done: function that receives the handle after the end of the goal.
             on_accept: function that receives the handle when the execution begins; its inputs to the simulation are not
                 recorded in a journal.
+            type_: type of the action, or class of the goal; None for the type that the action has.
 
         Raises:
             ActionError: no such action; the message suggests the closest name.
@@ -355,7 +384,7 @@ class ActionTable(EndpointTable[Action]):
         """
         self._engine.check_open()
         action = self.get(absolute_name(name))
-        request = self.checked(action, goal)
+        request = self.checked(action, typed_message(goal, type_, self.part, repr(action.name)))
         journal = self._bus.journal
         if journal is not None:
             on_feedback, on_done = journal.outside(on_feedback), journal.outside(on_done)
@@ -403,14 +432,13 @@ class ActionTable(EndpointTable[Action]):
 
     def get_state(self) -> GoalStates:
         """Return the status of each goal."""
-        goals = [(g, (g.status, g.result, g.feedback, g.reason)) for g in self._goals]
-        return self._sent, tuple(goals)
+        return self._sent, tuple((goal, goal.get_state()) for goal in self._goals)
 
     def set_state(self, state: GoalStates) -> None:
         """Restore a state from `get_state`; goals sent after it become UNKNOWN."""
         for goal in self._goals:
-            goal.status, goal.result, goal.feedback, goal.reason = GoalStatus.UNKNOWN, None, None, ""
+            goal.set_state((GoalStatus.UNKNOWN, None, None, ""))
         self._sent = state[0]
         self._goals = [goal for goal, _ in state[1]]
         for goal, values in state[1]:
-            goal.status, goal.result, goal.feedback, goal.reason = values
+            goal.set_state(values)

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 from simkit.argument_checks import check_function
-from simkit.msgs.message_types import M
+from simkit.msgs.message_types import F, M, R
 from simkit.runtime.communication.parameter import Parameter, checked_parameter
 from simkit.runtime.communication.script_callback import ScriptCallback
 
 if TYPE_CHECKING:
     from simkit.deferred_response import DeferredResponse
     from simkit.msgs import Message
+    from simkit.msgs.message_classes import ActionGoal, ServiceRequest
     from simkit.runtime.communication.action_server import Action, CancelCallback, EndCallback, GoalHandle
     from simkit.runtime.communication.communication import Communication
     from simkit.runtime.communication.publisher import Listener, Publisher
-    from simkit.runtime.communication.service_server import CallEnd, Service, ServiceHandler
+    from simkit.runtime.communication.service_server import CallEnd, Service, ServiceCall, ServiceHandler
     from simkit.runtime.communication.subscription import Callback, CallbackPolicy, Subscription
     from simkit.runtime.communication.transform_buffer import TransformBuffer
     from simkit.runtime.engine.engine import Engine
@@ -153,9 +154,72 @@ class ScriptGraph:
 
     # ------------------------------------------------------------------ services
 
+    @overload
+    def call(self, service: str, request: ServiceRequest[M, R], timeout: float = 10.0, on_done: None = None) -> R: ...
+
+    @overload
     def call(
-        self, service: str, request: Message = None, timeout: float = 10.0, on_done: CallEnd | None = None
-    ) -> Message:
+        self,
+        service: str,
+        request: Mapping[str, object] | None = None,
+        timeout: float = 10.0,
+        on_done: None = None,
+        *,
+        type: type[ServiceRequest[M, R]],
+    ) -> R: ...
+
+    @overload
+    def call(
+        self,
+        service: str,
+        request: ServiceRequest[M, R],
+        timeout: float = 10.0,
+        *,
+        on_done: Callable[[ServiceCall[R]], object],
+    ) -> ServiceCall[R]: ...
+
+    @overload
+    def call(
+        self,
+        service: str,
+        request: Mapping[str, object] | None = None,
+        timeout: float = 10.0,
+        *,
+        on_done: Callable[[ServiceCall[R]], object],
+        type: type[ServiceRequest[M, R]],
+    ) -> ServiceCall[R]: ...
+
+    @overload
+    def call(
+        self,
+        service: str,
+        request: Mapping[str, object] | None = None,
+        timeout: float = 10.0,
+        on_done: None = None,
+        *,
+        type: str | None = None,
+    ) -> Any: ...
+
+    @overload
+    def call(
+        self,
+        service: str,
+        request: Mapping[str, object] | None = None,
+        timeout: float = 10.0,
+        *,
+        on_done: CallEnd,
+        type: str | None = None,
+    ) -> ServiceCall[Any]: ...
+
+    def call(
+        self,
+        service: str,
+        request: Message = None,
+        timeout: float = 10.0,
+        on_done: CallEnd | None = None,
+        *,
+        type: str | type | None = None,
+    ) -> Any:
         """Send a request to a service and return the response.
 
         Args:
@@ -164,19 +228,24 @@ class ScriptGraph:
             timeout: longest wait for a service of another process [s], wall time.
             on_done: function that receives the call before the step after the response has arrived; its `response` is
                 None if its `error` is not. With `on_done`, the method returns at once, with the `ServiceCall`.
+            type: type that the service must have, or the class of its requests, such as `msgs.SetBool_Request`; None
+                for any. Type checkers then know the class of the response, as for a request that is a message.
 
         Raises:
             ServiceError: no such service; the message suggests the closest name. Or: another process does not answer, a
                 callback would wait for it (SK-SERVICE-011), or the service answers in a later step (SK-SERVICE-012).
-            MessageError: the request does not fit the type.
+            MessageError: the request does not fit the type, or the service has another one.
             PluginError: the service of a plugin raised.
             SubscriberError: the function of a script that answers raised.
         """
-        return self.communication.services.call(service, request, timeout, on_done)
+        return self.communication.services.call(service, request, timeout, on_done, type)
 
     @overload
     def offer(
-        self, service: str, type_name: type[M], handler: Callable[[M], Message | DeferredResponse]
+        self,
+        service: str,
+        type_name: type[ServiceRequest[M, R]],
+        handler: Callable[[M], R | Mapping[str, object] | DeferredResponse | None],
     ) -> Service: ...
 
     @overload
@@ -204,8 +273,8 @@ class ScriptGraph:
     def act(
         self,
         action: str,
-        type_name: type[M],
-        callback: Callable[[GoalHandle[M]], Any],
+        type_name: type[ActionGoal[M, R, F]],
+        callback: Callable[[GoalHandle[M]], R | Mapping[str, object] | None],
         on_cancel: Callable[[GoalHandle[M]], bool | None] | None = None,
     ) -> Action: ...
 
@@ -214,7 +283,7 @@ class ScriptGraph:
         self,
         action: str,
         type_name: str,
-        callback: Callable[[GoalHandle[Any]], Any],
+        callback: Callable[[GoalHandle], Message],
         on_cancel: CancelCallback | None = None,
     ) -> Action: ...
 
@@ -222,7 +291,7 @@ class ScriptGraph:
         self,
         action: str,
         type_name: str | type,
-        callback: Callable[[GoalHandle], Any],
+        callback: Callable[[GoalHandle], Message],
         on_cancel: CancelCallback | None = None,
     ) -> Action:
         """Open an action.
@@ -243,9 +312,46 @@ class ScriptGraph:
         """
         return self.communication.actions.act(action, type_name, callback, on_cancel)
 
+    @overload
     def send_goal(
-        self, action: str, goal: Message = None, on_feedback: Callback | None = None, on_done: EndCallback | None = None
-    ) -> GoalHandle:
+        self,
+        action: str,
+        goal: ActionGoal[M, R, F],
+        on_feedback: Callable[[F], object] | None = None,
+        on_done: Callable[[GoalHandle[M]], object] | None = None,
+    ) -> GoalHandle[M]: ...
+
+    @overload
+    def send_goal(
+        self,
+        action: str,
+        goal: Mapping[str, object] | None = None,
+        on_feedback: Callable[[F], object] | None = None,
+        on_done: Callable[[GoalHandle[M]], object] | None = None,
+        *,
+        type: type[ActionGoal[M, R, F]],
+    ) -> GoalHandle[M]: ...
+
+    @overload
+    def send_goal(
+        self,
+        action: str,
+        goal: Mapping[str, object] | None = None,
+        on_feedback: Callback | None = None,
+        on_done: EndCallback | None = None,
+        *,
+        type: str | None = None,
+    ) -> GoalHandle[Any]: ...
+
+    def send_goal(
+        self,
+        action: str,
+        goal: Message = None,
+        on_feedback: Callback | None = None,
+        on_done: EndCallback | None = None,
+        *,
+        type: str | type | None = None,
+    ) -> GoalHandle[Any]:
         """Send a goal; the plugin receives it before the next step.
 
         Args:
@@ -253,12 +359,14 @@ class ScriptGraph:
             goal: message, dict of its fields, or None for a message with default fields.
             on_feedback: function that receives each feedback message.
             on_done: function that receives the handle after the end of the goal.
+            type: type that the action must have, or the class of its goals, such as `msgs.Fibonacci_Goal`; None for
+                any. Type checkers then know the classes of feedback and result, as for a goal that is a message.
 
         Raises:
             ActionError: no such action; the message suggests the closest name.
-            MessageError: the goal does not fit the type.
+            MessageError: the goal does not fit the type, or the action has another one.
         """
-        return self.communication.actions.send(action, goal, on_feedback, on_done)
+        return self.communication.actions.send(action, goal, on_feedback, on_done, type_=type)
 
     # ------------------------------------------------------------------ parameters
 

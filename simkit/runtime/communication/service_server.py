@@ -13,7 +13,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import TYPE_CHECKING, Any, Final, Generic, Protocol
 
 from simkit.argument_checks import check_function, checked_number
 from simkit.deferred_response import DeferredResponse
@@ -29,8 +29,8 @@ from simkit.errors import (
 )
 from simkit.in_process import InProcess
 from simkit.msgs import Message
-from simkit.msgs.message_arguments import checked_message
-from simkit.msgs.message_types import interface_type
+from simkit.msgs.message_arguments import checked_message, typed_message
+from simkit.msgs.message_types import R, interface_type
 from simkit.msgs.topic_names import absolute_name
 from simkit.runtime.communication.endpoint_table import EndpointTable
 from simkit.runtime.communication.script_callback import ScriptCallback
@@ -138,8 +138,8 @@ class Service(InProcess):
         return f"<Service {self.name!r} {self.type_name}>"
 
 
-class ServiceCall(InProcess):
-    """Call of a service whose response comes later.
+class ServiceCall(InProcess, Generic[R]):
+    """Call of a service whose response comes later; the type parameter is the class of the response.
 
     Attributes:
         id: 1, 2, … in the order in which calls began.
@@ -153,7 +153,7 @@ class ServiceCall(InProcess):
 
     def __init__(self, number: int, service: Service, request: Message, on_done: CallEnd | None) -> None:
         self.id, self.service, self.request, self.on_done = number, service, request, on_done
-        self.response: Message = None
+        self.response: R | Any = None  # `Any` stands for None, so that a type checker asks for no check
         self.error: ServiceError | None = None
         self.is_done = False
 
@@ -230,7 +230,12 @@ class ServiceTable(EndpointTable[Service]):
     # ------------------------------------------------------------------ calls
 
     def call(
-        self, name: str, request: Message = None, timeout: float = 10.0, on_done: CallEnd | None = None
+        self,
+        name: str,
+        request: Message = None,
+        timeout: float = 10.0,
+        on_done: CallEnd | None = None,
+        type_: str | type | None = None,
     ) -> Message:
         """Call a service and return its response.
 
@@ -240,6 +245,7 @@ class ServiceTable(EndpointTable[Service]):
             timeout: longest wait for a service of another process [s], wall time.
             on_done: function that receives the call before the step after the response has arrived. With it, the method
                 returns at once, with the `ServiceCall`.
+            type_: type of the service, or class of the request; None for the type that the service has.
 
         Raises:
             ServiceError: no such service; the message suggests the closest name. Or: another process does not answer,
@@ -249,7 +255,8 @@ class ServiceTable(EndpointTable[Service]):
             SubscriberError: the function of a script that answers raised.
         """
         self._engine.check_open()
-        service, message = self._service_for(absolute_name(name), request)
+        name = absolute_name(name)
+        service, message = self._service_for(name, typed_message(request, type_, self.part, repr(name)))
         timeout = checked_number(timeout, "timeout", 0.0, unit="s", finite=False)
         if on_done is not None:
             check_function(on_done, "on_done")

@@ -22,6 +22,7 @@ from simkit.scene.override_fields import with_mass
 
 if TYPE_CHECKING:
     from simkit.compiler.name_map import NameMap
+    from simkit.extend import Sensor
     from simkit.runtime.handles.entity_handles import EntityHandles
     from simkit.scene import SceneLink
 
@@ -208,7 +209,7 @@ class Link(Handle):
         return dict(self._collisions)
 
     @property
-    def sensors(self) -> dict[str, Any]:
+    def sensors(self) -> dict[str, Sensor[Any]]:
         """Sensors of the link by name."""
         simulated = self._handles.tables["sensor"]
         return {s.name: simulated[s.scoped] for s in self.scene.sensors if s.scoped in simulated}

@@ -15,6 +15,7 @@ from simkit.runtime.handles.handle import Handle, look_up
 from simkit.runtime.handles.joint import Joint
 from simkit.runtime.handles.joint_mechanics import update_loop_joints
 from simkit.runtime.handles.link import Link
+from simkit.runtime.handles.notebook_tables import model_html
 
 if TYPE_CHECKING:
     from simkit.runtime.handles.entity_handles import EntityHandles
@@ -39,6 +40,9 @@ class Model(Handle):
         self._canonical = next((li for li in scene.all_links() if li.scoped == scene.canonical_link), None)
         self._in_canonical = self._canonical.pose_world.inverse() @ scene.pose_world if self._canonical else None
         self._is_canonical = self._in_canonical == IDENTITY
+
+    def _repr_html_(self) -> str:
+        return model_html(self)
 
     def everything(self) -> list[Handle]:
         """Return this handle and all handles below it."""

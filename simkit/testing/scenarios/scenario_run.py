@@ -3,18 +3,28 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from os import PathLike
+from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Literal
 
 from simkit import progress
+from simkit.argument_checks import shown
 from simkit.diagnostics import name_hint
 from simkit.errors import InputError
-from simkit.recording.command_script import Commands, commands_of, read_script, steady_velocity
+from simkit.recording.command_script import (
+    Commands,
+    commands_of,
+    read_script,
+    script_items,
+    steady_velocity,
+    validate_items,
+)
 from simkit.run_files import FileName
 from simkit.run_nodes import label_of, latency_of, node_arguments, nodes_read_files
-from simkit.run_spec import RunSpec
+from simkit.run_spec import FilePath, RunSpec
 from simkit.testing.scenarios.code_permission import permit_code
 
 if TYPE_CHECKING:
@@ -23,6 +33,9 @@ if TYPE_CHECKING:
     from simkit.runtime.communication.topic_bus import TopicBus
     from simkit.testing.conditions import CheckResult
 
+
+CommandsArgument = FilePath | Sequence[Mapping[str, object]]
+"""Timed commands, a constant velocity `V,W`, a script `FILE.yaml`, or a bag."""
 
 _SLICE_SECONDS = 0.25  # simulated time between two checks of the wall clock [s]
 _RESUME = "remove the call that pauses the world, or resume the world in the same step"
@@ -174,6 +187,30 @@ def run_scenario(
             reason = "until"
         sim.check_nodes()
         return ScenarioResult(reason, watch.results(reason))
+
+
+def with_commands(spec: RunSpec, commands: CommandsArgument | None) -> RunSpec:
+    """Return a run specification with other commands in place of its own; with its own if `commands` is None.
+
+    Raises:
+        InputError: SK-CLI-011 a command or a script is invalid, or the value is of another kind.
+    """
+    if commands is None:
+        return spec
+    spec = replace(spec, commands=(), velocity=None, script=None, play="", play_topics=())
+    if isinstance(commands, (str, PathLike)):
+        path = Path(commands)
+        if path.suffix in (".yaml", ".yml"):
+            return replace(spec, commands=tuple(script_items(path)))
+        if path.exists():
+            return replace(spec, play=str(path.absolute()))
+        if isinstance(commands, str) and "," in commands:
+            return replace(spec, velocity=commands)
+    if not isinstance(commands, (list, tuple)):
+        wanted = "a list of mappings, a text V,W, a script FILE.yaml, or a bag that exists"
+        raise InputError("SK-CLI-011", f"commands: found {shown(commands)}; expected {wanted}")
+    items = ((item, f"commands[{number}]") for number, item in enumerate(commands))
+    return replace(spec, commands=tuple(validate_items(items)))
 
 
 def resolve_commands(spec: RunSpec, bus: TopicBus) -> RunSpec:

@@ -12,9 +12,10 @@ from typing import Any
 import pytest
 
 import simkit
+from simkit import msgs
 from simkit.errors import ServiceError
 from simkit.lifecycle import LifecycleNode
-from simkit.live import Client, LiveError, Server
+from simkit.live import Client, LiveError, LiveServerGoal, Server
 from simkit.msgs.goal_status import GoalStatus
 from simkit_verification.testing.bundles import keep, replay, write_bundle
 
@@ -72,6 +73,46 @@ def test_a_client_calls_the_service_of_another_client(court: simkit.Simulation, 
             client.call("/add", {"aa": 2})
         with pytest.raises(LiveError, match="unknown message type 'example_interfaces/srv/Ad_Request'"):
             client.ask("offer", number=77, name="/x", type="example_interfaces/srv/Ad")
+
+
+def count(goal: LiveServerGoal[msgs.Fibonacci_Goal]) -> dict[str, list[int]]:
+    goal.publish_feedback({"sequence": [1]})
+    return {"sequence": [goal.request.order]}
+
+
+def test_a_client_names_types_by_class(court: simkit.Simulation, run: Callable[..., Any]) -> None:
+    def opens(server: Client) -> None:
+        server.offer("/add", msgs.AddTwoInts_Request, add)
+        server.act("/fibonacci", msgs.Fibonacci_Goal, count)
+
+    with run(court) as client, serving(client.path, opens):
+        words = client.subscribe("/words", type=msgs.String)
+        heard: list[int] = []
+        client.listen("/number", msgs.Int64, lambda message: heard.append(message.data))
+        client.advertise("/number", msgs.Int64).publish(msgs.Int64(7))
+        client.advertise("/words", msgs.String).publish({"data": "hello"})
+        assert next(words).message.data == "hello"
+        assert client.wait(lambda: heard == [7], 5.0)
+        assert client.call("/add", {"a": 2, "b": 40}, type=msgs.AddTwoInts_Request).sum == 42
+        goal = client.send_goal("/fibonacci", {"order": 3}, type=msgs.Fibonacci_Goal)
+        assert goal.wait(5.0)
+        assert (goal.result.sequence.tolist(), goal.feedback.sequence.tolist()) == ([3], [1])
+
+
+def test_a_client_that_names_another_type_gets_an_error(court: simkit.Simulation, run: Callable[..., Any]) -> None:
+    with run(court) as client, serving(client.path, lambda c: c.offer("/add", ADD, add)):
+        early = client.subscribe("/words", type=msgs.Imu)
+        words = client.advertise("/words", msgs.String)
+        with pytest.raises(LiveError, match="'/words' has type std_msgs/msg/String, got type=sensor_msgs/msg/Imu"):
+            client.subscribe("/words", type=msgs.Imu)
+        words.publish({"data": "hello"})
+        with pytest.raises(LiveError, match="'/words' has type") as error:
+            early.get(5.0)
+        assert error.value.code == "SK-MSG-001"
+        with pytest.raises(
+            LiveError, match="needs example_interfaces/srv/AddTwoInts_Request, got std_srvs/srv/Trigger"
+        ):
+            client.call("/add", type=msgs.Trigger_Request)
 
 
 def test_a_client_answers_later_and_calls_services_that_answer_later(

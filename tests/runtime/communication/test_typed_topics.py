@@ -55,6 +55,25 @@ def test_a_service_and_an_action_have_the_type_of_their_request_and_goal_class()
             sim.act("/more", msgs.SetBool_Request, print)
 
 
+def test_a_call_and_a_goal_by_class_need_a_service_and_an_action_of_that_type():
+    with simkit.load(WORLD) as sim:
+        sim.offer("/lamp", msgs.SetBool_Request, lambda request: {"success": request.data})
+        sim.act("/count", msgs.Fibonacci_Goal, lambda goal: {"sequence": [goal.request.order]})
+        assert sim.call("/lamp", {"data": True}, type=msgs.SetBool_Request).success
+        assert not sim.call("/lamp", type="std_srvs/srv/SetBool").success
+        goal = sim.send_goal("/count", {"order": 3}, type=msgs.Fibonacci_Goal)
+        sim.step()
+        assert (goal.result.sequence.tolist(), goal.feedback) == ([3], None)
+        with pytest.raises(simkit.MessageError, match="needs std_srvs/srv/SetBool_Request, got std_srvs/srv/Trigger"):
+            sim.call("/lamp", type=msgs.Trigger_Request)
+        with pytest.raises(simkit.MessageError, match="needs example_interfaces/action/Fibonacci_Goal, got tf2_msgs"):
+            sim.send_goal("/count", type=msgs.LookupTransform_Goal)
+        with pytest.raises(simkit.MessageError, match="ends with _Request"):
+            sim.call("/lamp", type=msgs.SetBool_Response)
+        with pytest.raises(simkit.MessageError, match="did you mean 'data'"):
+            sim.call("/lamp", {"date": True}, type=msgs.SetBool_Request)
+
+
 class Listening(simkit.WorldPlugin):
     """Plugin that opens everything by class."""
 

@@ -20,6 +20,7 @@ from simkit.msgs.data_frames import DataFrame
 from simkit.run_spec import FilePath
 from simkit.testing import log_left_out
 from simkit.testing.scenarios.code_permission import permit_code
+from simkit.testing.scenarios.scenario_run import CommandsArgument, with_commands
 from simkit_learning.sweeps.design import Design, Sampling, SweepRow
 from simkit_learning.sweeps.executor import Executor, make_executor
 from simkit_learning.sweeps.parameter_space import (
@@ -66,6 +67,7 @@ def sweep(
     metrics: Mapping[str, Metric] | None = None,
     duration: float | None = None,
     until: str = "",
+    commands: CommandsArgument | None = None,
     samples: int | None = SAMPLES.default,
     sampling: Sampling = SAMPLING.default,
     design_seed: int = DESIGN_SEED.default,
@@ -90,6 +92,10 @@ def sweep(
         metrics: measurements at the end of each run: expressions, or functions of the simulation.
         duration: simulated time of each run [s]; None for that of the specification.
         until: condition that ends a run early.
+        commands: commands of each run, in place of those of the specification: a list of mappings as in a script,
+            `{"at": 1.0, "topic": "/cmd_vel", "message": {"linear": {"x": "{speed}"}}}`; a constant velocity `"V,W"` as
+            for `--cmd-vel`; a script `FILE.yaml`; or a bag, whose commands are played. Variables `{name}` are replaced
+            in all but bags.
         samples: number of samples of the distributions; None for one sample a seed.
         sampling: "random", "sobol", "latin_hypercube" or "saltelli".
         design_seed: seed of the samples.
@@ -107,13 +113,13 @@ def sweep(
 
     Raises:
         InputError: SK-SWEEP-001 an argument is invalid; SK-SWEEP-002 a parameter is unknown; SK-SWEEP-003 the folder
-            has another sweep; SK-INPUT-004 pandas is not installed.
+            has another sweep; SK-CLI-011 a command is invalid; SK-INPUT-004 pandas is not installed.
         LoadError: the world has errors.
     """
     if find_spec("pandas") is None:
         hint = install_command("experiments")
         raise InputError("SK-INPUT-004", "simkit.sweep needs pandas, which is missing", help=hint)
-    run = permit_code(spec_of_world(world, duration, until), allow_code)
+    run = permit_code(with_commands(spec_of_world(world, duration, until), commands), allow_code)
     design = make_design(
         parameters, sequence_of_seeds(seeds, run.seed), samples=samples, sampling=sampling, design_seed=design_seed
     )

@@ -11,6 +11,7 @@ from sweep_worlds import BOX, SLOPE, crashing, height
 
 import simkit
 from simkit import InputError, RunSpec
+from simkit.recording import Recorder
 from simkit.runtime.engine.snapshot import state_hash
 from simkit.testing import open_scenario
 from simkit_learning.sweeps.design import Design
@@ -142,3 +143,51 @@ def test_a_wrong_sweep_is_refused_before_its_first_run(arguments: Any, messages:
         simkit.sweep(BOX, given.pop("parameters", {}), **given)
     for message in messages:
         assert message in str(error.value)
+
+
+# ---------------------------------------------------------------------- commands
+
+BALL = BOX.replace(
+    "</link></model>",
+    """</link><plugin filename="gz-sim-velocity-control-system"
+name="gz::sim::systems::VelocityControl"><topic>/cmd_vel</topic></plugin></model>""",
+)
+"""A box that moves as `/cmd_vel` says."""
+X = {"x": "pose('box').x"}
+
+
+def test_the_commands_of_a_sweep_are_a_list_a_velocity_a_script_or_a_bag(tmp_path: Path) -> None:
+    forward = [{"at": 0.0, "topic": "/cmd_vel", "message": {"linear": {"x": "{v}"}}}]
+    (tmp_path / "forward.yaml").write_text(str(forward), "utf-8")
+    with simkit.load(BALL) as sim, Recorder(sim, tmp_path / "drive.mcap", topics=("/cmd_vel",)):
+        sim.publish("/cmd_vel", {"linear": {"x": 0.5}})
+        sim.step()
+    speeds = {"v": [0.5, 1.0]}
+    for commands in (forward, "{v},0", tmp_path / "forward.yaml"):
+        table = simkit.sweep(BALL, speeds, commands=commands, metrics=X, duration=0.1, jobs=1)
+        assert table["x"].tolist() == pytest.approx([0.05, 0.1], abs=2e-3), commands
+    played = simkit.sweep(BALL, commands=tmp_path / "drive.mcap", metrics=X, duration=0.1, jobs=1)
+    assert played["x"].tolist() == pytest.approx([0.05], abs=2e-3)
+
+
+def test_the_commands_of_a_sweep_replace_those_of_the_specification() -> None:
+    spec = RunSpec(BALL, velocity="1,0", duration=0.1)
+    assert simkit.sweep(spec, metrics=X, jobs=1)["x"][0] == pytest.approx(0.1, abs=2e-3)
+    assert simkit.sweep(spec, commands="-1,0", metrics=X, jobs=1)["x"][0] == pytest.approx(-0.1, abs=2e-3)
+    assert simkit.sweep(spec, commands=[], metrics=X, jobs=1)["x"][0] == 0.0
+
+
+@pytest.mark.parametrize(
+    "commands, text",
+    [
+        (3, "found 3; expected a list of mappings"),
+        ("missing.mcap", "a bag that exists"),
+        ([{"topic": "/cmd_vel"}], "key 'at' is missing"),
+        (["drive"], "expected {at, topic, message}"),
+        ("missing.yaml", "cannot be read"),
+    ],
+)
+def test_a_sweep_with_invalid_commands_does_not_begin(commands: Any, text: str) -> None:
+    with pytest.raises(InputError, match=text) as caught:
+        simkit.sweep(BALL, commands=commands, metrics=X, duration=0.1, jobs=1)
+    assert caught.value.code == "SK-CLI-011"

@@ -20,6 +20,7 @@ from simkit_terminal.cli.terminal.named_endpoints import interface_type
 
 if TYPE_CHECKING:
     from simkit.live import Client, LiveGoal
+    from simkit.msgs import Message
 
 LISTED_AFTER = "param"
 
@@ -108,7 +109,7 @@ class _GoalRun:
         self._client, self._json, self._feedback = client, json_, feedback
         self._early: list[object] | None = []  # feedback that arrived before the line "Goal accepted"
 
-    def send(self, name: str, goal: object, timeout: float | None) -> None:
+    def send(self, name: str, goal: Message, timeout: float | None) -> None:
         self._print_line("Waiting for an action server to become available...")
         self._print_line(f"Sending goal:\n     {_yaml_text(goal)}")
         handle = self._client.send_goal(name, goal, self._on_feedback if self._feedback else None)

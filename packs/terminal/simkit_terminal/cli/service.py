@@ -28,6 +28,7 @@ from simkit_terminal.cli.terminal.positional_values import read_fields
 
 if TYPE_CHECKING:
     from simkit.live import Client
+    from simkit.msgs import Message
 
 LISTED_AFTER = "topic"
 
@@ -137,7 +138,7 @@ def call(
             time.sleep(max(0.0, begun + 1.0 / rate - time.monotonic()))
 
 
-def _call_once(client: Client, name: str, request: object, json_: bool) -> None:
+def _call_once(client: Client, name: str, request: Message, json_: bool) -> None:
     from simkit.msgs.message_text import message_to_dict, to_python
 
     if not json_:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
 
 from simkit.bridges.teleop import Teleop, TeleopTarget, find_targets
 from simkit.run_spec import JsonObject
@@ -12,6 +13,7 @@ from simkit_view.view.packet import make_packet
 
 if TYPE_CHECKING:
     from simkit import Publisher, Simulation, Subscription
+    from simkit.msgs import Message
 
 _POSES: Final = {
     "goal": ("/goal_pose", "geometry_msgs/msg/PoseStamped"),
@@ -21,8 +23,12 @@ _RECEIVERS: Final = {
     "goal": "no navigator subscribes to {topic}, so no robot drives there; `simkit run WORLD --web --nav` starts one",
     "initial": "no localisation subscribes to {topic}; `simkit run WORLD --web --nav MAP.yaml` starts one",
 }
+_NO_SPEEDS: Final = (0.0, 0.0, 0.0)
 _FRAME: Final = "map"  # frame of goals, as in RViz; the map of a world has the world's origin
 _POSITION_VARIANCE, _YAW_VARIANCE = 0.25, (math.pi / 12) ** 2  # [m²], [rad²]: those of RViz
+
+Speeds = tuple[float, float, float]
+"""Forward speed and speed to the left [m/s], and yaw rate to the left [rad/s]."""
 
 
 class Driving:
@@ -33,7 +39,9 @@ class Driving:
     """
 
     def __init__(self, sim: Simulation) -> None:
-        self._sim, self._sent = sim, b""
+        self._sim, self._sent, self._revision = sim, b"", -1
+        self._taps: dict[str, Subscription] = {}
+        self._newest: dict[str, tuple[float, Speeds]] = {}
         self._drivers: dict[str, tuple[Teleop, object]] = {}
         self._publishers: dict[str, Publisher] = {}
 
@@ -64,20 +72,47 @@ class Driving:
         return driver[0]
 
     def packet(self, options: Sequence[object]) -> bytes | None:
-        """Return the present command of each topic that a page drives, and whether it is the stop of the timeout.
+        """Return the present command of each driven topic: of a page that drives, else the newest one of anybody.
 
-        A command has the forward speed, the speed to the left [m/s] and the yaw rate to the left [rad/s].
+        A command has its speeds, its time [s] (null while a page drives), and true if it is the stop of the timeout.
         """
-        rows = {topic: [driver.speeds, driver.is_expired] for topic, (driver, _) in self._drivers.items()}
+        self._watch()
+        rows: JsonObject = {}
+        for topic in self._taps:
+            driver = self._drivers[topic][0] if topic in self._drivers else None
+            since, speeds = self._newest.get(topic, (0.0, _NO_SPEEDS))
+            if driver is not None and driver.next_tick is not None:
+                rows[topic] = [driver.speeds, None, False]
+            elif since <= self._sim.time:
+                rows[topic] = [speeds, since, driver is not None and driver.is_expired and speeds == _NO_SPEEDS]
         packet = make_packet({"kind": "driving", "commands": rows}, {})
         if packet == self._sent:
             return None
         self._sent = packet
         return packet
 
+    def _watch(self) -> None:
+        """Receive the commands of all robots that can be driven, also of robots that were spawned later."""
+        bus = self._sim.communication.bus
+        if bus.revision == self._revision:
+            return
+        topics = [target.topic for target in find_targets(self._sim)]
+        for topic in [topic for topic in self._taps if topic not in topics]:
+            self._taps.pop(topic).close()
+        for topic in topics:
+            if topic not in self._taps:
+                self._taps[topic] = bus.tap(topic, partial(self._take, topic))
+        self._revision = bus.revision
+
+    def _take(self, topic: str, message: Message) -> None:
+        twist: Any = getattr(message, "twist", message)
+        self._newest[topic] = self._sim.time, (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z))
+
     def close(self) -> None:
-        """Forget what the stream has sent, because no page shows it."""
-        self._sent = b""
+        """End the subscriptions, because no page shows the commands."""
+        for tap in self._taps.values():
+            tap.close()
+        self._taps, self._newest, self._sent, self._revision = {}, {}, b"", -1
 
     def release(self, client: object) -> None:
         """Stop what a page drives, because the page has closed."""

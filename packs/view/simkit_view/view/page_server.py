@@ -21,7 +21,7 @@ from websockets.http11 import Request, Response
 
 from simkit.bridges.live.request_fields import CODE, RequestRefused, read_field, read_identifier, read_json
 from simkit.run_spec import JsonObject
-from simkit_view.web.access import has_token, is_known_host, is_own_origin, quiet_logger, split_address
+from simkit_view.web.access import has_token, is_own_origin, quiet_logger, split_address
 
 PAGE: Final = Path(__file__).parent / "page"
 _PUBLIC: Final = ("/app.js", "/app.css", "/icon.svg")
@@ -199,7 +199,7 @@ class PageServer:
         if address is None or len(hosts) > 1 or len(origins) > 1:
             return _response(HTTPStatus.BAD_REQUEST, b"the request is malformed\n")
         host, origin = "".join(hosts), origins[0] if origins else None
-        if not is_known_host(host, self._host) or not is_own_origin(origin, host):
+        if not is_own_origin(origin, host):  # the Host may be that of a proxy, so only the token protects the scene
             return _response(HTTPStatus.FORBIDDEN, b"requests of other pages are refused\n")
         path = address.path
         if path in _PUBLIC:

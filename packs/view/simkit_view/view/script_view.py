@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import secrets
 import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
@@ -15,13 +17,26 @@ _LONG, _SHORT = 0.02, 0.008  # [s] of wall time above which slices are halved, a
 _PAUSE_POLL: Final = 0.02  # [s] of wall time between two looks at a pause that a page has requested
 
 
+# Behind a proxy the browser cannot reach this machine. A Jupyter server with jupyter-server-proxy passes the page on at
+# `proxy/PORT/` below its own address, so the script first asks there for a small file of the page.
+_FRAME: Final = """<iframe id="{name}" width="100%" height="640" style="border:0" title="simkit"></iframe><script>
+(async () => {{
+  const page = {address}, config = document.getElementById('jupyter-config-data');
+  const base = config ? JSON.parse(config.textContent).baseUrl : document.body.dataset.baseUrl;
+  const passed = base && new URL(`${{base}}proxy/${{new URL(page).port}}/`, location.href);
+  const answer = passed && await fetch(new URL('icon.svg', passed)).catch(() => null);
+  document.getElementById('{name}').src = answer?.ok ? new URL(new URL(page).search, passed) : page;
+}})();
+</script>"""
+
+
 class PageAddress(str):
-    """Address of a page; a notebook shows the page."""
+    """Address of a page; a notebook shows the page, also behind jupyter-server-proxy."""
 
     __slots__ = ()
 
     def _repr_html_(self) -> str:
-        return f'<iframe src="{self}" width="100%" height="640" style="border:0" title="simkit"></iframe>'
+        return _FRAME.format(name=f"simkit-{secrets.token_hex(4)}", address=json.dumps(str(self)))
 
 
 class ScriptView:

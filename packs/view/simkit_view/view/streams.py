@@ -242,7 +242,7 @@ STREAMS: Final[dict[str, Callable[[Simulation, str], Stream]]] = {
 }
 """Streams by the first part of their name; the part after a colon is the second argument."""
 
-LASTING: Final = ("display",)
+LASTING: Final = ("display", "driving")
 """Streams that go on when the structure changes, because they keep messages that do not come again."""
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hmac
 import ipaddress
 import logging
-import socket
 from typing import Final
 from urllib.parse import SplitResult, parse_qs, urlsplit
 
@@ -46,24 +45,6 @@ def is_known_origin(origin: str | None) -> bool:
     if parts.scheme in ("http", "https"):
         return is_loopback(parts.hostname or "") or parts.hostname == _FOXGLOVE_PAGE
     return bool(parts.scheme)  # "null" may be any page; pages cannot choose another scheme, such as that of an app
-
-
-def is_known_host(header: str, bound: str) -> bool:
-    """Check the Host of a request, because a foreign name that leads to this machine makes a foreign page its own.
-
-    Args:
-        header: value of the header `Host`.
-        bound: host that the server is bound to.
-    """
-    address = split_address(f"//{header}")
-    name = (address.hostname if address else None) or ""
-    if is_loopback(bound):
-        return is_loopback(name)
-    try:
-        ipaddress.ip_address(name)  # a number belongs to no foreign name
-    except ValueError:
-        return name in ("localhost", bound.lower(), socket.gethostname().lower())
-    return True
 
 
 def is_own_origin(origin: str | None, host: str) -> bool:

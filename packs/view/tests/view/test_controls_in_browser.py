@@ -47,6 +47,16 @@ def test_the_speed_shown_is_zero_after_the_timeout_of_the_keys(session: Callable
     found.until("document.getElementById('speeds').textContent === '0.00 m/s  0.00 m/s left  0.00 rad/s'")
 
 
+def test_the_command_of_another_program_is_shown_with_its_age(session: Callable[..., Session]) -> None:
+    found = session()
+    speeds = found.page.locator("#speeds")
+    speeds.filter(has_text="0.00 m/s").wait_for(timeout=TIMEOUT)
+    found.do(lambda: found.sim.publish("/cmd_vel", {"linear": {"x": 0.02}}))
+    speeds.filter(has_text="0.02 m/s").filter(has_text="sent 2 s ago").wait_for(timeout=TIMEOUT)
+    found.do(lambda: found.sim.publish("/cmd_vel", {}))
+    found.until("document.getElementById('speeds').textContent === '0.00 m/s  0.00 m/s left  0.00 rad/s'")
+
+
 def test_a_goal_without_a_navigator_says_what_is_missing(session: Callable[..., Session]) -> None:
     found = session()
     found.until("app.stage.draws > 1 && document.getElementById('drive').hidden === false")

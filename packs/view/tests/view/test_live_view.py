@@ -198,9 +198,22 @@ def test_the_present_command_is_sent_until_it_is_stopped(stage: Stage) -> None:
     page.want(driving={})
     page.ask("drive", topic="/cmd_vel", ahead=0.3, turn=0.2)
     commands = lambda: page.packets["driving"][0]["commands"]  # noqa: E731 - short
-    page.until(lambda: commands() == {"/cmd_vel": [[0.3, 0.0, 0.2], False]})
+    page.until(lambda: commands() == {"/cmd_vel": [[0.3, 0.0, 0.2], None, False]})
     page.ask("key", topic="/cmd_vel", key="s")
-    page.until(lambda: commands() == {"/cmd_vel": [[0.0, 0.0, 0.0], False]})
+    page.until(lambda: commands() == {"/cmd_vel": [[0.0, 0.0, 0.0], None, False]})
+
+
+def test_the_command_of_another_program_is_sent_with_its_time(stage: Stage) -> None:
+    page = stage.page()
+    page.want(driving={})
+    page.until(lambda: page.packets["driving"][0]["commands"] == {"/cmd_vel": [[0.0, 0.0, 0.0], 0.0, False]})
+    stage.sim.run(0.5)
+    stage.sim.publish("/cmd_vel", {"linear": {"x": 0.25}})
+    stage.sim.run(0.1)
+    page.until(lambda: page.packets["driving"][0]["commands"]["/cmd_vel"][0] == [0.25, 0.0, 0.0])
+    assert page.packets["driving"][0]["commands"]["/cmd_vel"][1] == pytest.approx(0.5, abs=0.003)
+    stage.sim.reset()
+    page.until(lambda: page.packets["driving"][0]["commands"] == {})
 
 
 NONSENSE: tuple[str | bytes, ...] = (
@@ -263,7 +276,7 @@ def test_a_script_that_steps_updates_the_page_and_keeps_its_bits() -> None:
             if has_view:
                 address = sim.view()
                 assert address == sim.view() and address.startswith("http://127.0.0.1:")
-                assert f'src="{address}"' in address._repr_html_()
+                assert f'page = "{address}"' in address._repr_html_()
             sim.publish("/cmd_vel", {"linear": {"x": 0.3}})
             sim.run(0.5)
             sim.step(3)
@@ -289,8 +302,8 @@ def test_a_script_that_steps_updates_the_page_and_keeps_its_bits() -> None:
         ("/../pyproject.toml", {}, 403),
         ("/../page_server.py?token=TOKEN", {}, 404),
         ("/page_server.py?token=TOKEN", {}, 404),
-        ("/?token=TOKEN", {"Host": "evil.example"}, 403),
-        ("/app.js", {"Host": "evil.example:80"}, 403),
+        ("/scene", {"Host": "evil.example"}, 403),
+        ("/scene?token=TOKEN", {"Host": "proxy.example", "Origin": "https://proxy.example"}, 200),
         ("/?token=TOKEN", {"Origin": "http://evil.example"}, 403),
         ("/?token=TOKEN", {"Origin": "null"}, 403),
         ("/ws?token=TOKEN", {"Origin": "http://127.0.0.1:1"}, 403),

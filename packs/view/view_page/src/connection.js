@@ -19,7 +19,7 @@ export class Connection {
 
   open() {
     if (this.socket || document.hidden || window.simkitFile) return;
-    const socket = new WebSocket(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/ws?token=${encodeURIComponent(token)}`);
+    const socket = new WebSocket(new URL(`ws?token=${encodeURIComponent(token)}`, location.href.replace(/^http/, 'ws')));
     this.socket = socket;
     socket.binaryType = 'arraybuffer';
     socket.onopen = () => {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from simkit import ModelPlugin, Params
 from simkit.extend import Options, OptionsOf, boolean, did_you_mean, number, publishes, text
@@ -112,8 +112,8 @@ class RealSense(ModelPlugin):
         """Return the model's camera with a name; None after a warning."""
         inside = model.scoped + "::"
         within = [s for scoped, s in self.sim.contents.sensors.items() if scoped.startswith(inside)]
-        sensors = [sensor for sensor in within if hasattr(sensor, "transform_messages")]
-        fitting: dict[str, RgbdCamera] = {s.name: s for s in sensors if product in s.products()}
+        sensors = cast("list[RgbdCamera]", [sensor for sensor in within if hasattr(sensor, "transform_messages")])
+        fitting = {s.name: s for s in sensors if product in s.products()}
         if name in fitting:
             return fitting[name]
         kind = "depth camera" if product == "points" else "camera"

@@ -19,12 +19,13 @@ export function makeDrivePanel(app) {
   let targets = [], commands = {}, timer = null, wanted = [0, 0];
 
   const target = () => targets[choice.selectedIndex];
-  /** Shows the present command, which also the end of a time-out or of another page changes. */
+  /** Shows the present command, which also comes from a navigator, another page, or the end of a time-out. */
   const showCommand = () => {
     if (!target()) return;
-    const [[ahead, left, turn], isExpired] = commands[target().topic] ?? [[0, 0, 0], false];
+    const [[ahead, left, turn], since, isExpired] = commands[target().topic] ?? [[0, 0, 0], null, false];
     const parts = [`${ahead.toFixed(2)} m/s`, ...(target().sideways ? [`${left.toFixed(2)} m/s left`] : []), `${turn.toFixed(2)} rad/s`];
-    speeds.textContent = parts.join('  ') + (isExpired ? ', stopped: no key for 10 s' : '');
+    const age = since === null || !(ahead || left || turn) ? 0 : (app.state?.time ?? since) - since;
+    speeds.textContent = parts.join('  ') + (isExpired ? ', stopped: no key for 10 s' : age > 1 ? `, sent ${age.toFixed(0)} s ago` : '');
     speeds.title = `Command on ${target().topic}`;
   };
   const want = () => app.connection.want('driving', box.open && !box.hidden ? {} : null);
@@ -143,6 +144,7 @@ export function makeDrivePanel(app) {
     show();
   };
   app.on('packet:driving', packet => { commands = packet.commands; showCommand(); });
+  app.on('state', showCommand);
   box.addEventListener('toggle', want);
   box.hidden = true;
   return box;
