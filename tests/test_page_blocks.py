@@ -276,7 +276,7 @@ def test_the_commands_of_a_page_run(page: Path, tmp_path: Path) -> None:
         reader.end()
 
 
-def test_the_number_of_commands_that_are_left_out_is_known() -> None:
+def test_no_more_commands_are_left_out_than_are_stated() -> None:
     left_out = Counter(
         pattern_of(command)
         for page in pages()
@@ -285,7 +285,10 @@ def test_the_number_of_commands_that_are_left_out_is_known() -> None:
         for command, *_ in commands(block)
     )
     del left_out[""]
-    assert left_out == {pattern: left_out.number for pattern, left_out in LEFT_OUT.items()}
+    grown = {
+        LEFT_OUT[pattern].reason: number for pattern, number in left_out.items() if number > LEFT_OUT[pattern].number
+    }
+    assert not grown, "let a test run the new commands, or state the larger number"
 
 
 def test_another_test_reads_each_page_that_is_left_to_it() -> None:
