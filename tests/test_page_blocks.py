@@ -204,7 +204,7 @@ class Reader:
     def _begin(self, command: str) -> None:
         terminal = Terminal("bash", "-c", command, cwd=self._folder, size=(40, 160), environment=self._environment)
         self._running[program_of(command)] = self._stack.enter_context(terminal)
-        started = r"t = (?:[1-9]|0\.0?[1-9])|paused|http://.*\n.*$" if WORLD.search(command) else r"\n"
+        started = r"http://" if "simkit view" in command else r"t = [1-9]|paused" if WORLD.search(command) else r"\n"
         assert "error" not in terminal.wait_for(rf"{started}|error.*\n.*")[0]
 
     def _end_of(self, command: str) -> None:
