@@ -1,5 +1,8 @@
 // Elements of the page.
 
+/** Returns a number with a count of decimals, without a minus sign before zero. */
+export const fixed = (value, digits) => value.toFixed(digits).replace(/^-(0(\.0*)?)$/, '$1');
+
 /** Returns a new element. `attributes` are properties; `class`, `style` objects and `on…` functions work too. */
 export function element(name, attributes = {}, ...children) {
   const made = document.createElement(name);
@@ -16,9 +19,9 @@ export function element(name, attributes = {}, ...children) {
 /** Matches a narrow window, such as that of a phone, whose panels lie below the scene. */
 export const narrow = matchMedia('(max-width: 900px)');
 
-/** Returns a panel with a title that folds. In a narrow window, only the one for driving is open at first. */
+/** Returns a panel with a title that folds. In a narrow window, only driving and the selection are open at first. */
 export function panel(id, title, ...children) {
-  const box = element('details', { class: 'panel', id, open: !narrow.matches || id === 'drive' }, element('summary', {}, title), ...children);
+  const box = element('details', { class: 'panel', id, open: !narrow.matches || ['drive', 'selection'].includes(id) }, element('summary', {}, title), ...children);
   const key = `simkit-${narrow.matches ? 'phone' : 'panel'}-${id}`;
   try {
     const kept = localStorage.getItem(key);

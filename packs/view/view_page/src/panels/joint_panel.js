@@ -1,5 +1,5 @@
 // Joints with their positions, in groups. Sliders move the joints of a paused world, as joint_state_publisher_gui does.
-import { element, panel } from '../dom.js';
+import { element, fixed, panel } from '../dom.js';
 
 const MOST = 80;
 
@@ -8,8 +8,7 @@ export function makeJointPanel(app) {
   const box = panel('joints', 'Joints', list);
   let rows = [], newest = [];
   const degrees = joint => joint.type !== 'prismatic';
-  const plain = (value, digits) => value.toFixed(digits).replace(/^-(0\.0*)$/, '$1'); // no minus zero
-  const format = (joint, value) => degrees(joint) ? `${plain(value * 180 / Math.PI, 1)}°` : `${plain(value, 3)} m`;
+  const format = (joint, value) => degrees(joint) ? `${fixed(value * 180 / Math.PI, 1)}°` : `${fixed(value, 3)} m`;
   const make = (joint, index) => {
     const range = joint.type === 'continuous' || joint.lower === null || joint.upper === null ? [-Math.PI, Math.PI] : [joint.lower, joint.upper];
     const value = element('output', { class: 'dim' });

@@ -1,6 +1,6 @@
 // Pose of the selected link or model, and its outline in the scene.
 import * as T from 'three';
-import { element, panel } from '../dom.js';
+import { element, fixed, panel } from '../dom.js';
 import { isWithin } from '../views.js';
 
 export function makeSelectionPanel(app) {
@@ -24,8 +24,8 @@ export function makeSelectionPanel(app) {
     if (frame && frame[0] !== app.selected) lines.push(`pose of ${frame[0].slice(app.selected.length + 2)}`);
     if (body > 0) {
       const pose = app.world.bodies[body], place = new T.Vector3().setFromMatrixPosition(pose);
-      const turn = new T.Euler().setFromRotationMatrix(pose, 'ZYX'), degrees = value => (value * 180 / Math.PI).toFixed(1);
-      lines.push(`x ${place.x.toFixed(3)}  y ${place.y.toFixed(3)}  z ${place.z.toFixed(3)} m`);
+      const turn = new T.Euler().setFromRotationMatrix(pose, 'ZYX'), degrees = value => fixed(value * 180 / Math.PI, 1);
+      lines.push(`x ${fixed(place.x, 3)}  y ${fixed(place.y, 3)}  z ${fixed(place.z, 3)} m`);
       lines.push(`roll ${degrees(turn.x)}  pitch ${degrees(turn.y)}  yaw ${degrees(turn.z)}°`);
     } else lines.push('static');
     text.replaceChildren(...lines.map(line => element('div', {}, line)));
