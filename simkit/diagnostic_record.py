@@ -7,8 +7,9 @@ from typing import Final, Literal
 
 from simkit import hidden_text
 
-TEXT_SOURCE: Final = "<string>"
+TEXT_SOURCE: Final = "world given as text"
 """Name of XML that was passed as text, instead of a file name."""
+_PYTHON_SOURCE: Final = "given in Python"  # a plugin that was passed as an object has neither file nor line
 
 Severity = Literal["error", "warning", "note"]
 
@@ -26,7 +27,7 @@ class Where:
     serial: int = field(default=0, compare=False, repr=False)
 
     def __str__(self) -> str:
-        return f"{self.file or TEXT_SOURCE}:{self.line}" if self.line else (self.file or TEXT_SOURCE)
+        return f"{self.file or TEXT_SOURCE}:{self.line}" if self.line else (self.file or _PYTHON_SOURCE)
 
 
 NOWHERE = Where()
@@ -40,7 +41,7 @@ class Diagnostic:
         code: `SK-AREA-NNN`; never renumbered.
         severity: "error" stops the load, "warning" may change the meaning, "note" is a known conversion.
         message: the problem and the allowed values.
-        file: file of the problem, `<string>` for XML that was passed as text; None if the problem has no place.
+        file: file of the problem, `TEXT_SOURCE` for XML that was passed as text; None if the problem has no place.
         line: line in the file.
         hint: remedy; may be empty.
     """

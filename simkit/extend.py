@@ -18,6 +18,7 @@ from simkit.lazy_names import lazy_attributes
 if TYPE_CHECKING:
     from simkit.cli.run_options import GivenOptions, with_run_options
     from simkit.cli.run_part import OpenRun, RunPart
+    from simkit.cli.terminal.json_report import add_to_report
     from simkit.cli.terminal.options import argument, option
     from simkit.cli.terminal.output import report_errors
     from simkit.compiler import Compiled, SpecBuilder
@@ -123,6 +124,7 @@ __all__ = [
     "VectorSensor",
     "Where",
     "acts",
+    "add_to_report",
     "argument",
     "block",
     "blocks",
@@ -153,6 +155,7 @@ __all__ = [
 _MODULES = {
     "simkit.cli.run_options": ("GivenOptions", "with_run_options"),
     "simkit.cli.run_part": ("OpenRun", "RunPart"),
+    "simkit.cli.terminal.json_report": ("add_to_report",),
     "simkit.cli.terminal.options": ("argument", "option"),
     "simkit.cli.terminal.output": ("report_errors",),
     "simkit.compiler": ("Compiled", "SpecBuilder"),

@@ -20,11 +20,11 @@ def test_the_page_has_every_service_with_its_type_and_no_other() -> None:
     page = PAGE.read_text("utf-8")
     rows = {(name.replace("<world>", "w"), type_name) for name, type_name, _ in ROW.findall(page)}
     types = dict(rows)
-    classic = re.search(r"^These have the types .*$", page, re.MULTILINE)
+    classic = re.search(r"^These have the types .*?\n\n", page, re.MULTILINE | re.DOTALL)
     assert classic is not None
     rows |= {(name, types[name.removeprefix("/gazebo")]) for name in re.findall(r"`(/gazebo/\w+)`", classic[0])}
     standard = page[page.index("## Services of `simulation_interfaces`") : page.index("The action `/simulate_steps`")]
-    for name in re.findall(r"^\| `(/\w+)`|(?<=[:,] )`(/\w+)`(?=[,.])", standard, re.MULTILINE):
+    for name in re.findall(r"^\| `(/\w+)`|(?<=[:,]\s)`(/\w+)`(?=[,.])", standard, re.MULTILINE):
         camel = "".join(word.capitalize() for word in "".join(name).strip("/").split("_"))
         rows.add(("".join(name), f"simulation_interfaces/srv/{camel}"))
     offered = set()

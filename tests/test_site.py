@@ -69,14 +69,14 @@ def test_a_link_leads_to_a_page_of_the_site_or_to_the_repository(site_pages: typ
     text = (
         "[a](../packs/view/docs/view.md#keys) [b](../worlds/office.sdf) [c](../worlds) `[d](../x)` [e](#here)\n"
         f"[f]({repository}blob/main/docs/golden.md) [g](https://example.org/a.md)\n"
-        "```\n[h](../worlds)\n```\n"
+        "```\n[h](../worlds)\n```\n[of\ntwo lines](../worlds)\n"
     )
     on_site = {"docs/golden.md", "packs/view/docs/view.md"}
     assert site_pages.with_site_links(text, "docs/teleop.md", on_site) == (
         f"[a](../packs/view/docs/view.md#keys) [b]({repository}blob/main/worlds/office.sdf) "
         f"[c]({repository}tree/main/worlds) `[d](../x)` [e](#here)\n"
         "[f](golden.md) [g](https://example.org/a.md)\n"
-        "```\n[h](../worlds)\n```\n"
+        f"```\n[h](../worlds)\n```\n[of\ntwo lines]({repository}tree/main/worlds)\n"
     )
 
 

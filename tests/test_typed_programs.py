@@ -94,6 +94,13 @@ def client(client: live.Client) -> None:
     assert_type(goal.result, msgs.Fibonacci_Result | Any)
 
 
+def messages() -> None:
+    twist = msgs.make(msgs.Twist, linear={"x": 0.2})
+    assert_type(twist, msgs.Twist)
+    assert_type(msgs.deserialize(msgs.serialize(twist), msgs.Twist), msgs.Twist)
+    assert_type(simkit.msgs.String("hello").data, str)
+
+
 def loaded() -> None:
     with simkit.load("world") as sim:
         assert_type(sim, simkit.Simulation)

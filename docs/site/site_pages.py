@@ -63,7 +63,7 @@ def with_site_links(text: str, page: str, on_site: Collection[str]) -> str:
             target = f"{REPOSITORY}{'tree' if (ROOT / path).is_dir() else 'blob'}/main/{path}"
         return f"{match[1]}{target}{hash_}{anchor}{match[3]}"
 
-    return _outside_fences(text, lambda line: _outside_code(line, lambda part: _LINK.sub(replaced, part)))
+    return _outside_fences(text, lambda paragraph: _outside_code(paragraph, lambda part: _LINK.sub(replaced, part)))
 
 
 def in_python_markdown(text: str) -> str:
@@ -111,34 +111,37 @@ def _indented(line: str, columns: list[int]) -> str:
 
 
 def _outside_fences(text: str, change: Callable[[str], str]) -> str:
-    """Apply a function to each line of Markdown that is not in a block of code."""
-    return "".join(_changed_lines(text, change))
+    """Apply a function to each paragraph of Markdown that is not a block of code; a link may span lines."""
+    return "".join(_changed_paragraphs(text, change))
 
 
-def _changed_lines(text: str, change: Callable[[str], str]) -> Iterator[str]:
+def _changed_paragraphs(text: str, change: Callable[[str], str]) -> Iterator[str]:
     fence = ""
+    paragraph = ""
     for line in text.splitlines(keepends=True):
         match = _FENCE.match(line)
-        if fence:
-            if line.strip().startswith(fence):
-                fence = ""
+        if fence or match or not line.strip():
+            yield change(paragraph)
             yield line
+            paragraph = ""
+        else:
+            paragraph += line
+        if fence:
+            fence = "" if line.strip().startswith(fence) else fence
         elif match:
             fence = match[1]
-            yield line
-        else:
-            yield change(line)
+    yield change(paragraph)
 
 
-def _outside_code(line: str, change: Callable[[str], str]) -> str:
-    """Apply a function to a line with its code spans hidden, because a code span may look like a link."""
+def _outside_code(text: str, change: Callable[[str], str]) -> str:
+    """Apply a function to a text with its code spans hidden, because a code span may look like a link."""
     codes: list[str] = []
 
     def hide(match: re.Match[str]) -> str:
         codes.append(match[0])
         return f"\0{len(codes) - 1}\0"
 
-    return re.sub(r"\0(\d+)\0", lambda match: codes[int(match[1])], change(_CODE.sub(hide, line)))
+    return re.sub(r"\0(\d+)\0", lambda match: codes[int(match[1])], change(_CODE.sub(hide, text)))
 
 
 def github_anchor(heading: str, separator: str) -> str:

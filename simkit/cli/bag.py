@@ -17,6 +17,7 @@ from simkit.cli.plot_sources import PlotRequest, draw_chart, is_bag, split_sourc
 from simkit.cli.run_loop import Interrupts
 from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
 from simkit.cli.terminal import completion, options
+from simkit.cli.terminal.json_report import add_to_report
 from simkit.cli.terminal.options import argument, option, validate_word
 from simkit.cli.terminal.output import (
     absolute_name,
@@ -42,7 +43,11 @@ _LOSSES_LISTED = 20
 def plot(
     arguments: Annotated[
         list[str],
-        argument("One or more bags, then fields: /odom.pose.pose.position.x, /scan.ranges[0].", "BAG... FIELD..."),
+        argument(
+            "One or more bags, then fields: /odom.pose.pose.position.x, /scan.ranges[0].",
+            "BAG... FIELD...",
+            completion.sources_and_fields,
+        ),
     ],
     output: options.ChartFile = Path("plot.svg"),
     against: options.Against = None,
@@ -273,6 +278,7 @@ def recover(
     recovered: Annotated[Path | None, argument("Bag to write; default: NAME_recovered in the same folder.")] = None,
     output: Annotated[Path | None, option("Alias of the argument RECOVERED.", "RECOVERED", "--output", "-o")] = None,
     force: options.Force = False,
+    json_: options.Json = False,  # noqa: ARG001 (`report_errors` reads it)
 ) -> None:
     """Copy the readable part of a bag into a new, complete bag, and report what is lost.
 
@@ -282,6 +288,13 @@ def recover(
 
     target = output or recovered or broken.with_name(f"{broken.stem}_recovered{broken.suffix}")
     recovery = recover_bag(broken, target, overwrite=force)
+    add_to_report(
+        output=str(target),
+        messages=recovery.messages,
+        topics=recovery.topics,
+        state=recovery.state,
+        losses=recovery.loss_lines(),
+    )
     for line in recovery.loss_lines()[:_LOSSES_LISTED]:
         print_note(f"note: {line}")
     if len(recovery.losses) > _LOSSES_LISTED:

@@ -39,7 +39,9 @@ def record(
         str | None,
         option("Exclude topics that match.", "REGEX", "--exclude-regex", "--exclude", "-x", show_default=False),
     ] = None,
-    topics_too: Annotated[list[str], option("Topic to record; repeatable.", "TOPIC", "--topics")] = [],
+    topics_too: Annotated[
+        list[str], option("Topic to record; repeatable.", "TOPIC", "--topics", complete=completion.topics)
+    ] = [],
     output: Annotated[
         Path | None, option("NAME.mcap: one file; else a rosbag2 folder.", "OUT", "--output", "-o", show_default=False)
     ] = None,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from typer import Option
 
+from simkit import progress
 from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
 from simkit.cli.terminal import options
 from simkit.cli.terminal.json_report import add_to_report, report_errors_and_json
@@ -42,7 +43,7 @@ def bench(
 
     spec = given.run_spec(world)
     figures: list[Figure] = []
-    for figure in compare_with_bare_mujoco(spec, rounds=rounds):
+    for figure in progress.report_each("measuring", compare_with_bare_mujoco(spec, rounds=rounds)):
         if not figures:  # after the load, whose errors need no table
             stdout_console().print(f"{'':<52}{'simkit':>12}{'bare':>12}{'ratio':>8}{'goal':>8}")
         figures.append(figure)
@@ -54,7 +55,7 @@ def bench(
         )
     import_time = measure_import_time(rounds)
     stdout_console().print(f"{'import simkit':<52}{import_time:>9.3f} s{'':>21}{'0.3 s':>8}")
-    with load(spec.world, **spec.load_arguments()) as sim:
+    with load(spec.world, **spec.load_arguments()) as sim, progress.task("measuring the memory"):
         growth = measure_memory_growth(sim, _HOUR if full else 60.0) * _HOUR
     stdout_console().print(f"{'memory':<52}{growth / 1e6:>9.2f} MB  a simulated hour")
     add_to_report(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -15,7 +14,7 @@ from simkit.cli.run_options import NONE_GIVEN, GivenOptions, parse_seconds, with
 from simkit.cli.second_reader.against_option import Against, compare_readers
 from simkit.cli.terminal import options
 from simkit.cli.terminal.options import option
-from simkit.cli.terminal.output import print_diagnostics, report_errors, stdout_console
+from simkit.cli.terminal.output import print_diagnostics, print_json, report_errors, stdout_console
 from simkit.diagnostics import Diagnostic, Diagnostics, Where
 from simkit.errors import InputError
 from simkit.run_files import FilePath
@@ -99,7 +98,7 @@ def check(
         differences, comparison = compare_readers(file, against, given.source_options(), diagnostics)
         diagnostics += differences
     if json_:
-        stdout_console().file.write(json.dumps([d.as_dict() for d in diagnostics], indent=2) + "\n")
+        print_json([d.as_dict() for d in diagnostics], indent=2)
     else:
         print_diagnostics(diagnostics, verbose=True, console=stdout_console(), every=every)
         if comparison:
@@ -164,7 +163,7 @@ def _fix_inertia(file: str, output: Path | None, force: bool, resource_paths: Se
              "moments_old": f.old, "moments_new": f.new, "why": f.why}
             for f in result.fixes
         ]  # fmt: skip
-        stdout_console().file.write(json.dumps(fixes, indent=2) + "\n")
+        print_json(fixes, indent=2)
     else:
         for fix in result.fixes:
             stdout_console().print(str(fix))

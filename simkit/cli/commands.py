@@ -19,6 +19,7 @@ from typer import Option
 from typer.core import TyperCommand, TyperGroup
 
 from simkit.cli.terminal.interfaces_option import interfaces_option
+from simkit.cli.terminal.verbosity import verbosity_options
 from simkit.errors import InputError
 from simkit.garbage_collection import permanent_imports
 from simkit.memory_error import check_memory_limit
@@ -264,10 +265,12 @@ def _bypass_conversion(command: Command) -> None:
 
 
 def _converted_parameters(original: Callable[[Context], list[Parameter]], ctx: Context) -> list[Parameter]:
-    """Return the parameters of a command, including `--help`."""
+    """Return the parameters of a command with those of every command, before `--help`."""
     parameters = original(ctx)
     if not hasattr(ctx.command, "commands"):
-        parameters = [*parameters[:-1], interfaces_option(), *parameters[-1:]]
+        taken = {name for each in parameters for name in each.opts}
+        added = [each for each in verbosity_options() if taken.isdisjoint(each.opts)]
+        parameters = [*parameters[:-1], *added, interfaces_option(), *parameters[-1:]]
     for each in parameters:
         if each.nargs == 1 and not getattr(each, "multiple", False) and "process_value" not in vars(each):
             each.process_value = partial(_process_value, each, each.process_value)

@@ -9,6 +9,7 @@ from typer import Option
 
 from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
 from simkit.cli.terminal import options
+from simkit.cli.terminal.json_report import add_to_report
 from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
 from simkit.diagnostics import Diagnostics
@@ -38,6 +39,7 @@ def convert(
     given: GivenOptions = NONE_GIVEN,
     force: options.Force = False,
     verbose: options.Verbose = False,
+    json_: options.Json = False,  # noqa: ARG001 (`report_errors` reads it)
 ) -> None:
     """Convert a world or model to MJCF or to a single SDF file."""
     source = given.source_options()
@@ -49,6 +51,7 @@ def convert(
     else:
         text = f"found the ending {output.suffix!r}; expected .xml, .mjcf, .sdf or .world"
         raise InputError("SK-CLI-018", f"--output {output}: {text}")
+    add_to_report(output=str(output), assets=count)
     stdout_console().print(f"{output}" + (f" and {count} files in {output.stem}_assets" if count else ""))
 
 

@@ -94,7 +94,7 @@ def demo(
     force: options.Force = False,
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
 ) -> None:
-    """Run five short examples one after the other: pictures, a page and a search for a cause, in about a minute."""
+    """Run five short examples one after the other, in about a minute."""
     steps = demo_steps()
     chosen = [steps[validate_word("STEP", name, list(steps))] for name in dict.fromkeys(names)] or list(steps.values())
     check_folder(output)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict
 from typing import Annotated
 
 from simkit.cli.terminal import options
 from simkit.cli.terminal.options import argument
-from simkit.cli.terminal.output import report_errors, stdout_console
+from simkit.cli.terminal.output import print_json, report_errors, stdout_console
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 
@@ -28,7 +27,7 @@ def explain(
         hint = did_you_mean(prefix, catalogue()) or "list all codes with `simkit explain SK-`"
         raise InputError("SK-CLI-017", f"there is no code {code!r}; {hint}")
     if json_:
-        stdout_console().file.write(json.dumps([asdict(c) for c in codes], indent=2, default=_text) + "\n")
+        print_json([asdict(c) for c in codes], indent=2, default=_text)
     elif len(codes) == 1:
         stdout_console().print(code_text(codes[0]))
     else:

@@ -22,6 +22,7 @@ from simkit.cli.terminal.output import (
     JsonValue,
     print_diagnostics,
     print_error,
+    print_message,
     print_status,
     stdout_console,
 )
@@ -239,7 +240,7 @@ def record(
     )
     for result in recorded.checks:
         if not result.passed:
-            print_status(f"warning: the scenario's own check failed: {result.check.title}: {result.message}")
+            print_message(f"warning: the scenario's own check failed: {result.check.title}: {result.message}")
 
 
 def _print_needed_folders(folder: Path) -> None:

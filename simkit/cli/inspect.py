@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import fnmatch
-import json
 from collections.abc import Iterator
 from dataclasses import asdict
 from typing import Annotated
@@ -12,7 +11,14 @@ from typer import Option
 
 from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
 from simkit.cli.terminal import options
-from simkit.cli.terminal.output import JsonObject, print_diagnostics, printable, report_errors, stdout_console
+from simkit.cli.terminal.output import (
+    JsonObject,
+    print_diagnostics,
+    print_json,
+    printable,
+    report_errors,
+    stdout_console,
+)
 from simkit.diagnostics import Diagnostic, did_you_mean
 from simkit.errors import InputError
 from simkit.run_spec import SourceOptions
@@ -37,7 +43,7 @@ def inspect(
         raise InputError("SK-CLI-018", f"found the argument {pattern!r}; it needs the option --paths")
     description = describe(file, plugin_paths=given.values.get("plugin_paths", ()), **source)
     if json_:
-        stdout_console().file.write(json.dumps(description, indent=2) + "\n")
+        print_json(description, indent=2)
     else:
         for line in _tree(description):
             stdout_console().print(line)
@@ -61,7 +67,7 @@ def _print_paths(file: str, source: SourceOptions, pattern: str, json_: bool) ->
         hint = did_you_mean(pattern, sorted(names)) or "without a pattern all paths are listed"
         raise InputError("SK-CLI-014", f"no path matches {pattern!r}; {hint}")
     if json_:
-        stdout_console().file.write(json.dumps([asdict(p) for p in matching], indent=2) + "\n")
+        print_json([asdict(p) for p in matching], indent=2)
         return 0
     width = min(100, max((len(p.path) for p in matching), default=0))
     for path in matching:

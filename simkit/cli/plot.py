@@ -31,7 +31,7 @@ def plot(
         argument(
             "One or more worlds, scenarios or bags, then fields: /odom.pose.pose.position.x, /scan.ranges[0].",
             "WORLD-or-BAG... FIELD...",
-            completion.scenarios,
+            completion.sources_and_fields,
         ),
     ],
     output: options.ChartFile = Path("plot.svg"),

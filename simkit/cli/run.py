@@ -19,7 +19,7 @@ from simkit.cli.terminal import options
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins
 from simkit.cli.terminal.json_report import UsageError, add_diagnostics, end_with_error, report_errors_and_json
 from simkit.cli.terminal.options import option
-from simkit.cli.terminal.output import print_diagnostics, print_status
+from simkit.cli.terminal.output import print_diagnostics, print_message, print_status
 from simkit.diagnostics import Diagnostic
 from simkit.errors import LoadError
 from simkit.garbage_collection import permanent_imports
@@ -131,7 +131,7 @@ def execute(spec: RunSpec, parts: Sequence[RunPart], *, verbose: bool, quiet: bo
     with RunVerdict(spec) as verdict, ExitStack() as stack:
         for part in parts:
             stack.enter_context(part.around_run(spec, verdict))
-        blocked = stack.enter_context(BlockedPlugins(print_status))
+        blocked = stack.enter_context(BlockedPlugins(print_message))
         has_nodes = bool(spec.nodes) or any(part.adds_nodes for part in parts)
         with nodes_read_files(has_nodes):
             loaded = load(spec.world, **spec.load_arguments())

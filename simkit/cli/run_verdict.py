@@ -8,7 +8,7 @@ from contextlib import AbstractContextManager, nullcontext
 from typing import TYPE_CHECKING, Final
 
 from simkit.cli.terminal.json_report import add_to_report, print_report_now
-from simkit.cli.terminal.output import print_status, stdout_console
+from simkit.cli.terminal.output import print_message, stdout_console
 from simkit.cli.wall_time_limit import WallTimeExceeded, WallTimeLimit
 from simkit.errors import RegressionError, SimkitError
 from simkit.run_spec import RunSpec
@@ -47,7 +47,7 @@ class RunVerdict:
         self._watch: Watch | None = None
         self._has_begun = self._has_end = False
         self.begun = time.perf_counter()
-        self._wall = WallTimeLimit(spec.wall_timeout, print_status, self._give_up)
+        self._wall = WallTimeLimit(spec.wall_timeout, print_message, self._give_up)
 
     def __enter__(self) -> RunVerdict:
         self._wall.__enter__()
@@ -61,7 +61,7 @@ class RunVerdict:
         if isinstance(error, WallTimeExceeded):
             self.code = FAILED
             if not self._has_begun:
-                print_status(self.wall_timeout_text())
+                print_message(self.wall_timeout_text())
         if error is None or isinstance(error, (SimkitError, KeyboardInterrupt)):
             self._report(error)
         return isinstance(error, WallTimeExceeded)

@@ -18,6 +18,7 @@ from urllib.parse import unquote
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.loaders.resources.bundled_models import (
     builtin_model,
+    builtin_model_uri,
     bundled_names,
     bundled_worlds,
     find_bundled_model,
@@ -147,7 +148,7 @@ def _document_of_uri(source: str | os.PathLike[str], resolver: Resolver, diagnos
 
 def _document(source: str | os.PathLike[str], resolver: Resolver, diagnostics: Diagnostics) -> Document | None:
     if isinstance(source, str) and "<" in source:
-        root = parse_text(source, diagnostics)
+        root = parse_text(source, diagnostics, builtin_model_uri(source))
         return None if root is None else Document(root, None, source.encode())
     path = Path(source)
     if not str(source):

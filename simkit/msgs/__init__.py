@@ -16,12 +16,22 @@ import importlib
 import struct
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Protocol, overload
 
 from simkit.argument_checks import checked_integer
 from simkit.errors import ArgumentTypeError, MessageError, NoMessageError
 from simkit.msgs.cdr_serializer import SizeMismatch, make_serializer
-from simkit.msgs.message_types import Message, definition, full_name, message_class, type_of, type_store, types_of
+from simkit.msgs.message_types import (
+    M,
+    Message,
+    definition,
+    full_name,
+    message_class,
+    named_type,
+    type_of,
+    type_store,
+    types_of,
+)
 from simkit.msgs.own_interfaces import add
 from simkit.msgs.topic_names import absolute_name, valid_topic
 from simkit.msgs.type_hashes import rihs
@@ -116,14 +126,28 @@ def _serializer_of(message: Message) -> Callable[[Message], bytes]:
     return serializer
 
 
-def make(type_name: str, /, **fields: FieldValue) -> Message:
+@overload
+def make(type_name: type[M], /, **fields: FieldValue) -> M: ...
+
+
+@overload
+def make(type_name: str, /, **fields: FieldValue) -> Message: ...
+
+
+def make(type_name: str | type, /, **fields: FieldValue) -> Message:
     """Build a message. Missing fields are zero (a quaternion's w is 1), dicts become messages, numbers become arrays.
+
+    Args:
+        type_name: type, such as `geometry_msgs/msg/Twist`, or class, such as `msgs.Twist`.
+        fields: values of fields by name.
 
     Raises:
         MessageError: the type or a field is unknown (the message suggests the closest name), or a value does not match.
     """
     if not isinstance(type_name, str):
-        raise NoMessageError(f"the type of a message must be a text, got {type_name!r:.60}")
+        if not isinstance(type_name, type):
+            raise NoMessageError(f"the type of a message must be a text or a class, got {type_name!r:.60}")
+        type_name = named_type(type_name)
     return _builder_of()(type_name).build(fields)
 
 
@@ -236,10 +260,18 @@ def _field_fault(message: Message) -> str:
     return "a field has a value that does not match its type"
 
 
-def deserialize(data: bytes | memoryview, type_name: str) -> Message:
-    """Decode a message that `serialize` encoded.
+@overload
+def deserialize(data: bytes | memoryview, type_name: type[M]) -> M: ...
+
+
+@overload
+def deserialize(data: bytes | memoryview, type_name: str) -> Message: ...
+
+
+def deserialize(data: bytes | memoryview, type_name: str | type) -> Message:
+    """Decode a message that `serialize` encoded; its type is given by name or by class.
 
     Raises:
         MessageError: the type is unknown.
     """
-    return type_store().deserialize_cdr(data, full_name(type_name))
+    return type_store().deserialize_cdr(data, full_name(named_type(type_name)))

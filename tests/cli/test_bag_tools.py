@@ -102,7 +102,7 @@ def test_an_export_prints_the_written_files(here: Path, simkit_line: Any) -> Non
 
 
 def test_a_recording_is_played_to_the_same_hash(here: Path, simkit_line: Any) -> None:
-    done = simkit_line("run", "yard.sdf", "--play", "drive.mcap", "--name", "tools", "-q")
+    done = simkit_line("run", "yard.sdf", "--play", "drive.mcap", "--name", "tools")
     assert "playing /cmd_vel of drive.mcap" in done.stderr
     assert STATE.search(done.stdout)[1] == (here / "state").read_text(encoding="utf-8")  # type: ignore[index]
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import signal
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +16,9 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
+import simkit
 from simkit.cli import app
+from simkit.recording import Recorder
 
 MAIN = "from simkit.cli import main; main()"
 
@@ -51,6 +55,8 @@ def completed(line: str) -> list[str]:
         ("simkit param get /T", ["/Tuner"]),
         ("simkit param get /Tuner p", ["p_gain"]),
         ("simkit node info /Cou", ["/Countdown"]),
+        ("simkit node ping /Cou", ["/Countdown"]),
+        ("simkit bag record --topics /od", ["/odom"]),
         ("simkit model pose r", ["rover"]),
         ("simkit model joint rover l", ["left_wheel"]),
         ("simkit model pose rover ri", ["right"]),
@@ -102,6 +108,82 @@ def test_files_are_completed_by_their_suffix_and_a_single_folder_by_its_content(
     (tmp_path / "labs" / "two").mkdir()
     assert completed("simkit run la") == ["labs/one/", "labs/two/"]
     assert completed("simkit run no/such/folder/") == []
+
+
+def test_plots_complete_bags_and_then_their_topics(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    with simkit.load("turtlebot3_empty") as sim, Recorder(sim, Path("drive.mcap")):
+        sim.run(0.1)
+    for command in ("plot", "bag plot", "bag info"):
+        assert completed(f"simkit {command} dri") == ["drive.mcap"]
+    assert completed("simkit plot drive.mcap /o") == ["/odom"]
+
+
+SHELLS = {
+    "bash": """
+source ./script
+COMP_WORDS=($LINE); COMP_CWORD=$((${#COMP_WORDS[@]} - 1))
+_simkit_completion simkit
+printf '%s\\n' "${COMPREPLY[@]}"
+""",
+    "zsh": """
+compdef() { }
+source ./script
+_arguments() { print -r -- "$@" }
+words=(${=LINE}); CURRENT=${#words}
+_simkit_completion
+""",
+    "fish": """
+source ./script
+complete -C "$LINE"
+""",
+}
+"""For each shell: a program that loads the script of `--show-completion` and prints what it offers for a line."""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.name == "nt", reason="these shells run elsewhere")
+@pytest.mark.parametrize("shell", SHELLS)
+def test_each_shell_offers_worlds_bags_and_topics(shell: str, place: Path, start: Callable[..., Any]) -> None:
+    program = shutil.which(shell)
+    if program is None:
+        pytest.skip(f"{shell} is not installed")
+    start("yard")
+    (place / "drive.mcap").touch()
+    (place / "bin").mkdir()
+    command = place / "bin" / "simkit"
+    command.write_text(f'#!/bin/sh\nexec {sys.executable} -P -m simkit "$@"\n')
+    command.chmod(0o755)
+    ours = {**os.environ, "PATH": f"{place}/bin{os.pathsep}{os.environ['PATH']}", "HOME": str(place)}
+    with (place / "script").open("wb") as script:
+        subprocess.run([command, "--show-completion", shell], stdout=script, env=ours, cwd=place, check=True)
+    for line, offered in (
+        ("simkit run turtlebot3_w", ["turtlebot3_waffle", "turtlebot3_waffle_pi", "turtlebot3_world"]),
+        ("simkit bag info dr", ["drive.mcap"]),
+        ("simkit topic echo /od", ["/odom"]),
+    ):
+        answer = subprocess.run(
+            [program, "-c", SHELLS[shell]],
+            env={**ours, "LINE": line},
+            cwd=place,
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        assert re.findall(r"[\w./]+", answer.stdout.removeprefix("*: :")) == offered, answer
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_the_protocol_of_each_shell_is_answered(shell: str) -> None:
+    line = "simkit run turtlebot3_wo"
+    environment = {
+        "bash": {"COMP_WORDS": line, "COMP_CWORD": "2"},
+        "zsh": {"_TYPER_COMPLETE_ARGS": line},
+        "fish": {"_TYPER_COMPLETE_ARGS": line, "_TYPER_COMPLETE_FISH_ACTION": "get-args"},
+    }[shell]
+    environment["_SIMKIT_COMPLETE"] = f"complete_{shell}"
+    answer = CliRunner().invoke(app, [], prog_name="simkit", env=environment).output
+    assert answer.strip() in ("turtlebot3_world", "_arguments '*: :((\"turtlebot3_world\"))'")
 
 
 @pytest.mark.parametrize(

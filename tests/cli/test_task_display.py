@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from simkit.cli.terminal.task_display import task_text, time_text
-from simkit.progress import Task
+from simkit.cli.terminal import task_display
+from simkit.cli.terminal.task_display import displayed_tasks, task_text, time_text
+from simkit.progress import Task, task
 from tests.cli.terminals import Terminal
 
 WAITING = """
@@ -81,3 +82,30 @@ def test_a_task_is_one_line_with_amount_item_and_times() -> None:
     assert task_text(Task("decomposing", total=6.0, unit="%", done=3.0)).startswith("decomposing: 50 %, 0 s")
     assert task_text(Task("copying")) == "copying, 0 s"
     assert time_text(7500.0) == "2 h 5 min"
+
+
+def test_without_a_terminal_a_long_task_is_a_line_from_time_to_time(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(task_display, "_FIRST_LINE", 0.05)
+    monkeypatch.setattr(task_display, "_LINE_PERIOD", 0.05)
+    written = ""
+    with displayed_tasks(lambda: pytest.fail("no console is needed")), task("checking files", 4) as outer:
+        outer.advance("a.sdf")
+        with task("reading the world"):
+            while written.count("\n") < 2:
+                written += capsys.readouterr().err
+    first = written.splitlines()[0]
+    assert first.startswith("checking files: 1 of 4 (a.sdf), 0 s") and first.endswith("; reading the world, 0 s")
+    assert "\x1b" not in written
+
+
+def test_a_short_or_quiet_task_writes_no_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with displayed_tasks(lambda: pytest.fail("no console is needed")), task("short"):
+        pass
+    monkeypatch.setattr(task_display, "_FIRST_LINE", 0.0)
+    with displayed_tasks(lambda: pytest.fail("no console is needed"), quiet=True), task("quiet"):
+        pass
+    assert capsys.readouterr().err == ""

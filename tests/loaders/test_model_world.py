@@ -32,7 +32,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def run(*arguments: str) -> str:
-    result = CliRunner().invoke(app, ["run", *arguments, "--duration", "0.5", "-q"])
+    result = CliRunner().invoke(app, ["run", *arguments, "--duration", "0.5"])
     assert result.exit_code == 0, result.output
     return result.output
 

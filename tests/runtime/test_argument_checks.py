@@ -256,7 +256,7 @@ def test_a_diagnostic_of_xml_text_names_a_string() -> None:
     text = WORLD.replace('<link name="m"/>', '<link name="m"/><nix/>')
     with simkit.load(text) as sim:
         found = next(d for d in sim.diagnostics if "nix" in d.message)
-        assert (found.file, found.line) == ("<string>", 3)
+        assert (found.file, found.line) == ("world given as text", 3)
     with pytest.raises(simkit.LoadError):
         simkit.load(text, strict=True)
 

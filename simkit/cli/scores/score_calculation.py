@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Final
 from simkit.cli.scores.file_score import FileScore, KindScore, Remedy, ScoredPart, State
 from simkit.cli.scores.part_list import KINDS, Part, PartKind, list_parts
 from simkit.cli.scores.part_places import PartPlaces
+from simkit.diagnostic_record import TEXT_SOURCE
 from simkit.diagnostics import Diagnostic, Diagnostics, shorten
 from simkit.errors import SimkitError
 from simkit.plugins.discovery.find_plugin_class import find_plugin
@@ -76,7 +77,7 @@ def score_file(source: str | Path, arguments: LoadArguments, options: ScoreOptio
     from simkit.build import check_and_visit
 
     text = source if isinstance(source, str) and "<" in source else ""
-    shown = "<string>" if text else str(source)
+    shown = TEXT_SOURCE if text else str(source)
     results: list[FileScore] = []
 
     def visit(simulation: Simulation, diagnostics: Diagnostics) -> None:

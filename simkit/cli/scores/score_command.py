@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Sequence
 from dataclasses import replace
@@ -16,7 +15,7 @@ from simkit.cli.scores.isolated_scores import ScoreLimits, score_files
 from simkit.cli.scores.score_calculation import EffectOf, ScoreOptions, score_file
 from simkit.cli.scores.score_page import write_score_page
 from simkit.cli.scores.score_text import folder_lines, score_lines, summary_lines
-from simkit.cli.terminal.output import JsonObject, stdout_console
+from simkit.cli.terminal.output import JsonObject, print_json, stdout_console
 from simkit.errors import InputError
 from simkit.run_fields import LoadArguments
 from simkit.sensors.cameras.rendering.render_thread import usable_cores
@@ -93,4 +92,4 @@ def _is_bad(score: FileScore, *, strict: bool) -> bool:
 
 
 def _print_json(value: JsonObject) -> None:
-    stdout_console().file.write(json.dumps(value, indent=2) + "\n")
+    print_json(value, indent=2)

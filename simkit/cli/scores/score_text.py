@@ -11,6 +11,7 @@ from typing import Final
 from simkit.cli.scores.file_score import FileScore, Remedy, ScoredPart, Status
 from simkit.cli.scores.folder_score import FolderScore
 from simkit.cli.scores.part_list import KIND_TITLES
+from simkit.diagnostic_record import TEXT_SOURCE
 from simkit.diagnostics import shorten
 
 MISSING_TITLES: Final[dict[Status, str]] = {
@@ -74,7 +75,7 @@ def _remedy_line(remedy: Remedy) -> str:
 
 def place_text(file: str | None, line: int | None) -> str:
     """Return `file:line`."""
-    return f"{file or '<string>'}:{line}" if line else file or "<string>"
+    return f"{file or TEXT_SOURCE}:{line}" if line else file or TEXT_SOURCE
 
 
 def folder_lines(scores: Sequence[FileScore]) -> Iterator[str]:

@@ -63,6 +63,7 @@ def open_topics(ctx: typer.Context) -> Iterator[Source]:
 
 _WORLD_SUFFIXES = (".sdf", ".world", ".urdf", ".xacro", ".xml", ".model", ".mjcf")
 _SCENARIO_SUFFIXES = (".yaml", ".yml", ".py")
+_BAG_SUFFIXES = (".mcap", ".db3")
 
 
 def incomplete_word(ctx: typer.Context) -> str:
@@ -80,6 +81,25 @@ def worlds(ctx: typer.Context) -> Iterable[str]:
 def scenarios(ctx: typer.Context) -> Iterable[str]:
     """Complete the same names as `worlds`, and scenario files."""
     return _worlds_and_files(ctx, _WORLD_SUFFIXES + _SCENARIO_SUFFIXES)
+
+
+@silent
+def bags(ctx: typer.Context) -> Iterable[str]:
+    """Complete bags, and folders, which can be bags."""
+    return _files(incomplete_word(ctx), _BAG_SUFFIXES)
+
+
+@silent
+def sources_and_fields(ctx: typer.Context) -> Iterable[str]:
+    """Complete worlds, scenarios and bags; after a bag, a slash begins a topic of it."""
+    from simkit.recording.bags.reader import open_bag_to_read
+
+    words = [*(ctx.params.get("arguments") or ()), *ctx.args]
+    bag = next((word for word in words if word.endswith(_BAG_SUFFIXES)), None)
+    if bag is None or not incomplete_word(ctx).startswith("/"):
+        return _worlds_and_files(ctx, _WORLD_SUFFIXES + _SCENARIO_SUFFIXES + _BAG_SUFFIXES)
+    with open_bag_to_read(Path(bag)) as reader:
+        return list(dict.fromkeys(topic.name for topic in reader.topics))
 
 
 def realism(ctx: typer.Context) -> Iterable[str]:

@@ -6,20 +6,27 @@ import functools
 import os
 import re
 import sys
-from collections.abc import Callable, Iterable
-from contextlib import redirect_stdout, suppress
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, redirect_stdout, suppress
 from typing import IO, NoReturn
 
 import typer
 
-from simkit.cli.terminal.output import JsonObject, P, print_json, report_errors
+from simkit.cli.terminal.output import (
+    JsonObject,
+    P,
+    errors_in_words,
+    json_written_to,
+    print_json,
+    set_json_runner,
+)
 from simkit.diagnostics import Diagnostic
 from simkit.errors import InputError, LoadError, SimkitError
 
 # Base class of click's usage errors; newer versions of Typer have click as a private module.
 UsageError: type[Exception] = typer.BadParameter.__mro__[1]
-_WANTS_REPORT = "wants_json_report"  # attribute of a callback that prints a report
 _USAGE_CODE = "SK-CLI-018"
+_INTERRUPTED = (130, 143)  # exit codes of a stream that a user ends
 _FILE_AND_LINE = re.compile(r"(?P<file>\S[^:\n]*):(?P<line>\d+)")
 
 
@@ -40,6 +47,7 @@ class JsonReport:
         self._output: IO[str] | None = None
         self._descriptor: int | None = None
         self._python_redirection = redirect_stdout(sys.stderr)
+        self._json_redirection = json_written_to(self._direct_output)
         self._is_printed = False
 
     def __enter__(self) -> JsonReport:
@@ -51,30 +59,39 @@ class JsonReport:
                 self._descriptor = os.dup(1)
                 os.dup2(2, 1)
         self._python_redirection.__enter__()
+        self._json_redirection.__enter__()
         _running = self
         return self
 
     def __exit__(self, *_: object) -> None:
         global _running
         _running = None
+        self._json_redirection.__exit__(None, None, None)
         self._python_redirection.__exit__(None, None, None)
-        self._restore_descriptor()
-
-    def _restore_descriptor(self) -> None:
         if self._descriptor is not None:
             os.dup2(self._descriptor, 1)
             os.close(self._descriptor)
             self._descriptor = None
 
+    @contextmanager
+    def _direct_output(self) -> Iterator[None]:
+        """Write to the standard output of the command inside the context."""
+        self._is_printed = True
+        if self._descriptor is not None:
+            os.dup2(self._descriptor, 1)
+        try:
+            with redirect_stdout(self._output):
+                yield
+        finally:
+            if self._descriptor is not None:
+                os.dup2(2, 1)
+
     def print(self, exit_code: int) -> None:
-        """Print the object, unless it is printed already."""
+        """Print the object, unless JSON is printed already."""
         if self._is_printed or self._output is None:
             return
-        self._is_printed = True
-        self._restore_descriptor()
         diagnostics = [diagnostic.as_dict() for diagnostic in self.diagnostics]
-        with redirect_stdout(self._output):
-            print_json({**self.values, "diagnostics": diagnostics, "exit_code": exit_code})
+        print_json({**self.values, "diagnostics": diagnostics, "exit_code": exit_code})
 
 
 _running: JsonReport | None = None
@@ -118,11 +135,31 @@ def error_diagnostics(error: BaseException) -> list[Diagnostic]:
 
 
 def report_errors_and_json(command: Callable[P, int | None]) -> Callable[P, None]:
-    """Wrap a command like `report_errors`; with `--json`, print its report, also after an error.
+    """Wrap a command like `report_errors`; with `--json`, it always prints its report.
 
     The command adds its results with `add_to_report`. Diagnostics and the exit code are added here.
     """
+    in_words = errors_in_words(command)
 
+    @functools.wraps(command)
+    def run(*args: P.args, **kwargs: P.kwargs) -> None:
+        if kwargs.get("json_"):
+            _run_with_report(command, True, *args, **kwargs)
+        else:
+            in_words(*args, **kwargs)
+
+    return run
+
+
+def run_with_report(command: Callable[P, int | None], *args: P.args, **kwargs: P.kwargs) -> None:
+    """Run a command; print its report if it has values or failed, and has printed no other JSON."""
+    _run_with_report(command, False, *args, **kwargs)
+
+
+set_json_runner(run_with_report)
+
+
+def _run_with_report(command: Callable[P, int | None], has_report: bool, /, *args: P.args, **kwargs: P.kwargs) -> None:
     @functools.wraps(command)
     def collect_errors(*args: P.args, **kwargs: P.kwargs) -> int | None:
         try:
@@ -131,31 +168,22 @@ def report_errors_and_json(command: Callable[P, int | None]) -> Callable[P, None
             add_diagnostics(error_diagnostics(error))
             raise
 
-    in_words = report_errors(collect_errors)
-
-    @functools.wraps(command)
-    def run(*args: P.args, **kwargs: P.kwargs) -> None:
-        if not kwargs.get("json_"):
-            in_words(*args, **kwargs)
-            return
-        code = 0
-        with JsonReport() as report:
-            try:
-                in_words(*args, **kwargs)
-            except typer.Exit as ended:
-                code = ended.exit_code
-            except UsageError:  # `print_usage_error` prints it
-                raise
-            except Exception as error:
-                add_diagnostics(error_diagnostics(error))
-                report.print(1)
-                raise
-            report_errors(lambda: report.print(code))()
-        if code:
-            raise typer.Exit(code)
-
-    setattr(run, _WANTS_REPORT, True)
-    return run
+    code = 0
+    with JsonReport() as report:
+        try:
+            errors_in_words(collect_errors)(*args, **kwargs)
+        except typer.Exit as ended:
+            code = ended.exit_code
+        except UsageError:  # `print_usage_error` prints it
+            raise
+        except Exception as error:
+            add_diagnostics(error_diagnostics(error))
+            report.print(1)
+            raise
+        if has_report or report.values or code not in (0, *_INTERRUPTED):
+            errors_in_words(lambda: report.print(code))()
+    if code:
+        raise typer.Exit(code)
 
 
 def end_with_error(error: SimkitError, *, json_: bool) -> NoReturn:
@@ -170,15 +198,12 @@ def end_with_error(error: SimkitError, *, json_: bool) -> NoReturn:
 
 
 def print_usage_error(error: Exception, words: Iterable[str]) -> None:
-    """Print a usage error as a report, if the words of the command line select a command with a report and `--json`.
+    """Print a usage error as a report, if the words of the command line select a command and its option `--json`.
 
     Other errors are printed by the command itself.
     """
     command = getattr(getattr(error, "ctx", None), "command", None)
-    if (
-        isinstance(error, UsageError)
-        and "--json" in words
-        and hasattr(getattr(command, "callback", None), _WANTS_REPORT)
-    ):
+    has_option = any("--json" in parameter.opts for parameter in getattr(command, "params", ()))
+    if isinstance(error, UsageError) and "--json" in words and has_option:
         diagnostics = [diagnostic.as_dict() for diagnostic in error_diagnostics(error)]
         print_json({"diagnostics": diagnostics, "exit_code": InputError.exit_code})

@@ -10,7 +10,7 @@ from typing import Annotated
 from typer import Argument, Option
 from typer.models import ArgumentInfo, OptionInfo
 
-from simkit.cli.terminal import completion
+from simkit.cli.terminal import completion, json_report
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 
@@ -84,6 +84,7 @@ CodePaths = Annotated[
 ]
 Strict = Annotated[bool, Option("--strict", help="Treat warnings as errors.")]
 Json = Annotated[bool, Option("--json", help="Print JSON.")]
+_JSON_RUNNER = json_report.run_with_report  # the import also lets `report_errors` obey the option
 Verbose = Annotated[bool, Option("--verbose", "-v", help="Show every note instead of their number.")]
 Force = Annotated[bool, Option("--force", help="Overwrite existing files.")]
 Sim = Annotated[
@@ -97,8 +98,11 @@ Sim = Annotated[
         autocompletion=completion.simulations,
     ),
 ]
-Bag = Annotated[Path | None, option("Read a bag instead: an .mcap file or a rosbag2 folder.", "BAG", "--bag")]
-Recording = Annotated[Path, argument("Bag: an .mcap or .db3 file, or a rosbag2 folder.", "BAG")]
+Bag = Annotated[
+    Path | None,
+    option("Read a bag instead: an .mcap file or a rosbag2 folder.", "BAG", "--bag", complete=completion.bags),
+]
+Recording = Annotated[Path, argument("Bag: an .mcap or .db3 file, or a rosbag2 folder.", "BAG", completion.bags)]
 ShowTypes = Annotated[bool, Option("--show-types", "-t", help="Show the types, too.")]
 Topic = Annotated[str, argument("Name of the topic, such as /odom.", "TOPIC", completion.topics)]
 ChartFile = Annotated[Path, option("Chart to write: .svg or .png.", "OUT", "--output", "-o")]

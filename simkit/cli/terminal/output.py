@@ -14,7 +14,9 @@ import sys
 import traceback
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec, cast
 
 import typer
@@ -22,6 +24,7 @@ import typer
 from simkit.cli.terminal.interruption import running_command
 from simkit.cli.terminal.plain_console import PlainConsole, is_plain_stream
 from simkit.cli.terminal.task_display import displayed_tasks
+from simkit.cli.terminal.verbosity import given_verbosity, is_quiet, is_verbose
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, LoadError, PackError, PluginError, SimkitError
 from simkit.hidden_text import hidden_in_command, is_hiding
@@ -116,7 +119,13 @@ def is_plain() -> bool:
 
 
 def print_status(text: str) -> None:
-    """Print a status line on standard error, above the progress of a run.
+    """Print a status line as `print_message`, unless `--quiet` is given."""
+    if not is_quiet():
+        print_message(text)
+
+
+def print_message(text: str) -> None:
+    """Print a line on standard error, above the progress of a run.
 
     The progress display intercepts only `sys.stderr`, so this function does not use the console.
     """
@@ -128,8 +137,9 @@ def print_status(text: str) -> None:
 def print_diagnostics(
     found: Iterable[Diagnostic], *, verbose: bool, console: Console | None = None, every: bool = False
 ) -> None:
-    """Print errors and warnings one by one; notes as well with `verbose`, else only their number.
+    """Print errors and warnings one by one; notes as well with `verbose` or `--verbose`, else only their number.
 
+    The number does not count notes about files of simkit, which a user cannot change. With `--quiet` there are none.
     Equal diagnostics form one entry with all places. At most 12 entries of one code are listed (200 for errors), unless
     `every` is set.
     """
@@ -137,8 +147,9 @@ def print_diagnostics(
     notes: Counter[str] = Counter()
     shown: dict[tuple[str, str, str], list[Diagnostic]] = {}
     for d in found:
-        if d.severity == "note" and not verbose:
-            notes[d.code] += 1
+        if d.severity == "note" and not (verbose or is_verbose()):
+            if not is_quiet() and not _is_in_simkit(d):
+                notes[d.code] += 1
         else:
             key = (d.code, d.message, str(len(shown)) if every else d.hint)
             shown.setdefault(key, []).append(d)
@@ -159,6 +170,14 @@ def print_diagnostics(
         total = sum(notes.values())
         text = f"{total} note{'s' if total > 1 else ''} ({names}); show with --verbose"
         target.print(text, style="dim")
+
+
+def _is_in_simkit(diagnostic: Diagnostic) -> bool:
+    """Check whether a problem is in a model or world of simkit."""
+    from simkit.loaders.resources.bundled_models import builtin_model, bundle_around
+
+    file = diagnostic.file or ""
+    return builtin_model(file) is not None or (bool(file) and bundle_around(Path(file).absolute().parent) is not None)
 
 
 def _print_entry(equal: list[Diagnostic], target: Console) -> None:
@@ -205,17 +224,44 @@ def print_error(error: SimkitError) -> None:
 
 
 def report_errors(command: Callable[P, int | None]) -> Callable[P, None]:
-    """Convert the errors of a command to messages and exit codes, without a traceback for errors of the user."""
+    """Convert the errors of a command to messages and exit codes, without a traceback for errors of the user.
+
+    With the parameter `json_`, standard output has JSON alone: values of `print_json`, or else one object with the
+    values of `add_to_report`, the diagnostics of an error and the exit code. Other output goes to standard error.
+    """
+    in_words = errors_in_words(command)
+
+    @functools.wraps(command)
+    def run(*args: P.args, **kwargs: P.kwargs) -> None:
+        if kwargs.get("json_") and _json_runner is not None:
+            _json_runner(command, *args, **kwargs)
+        else:
+            in_words(*args, **kwargs)
+
+    return run
+
+
+_json_runner: Callable[..., None] | None = None
+
+
+def set_json_runner(runner: Callable[..., None]) -> None:
+    """Set the function that runs a command with `--json`: `json_report`, which itself needs this module."""
+    global _json_runner
+    _json_runner = runner
+
+
+def errors_in_words(command: Callable[P, int | None]) -> Callable[P, None]:
+    """Convert the errors of a command to messages and exit codes."""
 
     @functools.wraps(command)
     @hidden_in_command()
     def run(*args: P.args, **kwargs: P.kwargs) -> None:
+        verbosity = given_verbosity(quiet=bool(kwargs.get("quiet")), verbose=bool(kwargs.get("verbose")))
         try:
-            is_quiet = bool(kwargs.get("quiet"))
-            with running_command(), displayed_tasks(stderr_console, quiet=is_quiet):
+            with verbosity, running_command(), displayed_tasks(stderr_console, quiet=is_quiet()):
                 code = command(*args, **kwargs)
         except KeyboardInterrupt as stopped:
-            print_status(f"interrupted {stopped}".rstrip())
+            print_message(f"interrupted {stopped}".rstrip())
             raise typer.Exit(interrupt_exit_code(stopped)) from None
         except SimkitError as error:
             print_error(error)
@@ -298,7 +344,7 @@ def output_failure_exit_code(error: OSError) -> int:
         sys.stderr = None
         return _hang_up_exit_code()
     try:
-        print_status(f"error: cannot write the output: {error.strerror}")
+        print_message(f"error: cannot write the output: {error.strerror}")
     except OSError:
         sys.stderr = None
     return 1
@@ -326,14 +372,36 @@ def print_name(text: str) -> None:
 
 
 def print_note(text: str) -> None:
-    """Print a line on standard error."""
-    typer.echo(printable(text), err=True)
+    """Print a line on standard error, unless `--quiet` is given."""
+    if not is_quiet():
+        typer.echo(printable(text), err=True)
 
 
-def print_json(value: object) -> None:
-    """Print a JSON value on one line; infinity and NaN become the texts `"inf"`, `"-inf"`, `"nan"`."""
-    text = json.dumps(_json_value(value), allow_nan=False, ensure_ascii=False)
-    typer.echo(_CONTROL.sub(lambda match: f"\\u{ord(match[0]):04x}", text))
+def print_json(value: object, indent: int | None = None, default: Callable[[Any], object] | None = None) -> None:
+    """Print a JSON value; infinity and NaN become the texts `"inf"`, `"-inf"`, `"nan"`.
+
+    Args:
+        value: value to print.
+        indent: spaces of each level; None for one line.
+        default: function that converts other values.
+    """
+    text = json.dumps(_json_value(value), allow_nan=False, ensure_ascii=False, indent=indent, default=default)
+    with _json_output():
+        typer.echo(_CONTROL.sub(lambda match: f"\\u{ord(match[0]):04x}", text))
+
+
+_json_output: Callable[[], AbstractContextManager[None]] = nullcontext
+
+
+@contextmanager
+def json_written_to(output: Callable[[], AbstractContextManager[None]]) -> Iterator[None]:
+    """Write JSON inside a context of its own, because other output is redirected."""
+    global _json_output
+    before, _json_output = _json_output, output
+    try:
+        yield
+    finally:
+        _json_output = before
 
 
 def _json_value(value: object) -> object:

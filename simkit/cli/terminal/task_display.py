@@ -22,15 +22,17 @@ _DELAY: Final = 1.0  # [s] of wall time before the display appears; most command
 _REFRESH: Final = 0.25  # [s] of wall time between two updates
 _LONGEST_PAUSE: Final = 0.5  # [s] of wall time between two tasks that count as one for the delay
 _MOST_LINES: Final = 3
+_FIRST_LINE: Final = 30.0  # [s] of wall time before the first line in a pipe or a log
+_LINE_PERIOD: Final = 60.0  # [s] of wall time between two such lines
 
 
 @contextmanager
 def displayed_tasks(console: Callable[[], Console], *, quiet: bool = False) -> Iterator[None]:
-    """Show long tasks on standard error, if it is a terminal and no CI system runs the command."""
-    if quiet or not is_interactive():
+    """Show long tasks on standard error: on a terminal they are redrawn, elsewhere a line appears from time to time."""
+    if quiet or sys.stderr is None:
         yield
         return
-    display = TaskDisplay(console)
+    display = TaskDisplay(console) if is_interactive() else TaskLines(console)
     interruption.before_exit(display.close)
     try:
         with progress.shown_on(display):
@@ -117,6 +119,22 @@ class TaskDisplay:
             shown = self._tasks[-_MOST_LINES:]
         lines = [f"{'  ' * depth}{task_text(task)}" for depth, task in enumerate(shown)]
         return Text("\n".join(lines), no_wrap=True, overflow="ellipsis", style="dim")
+
+
+class TaskLines(TaskDisplay):
+    """Display for pipes and logs: one line for tasks that take long, and another one each minute."""
+
+    _next_line = 0.0
+
+    def _draw(self, stop: threading.Event) -> None:
+        self._next_line = max(self._next_line, self._begun + _FIRST_LINE)
+        while not stop.wait(max(0.0, self._next_line - time.perf_counter())):
+            self._next_line = time.perf_counter() + _LINE_PERIOD
+            with self._lock:
+                text = "; ".join(task_text(task) for task in self._tasks[:_MOST_LINES])
+            with suppress(OSError, ValueError):  # the pipe has closed
+                sys.stderr.write(f"{text}\n")
+                sys.stderr.flush()
 
 
 def task_text(task: Task) -> str:

@@ -45,7 +45,8 @@ class DriverLine:
             return f"driving {self._teleop.target.topic}"
         pose = model.pose
         yaw = math.degrees(float(pose.rpy[2]))
-        position = f"x {pose.position[0]:.2f}  y {pose.position[1]:.2f}  {round(yaw)}°"
+        x, y = (round(value, 2) + 0.0 for value in pose.position[:2])  # no "-0.00"
+        position = f"x {x:.2f}  y {y:.2f}  {round(yaw)}°"
         parts = [self._speed_text(*_velocity(model, pose)), position, self._obstacle_text(model, pose)]
         return "   ".join(part for part in parts if part)
 

@@ -123,6 +123,11 @@ _SUN = """<sdf version="1.7"><light type="directional" name="sun"><cast_shadows>
 _MODELS = {"ground_plane": _GROUND_PLANE, "ground plane": _GROUND_PLANE, "sun": _SUN}
 
 
+def builtin_model_uri(text: str) -> str | None:
+    """Return the URI of the built-in model that has a text, or None."""
+    return next((f"model://{name}" for name, model in _MODELS.items() if model == text), None)
+
+
 def builtin_model(uri: str) -> str | None:
     """Return the text of the built-in model that a `model://` or Fuel URI names, or None."""
     scheme, separator, rest = unquote(uri).partition("://")

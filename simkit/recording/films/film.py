@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit import msgs
+from simkit import msgs, progress
 from simkit.errors import InputError, SimkitError
 from simkit.msgs.message_types import Message
 from simkit.recording.bags.bag_motion import SCAN, BagMotion
@@ -237,18 +237,20 @@ def film_bag(
     def draw_until(time: float) -> None:
         while (due := begin + film.count / float(rate)) < time and due <= end + 1e-9 and not is_over():
             title = f"{bag.path.name} · t = {due:.2f} s"
+            task.done = due - begin
             film.draw(Marks(title, driven.paths(), marks.scans, marks.goals))
 
     try:
-        for message in bag.messages(topics) if topics else ():
-            draw_until((message.time_ns - bag.time_origin) * 1e-9)
-            if is_over():
-                break
-            decoded = bag.decode(message)
-            motion.take(message.topic, decoded)
-            marks.take(message.topic, decoded, motion)
-            driven.sample()
-        draw_until(math.inf)
+        with progress.task("filming", max(0.0, end - begin), unit="s") as task:
+            for message in bag.messages(topics) if topics else ():
+                draw_until((message.time_ns - bag.time_origin) * 1e-9)
+                if is_over():
+                    break
+                decoded = bag.decode(message)
+                motion.take(message.topic, decoded)
+                marks.take(message.topic, decoded, motion)
+                driven.sample()
+            draw_until(math.inf)
     finally:
         film.close()
     return film.count, motion.moved

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from simkit.bridges.live import endpoint_requests, requests
+from simkit.bridges.live import requests
 from simkit.live import connect
 
 PAGE = (Path(__file__).resolve().parents[3] / "docs" / "live.md").read_text(encoding="utf-8")

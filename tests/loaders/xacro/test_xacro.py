@@ -248,7 +248,7 @@ def test_the_macro_calls_that_led_to_a_mistake_are_listed(load):
     outer = '<xacro:macro name="outer">\n<xacro:inner/></xacro:macro>\n<xacro:outer/>'
     (problem,) = (d for d in load(xacro(inner + outer))[1] if d.severity == "error")
     assert problem.line == 1
-    assert "in <xacro:inner> of <string>:3; in <xacro:outer> of <string>:4" in problem.message
+    assert "in <xacro:inner> of world given as text:3; in <xacro:outer> of world given as text:4" in problem.message
 
 
 # ---------------------------------------------------------------------- permitted files and limits

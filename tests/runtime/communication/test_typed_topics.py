@@ -74,6 +74,19 @@ def test_a_call_and_a_goal_by_class_need_a_service_and_an_action_of_that_type():
             sim.call("/lamp", {"date": True}, type=msgs.SetBool_Request)
 
 
+def test_a_message_is_made_and_decoded_by_class():
+    twist = msgs.make(msgs.Twist, linear={"x": 0.2})
+    assert (
+        msgs.deserialize(msgs.serialize(twist), msgs.Twist)
+        == twist
+        == msgs.make("geometry_msgs/msg/Twist", linear={"x": 0.2})
+    )
+    with pytest.raises(simkit.MessageError, match="did you mean 'linear'"):
+        msgs.make(msgs.Twist, liner={"x": 0.2})
+    with pytest.raises(simkit.MessageError, match="is not a class of messages"):
+        msgs.make(int)
+
+
 class Listening(simkit.WorldPlugin):
     """Plugin that opens everything by class."""
 

@@ -9,7 +9,7 @@ import typer
 
 from simkit.cli.terminal import options
 from simkit.cli.terminal.output import print_status, stdout_console
-from simkit.extend import argument, option, report_errors
+from simkit.extend import add_to_report, argument, option, report_errors
 
 new = typer.Typer(help="Create a pack.", no_args_is_help=True)
 
@@ -26,6 +26,7 @@ def new_pack(
     name: Annotated[str, argument("Name of the pack; its package is simkit_NAME.")],
     folder: Annotated[Path | None, option("Folder for the new files; simkit_NAME by default.", "DIR")] = None,
     force: options.Force = False,
+    json_: options.Json = False,  # noqa: ARG001 (`report_errors` reads it)
 ) -> None:
     """Create a pack with one of each of the usual contents, and tests that pass."""
     from simkit_authoring.pack_skeleton import write_pack
@@ -33,6 +34,8 @@ def new_pack(
     place = folder if folder is not None else Path(f"simkit_{name}")
     group: Any = context.find_root().command
     commands = group.list_commands(context)
-    for path in write_pack(name, place, commands=commands, overwrite=force):
+    paths = write_pack(name, place, commands=commands, overwrite=force)
+    add_to_report(files=[str(path) for path in paths])
+    for path in paths:
         stdout_console().print(str(path))
     print_status(f"install it with `pip install -e {place}`, then run `python -m pytest {place}`")

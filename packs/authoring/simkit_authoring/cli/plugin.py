@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -12,9 +11,9 @@ from typer import Option
 
 from simkit.cli.run_options import NONE_GIVEN
 from simkit.cli.terminal import completion, options
-from simkit.cli.terminal.output import JsonObject, print_diagnostics, print_status, stdout_console
+from simkit.cli.terminal.output import JsonObject, print_diagnostics, print_json, print_status, stdout_console
 from simkit.errors import InputError
-from simkit.extend import Diagnostics, GivenOptions, argument, option, report_errors, with_run_options
+from simkit.extend import Diagnostics, GivenOptions, add_to_report, argument, option, report_errors, with_run_options
 
 if TYPE_CHECKING:
     from simkit_authoring.catalogue import Entry
@@ -40,7 +39,7 @@ def list_plugins(
     print_diagnostics(problems, verbose=True)
     if json_:
         shown = [_as_dict(e) for e in entries if _matching(e, search_words) or not search_words]
-        stdout_console().file.write(json.dumps(shown, indent=2) + "\n")
+        print_json(shown, indent=2)
         return
     rows = [
         (name, " or ".join(e.parents), e)
@@ -83,7 +82,7 @@ def show_info(
             **_facts_as_dict(facts),
             "common": _facts_as_dict(common_facts())["parameters"],
         }
-        stdout_console().file.write(json.dumps(description, indent=2) + "\n")
+        print_json(description, indent=2)
         return
     first, *others = entry.names or (entry.cls.__name__,)
     stdout_console().print(
@@ -119,6 +118,7 @@ def new_plugin(
     folder: Annotated[Path, option("Folder for the new files.", "DIR")] = Path(),
     force: options.Force = False,
     given: GivenOptions = NONE_GIVEN,
+    json_: options.Json = False,  # noqa: ARG001 (`report_errors` reads it)
 ) -> None:
     """Create a plugin with typed parameters, and a test that passes."""
     from simkit_authoring.new_plugins import plugin_named, plugins_missing_in
@@ -135,9 +135,12 @@ def new_plugin(
         scene, _ = read_scene(from_, missing_meshes=True, **given.source_options())
         new_plugins = plugins_missing_in(scene, given.values.get("plugin_paths", ()))
         if not new_plugins:
+            add_to_report(files=[])
             print_status("every plugin of this file is known; nothing to write")
             return
-    for path in write_plugins(new_plugins, folder, overwrite=force):
+    paths = write_plugins(new_plugins, folder, overwrite=force)
+    add_to_report(files=[str(path) for path in paths])
+    for path in paths:
         stdout_console().print(str(path))
     print_status(f"run the tests with `python -m pytest {folder}`; use the plugins with --plugin-path {folder}")
 

@@ -9,10 +9,10 @@ from urllib.parse import urlsplit
 from typer import Option
 
 from simkit.cli.run_options import NONE_GIVEN
-from simkit.cli.terminal import completion
+from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.output import print_diagnostics, print_line, print_note
 from simkit.errors import InputError
-from simkit.extend import GivenOptions, argument, option, report_errors, with_run_options
+from simkit.extend import GivenOptions, add_to_report, argument, option, report_errors, with_run_options
 
 LISTED_AFTER = "vendor"
 
@@ -44,6 +44,7 @@ def fetch(
         bool, Option("--allow-http", help="Allow servers without encryption on other computers.")
     ] = False,
     given: GivenOptions = NONE_GIVEN,
+    json_: options.Json = False,  # noqa: ARG001 (`report_errors` reads it)
 ) -> int:
     """Download the models that a world names on Fuel servers."""
     from simkit_fuel.download import Connection
@@ -66,6 +67,12 @@ def fetch(
         resource_paths=source.get("resource_paths", ()),
         package_paths=source.get("package_paths", ()),
         xacro_args=source.get("xacro_args"),
+    )
+    keys = ("state", "url", "version", "size")
+    add_to_report(
+        resources=[{key: getattr(resource, key) for key in keys} for resource in report.resources],
+        problems=[diagnostic.as_dict() for diagnostic in report.diagnostics],
+        lock=None if report.lock is None else str(report.lock),
     )
     for resource in report.resources:
         version = f", version {resource.version}" if resource.version else ""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Sequence
 from contextlib import ExitStack
@@ -12,9 +11,10 @@ from typing import TYPE_CHECKING, Annotated, cast
 import typer
 from typer import Argument, Option
 
+from simkit import progress
 from simkit.cli.run_options import NONE_GIVEN
 from simkit.cli.terminal import completion, options
-from simkit.cli.terminal.output import print_diagnostics, stdout_console
+from simkit.cli.terminal.output import print_diagnostics, print_json, stdout_console
 from simkit.errors import InputError
 from simkit.extend import Diagnostics, GivenOptions, argument, option, report_errors, with_run_options
 from simkit.run_fields import LoadArguments
@@ -56,7 +56,7 @@ def list_motions(
             motion_list = list(choose_player(motion_players(sim), model).motions.values())
     if json_:
         shown = [{**m.as_message(), "duration": m.duration, "file": m.where.file} for m in motion_list]
-        stdout_console().file.write(json.dumps(shown, indent=2) + "\n")
+        print_json(shown, indent=2)
         return
     rows = [
         (m.key, f"{m.duration:g} s", f"{len(m.times)} point{'s' * (len(m.times) > 1)}", _joint_ranges(m.joints))
@@ -124,7 +124,10 @@ def play(
             check_available(sim)
         if record is not None:
             stack.enter_context(recorder.Recorder(sim, record, overwrite=force))
-        for played in play_motions(sim, choose_player(motion_players(sim), model), names, skip_planning=skip_planning):
+        motions_played = play_motions(
+            sim, choose_player(motion_players(sim), model), names, skip_planning=skip_planning
+        )
+        for played in progress.report_each("playing motions", motions_played, len(names)):
             joint, off = played.furthest
             key = played.motion.key
             shown.append({"motion": key, "duration": round(played.duration, 6), "joint": joint, "off": off})
@@ -133,7 +136,7 @@ def play(
         if picture is not None:
             _draw(sim, picture)
     if json_:
-        stdout_console().file.write(json.dumps(shown, indent=2) + "\n")
+        print_json(shown, indent=2)
 
 
 def _scale_speed(sim: Simulation, factor: float) -> None:

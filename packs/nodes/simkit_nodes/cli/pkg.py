@@ -11,7 +11,7 @@ from typer import Option
 from simkit.cli.run_options import NONE_GIVEN
 from simkit.cli.terminal import options
 from simkit.cli.terminal.output import print_json, print_line, print_status
-from simkit.extend import GivenOptions, argument, option, report_errors, with_run_options
+from simkit.extend import GivenOptions, add_to_report, argument, option, report_errors, with_run_options
 
 if TYPE_CHECKING:
     from simkit_nodes.packages import Executable
@@ -105,9 +105,9 @@ def depends(package: Package, given: GivenOptions = NONE_GIVEN, json_: options.J
 @pkg.command()
 @report_errors
 @with_run_options("package_paths")
-def find(package: Package, given: GivenOptions = NONE_GIVEN) -> None:
+def find(package: Package, given: GivenOptions = NONE_GIVEN, json_: options.Json = False) -> None:
     """Print the folder of a package, as `rospack find`; `cd $(simkit pkg find PACKAGE)` is `roscd PACKAGE`."""
-    print_line(str(_workspace(given).required_package(package)))
+    _print_folder(_workspace(given).required_package(package), json_=json_)
 
 
 @pkg.command()
@@ -135,11 +135,19 @@ def prefix(
     package: Package,
     share: Annotated[bool, Option("--share", help="Print the folder of the package's files.")] = False,
     given: GivenOptions = NONE_GIVEN,
+    json_: options.Json = False,
 ) -> None:
     """Print the folder in which a package is installed; the package itself if it is in a source tree."""
     folder = _workspace(given).required_package(package)
     is_installed = folder.parent.name == "share"
-    print_line(str(folder.parents[1] if is_installed and not share else folder))
+    _print_folder(folder.parents[1] if is_installed and not share else folder, json_=json_)
+
+
+def _print_folder(folder: Path, *, json_: bool) -> None:
+    if json_:
+        print_json(str(folder))
+    else:
+        print_line(str(folder))
 
 
 @pkg.command()
@@ -153,6 +161,7 @@ def create(
     license_: Annotated[str, option("Name of the licence.", "TEXT", "--license")] = "TODO: License declaration",
     maintainer_name: Annotated[str, option("Name of the maintainer.", "TEXT")] = "user",
     maintainer_email: Annotated[str, option("Address of the maintainer.", "TEXT")] = "user@todo.todo",
+    json_: options.Json = False,  # noqa: ARG001 (`report_errors` reads it)
 ) -> None:
     """Create a ROS 2 package in Python, as `ros2 pkg create --build-type ament_python` does."""
     from simkit_nodes.package_skeleton import write_package
@@ -167,6 +176,7 @@ def create(
         maintainer=maintainer_name,
         email=maintainer_email,
     )
+    add_to_report(files=[str(file) for file in files])
     for file in files:
         print_line(str(file))
     if node_name is not None:

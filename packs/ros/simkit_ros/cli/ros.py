@@ -9,8 +9,8 @@ from typer.core import TyperCommand
 
 from simkit.cli.run_loop import Interrupts
 from simkit.cli.terminal import completion, options
-from simkit.cli.terminal.output import print_status, report_errors_quietly
-from simkit.extend import argument
+from simkit.cli.terminal.output import print_message, report_errors_quietly
+from simkit.extend import add_to_report, argument
 from simkit_ros.cli.run_parts import ros as ros_options
 
 
@@ -37,6 +37,7 @@ def ros(
     ros_network: ros_options.RosNetwork = False,
     ros_args: ros_options.RosArguments = None,
     sim: options.Sim = None,
+    json_: options.Json = False,  # noqa: ARG001 (`report_errors` reads it)
 ) -> int:
     """Connect a running simulation to ROS 2 until the simulation ends, or until Ctrl-C."""
     from simkit.bridges.live.discovery import find_socket
@@ -46,7 +47,8 @@ def ros(
         raise typer.BadParameter(f"found {simulation!r} and --sim {sim}; expected one name", param_hint="SIM")
     bridge_options = ros_options.ros_options(ros_python, ros_domain, ros_namespace, ros_network, ros_args)
     socket = find_socket(simulation or sim)
-    with Interrupts() as interrupts, RosBridge(bridge_options, print_status) as bridge:
+    add_to_report(socket=str(socket))
+    with Interrupts() as interrupts, RosBridge(bridge_options, print_message) as bridge:
         bridge.start(socket)
         code = bridge.wait(lambda: bool(interrupts.exit_code))
     return interrupts.exit_code or code

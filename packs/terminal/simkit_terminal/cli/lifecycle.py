@@ -8,7 +8,7 @@ import typer
 from typer import Option
 
 from simkit.cli.terminal import options
-from simkit.cli.terminal.output import absolute_name, not_found_error, print_json, print_line, print_note
+from simkit.cli.terminal.output import absolute_name, not_found_error, print_json, print_line, print_message
 from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name
 from simkit.errors import InputError
 from simkit.extend import argument
@@ -102,7 +102,7 @@ def set_(
     if json_:
         print_json({"successful": succeeded})
     else:
-        (print_line if succeeded else print_note)(f"Transitioning {'successful' if succeeded else 'failed'}")
+        (print_line if succeeded else print_message)(f"Transitioning {'successful' if succeeded else 'failed'}")
     return 0 if succeeded else 2
 
 

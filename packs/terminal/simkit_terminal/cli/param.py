@@ -17,7 +17,7 @@ from simkit.cli.terminal.output import (
     not_found_error,
     print_json,
     print_line,
-    print_note,
+    print_message,
     report_errors_quietly,
 )
 from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name
@@ -159,7 +159,7 @@ def _set_values(client: Client, node: str, values: list[tuple[str, JsonObject]],
         noun = "parameters atomically" if atomic else "parameter"
         success, failure = f"{head}Set {noun} successful", f"{head}Setting {noun} failed"
         reason = f": {result.reason}" if result.reason else ""
-        (print_line if result.successful else print_note)((success if result.successful else failure) + reason)
+        (print_line if result.successful else print_message)((success if result.successful else failure) + reason)
     return 0 if all(r.successful for r in results) else 2
 
 
@@ -171,7 +171,7 @@ def _report_global(values: list[tuple[str, JsonValue]], parameters: GlobalParame
     for name, reason in () if json_ else reasons:
         head = f"{name}: " if len(values) > 1 else ""
         if reason:
-            print_note(f"{head}Setting parameter failed: {reason}")
+            print_message(f"{head}Setting parameter failed: {reason}")
         else:
             print_line(f"{head}Set parameter successful")
     return 2 if any(reason for _, reason in reasons) else 0
@@ -189,14 +189,14 @@ def delete(node: NodeOrName, name: OptionalName = None, sim: options.Sim = None,
     if json_:
         print_json({"successful": False, "reason": text.partition(": ")[2]})
     else:
-        print_note(text)
+        print_message(text)
     return 2
 
 
 def _delete_global(parameters: GlobalParameters, name: str, where: str) -> int:
     place = parameters.place_of(name)
     if place is not None:
-        print_note(f"Deleting parameter failed: {place[1]} is declared by {place[0]}, which needs it")
+        print_message(f"Deleting parameter failed: {place[1]} is declared by {place[0]}, which needs it")
         return 2
     if not parameters.delete(name):
         raise not_found_error("parameter", name, parameters.names(), "SK-CLI-034", where)
@@ -277,7 +277,7 @@ def load(
         print_json([{"name": n, "successful": successful, "reason": reason} for n, successful, reason in rows])
     for name, successful, reason in () if json_ else rows:
         text = f"Set parameter {name} {'successful' if successful else 'failed'}{': ' + reason if reason else ''}"
-        (print_line if successful else print_note)(text)
+        (print_line if successful else print_message)(text)
     return 0 if all(successful for _, successful, _ in rows) else 2
 
 

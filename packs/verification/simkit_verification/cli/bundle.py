@@ -9,9 +9,9 @@ from typer import Option
 
 from simkit.cli.run_options import NONE_GIVEN, scenario_spec
 from simkit.cli.terminal import options
-from simkit.cli.terminal.output import print_diagnostics, print_status, stdout_console
+from simkit.cli.terminal.output import print_diagnostics, print_message, stdout_console
 from simkit.errors import InputError, SimkitError
-from simkit.extend import GivenOptions, option, report_errors, with_run_options
+from simkit.extend import GivenOptions, add_to_report, option, report_errors, with_run_options
 from simkit.writers.atomic_output import check_file
 
 
@@ -33,6 +33,7 @@ def bundle(
     no_code: Annotated[bool, Option("--no-code", help="Leave out the code of plugins.")] = False,
     force: options.Force = False,
     allow_code: options.AllowCode = False,
+    json_: options.Json = False,  # noqa: ARG001 (`report_errors` reads it)
 ) -> None:
     """Run a world or scenario and pack it into a repeatable bundle.
 
@@ -55,14 +56,16 @@ def bundle(
             ended = run_scenario(scenario, sim)
             failure = failure_from_checks(ended.results, was_given_up=ended.reason == "wall_timeout")
             if failure is not None:
-                print_status(f"the run failed; the bundle contains the failure: {failure.text}")
+                print_message(f"the run failed; the bundle contains the failure: {failure.text}")
         except InputError:
             raise
         except SimkitError as error:
             failure = failure_from_error(error)
-            print_status(f"the run failed; the bundle contains the failure: {error}")
+            print_message(f"the run failed; the bundle contains the failure: {error}")
         name = scenario.name or ("" if scenario.file is None else scenario.file.stem)
         write_bundle(recorder, output, failure, name=name, overwrite=force, with_code=not no_code)
-        stdout_console().print(f"state {recorder.end().state}")
-        size = output.stat().st_size
+        state, size = recorder.end().state, output.stat().st_size
+        add_to_report(bundle=str(output), bytes=size, state=state, time=sim.time, commands=recorder.journal.count)
+        add_to_report(failure=None if failure is None else failure.text)
+        stdout_console().print(f"state {state}")
         stdout_console().print(f"{output}: {sim.time:g} s, {recorder.journal.count} commands, {size / 1000:.0f} kB")

@@ -15,7 +15,7 @@ from typer import Option
 from simkit.cli.terminal import options
 from simkit.cli.terminal.output import not_found_error, print_json, print_line, print_status, report_errors_quietly
 from simkit.errors import InputError
-from simkit.extend import argument, option, report_errors
+from simkit.extend import add_to_report, argument, option, report_errors
 from simkit.input_file import TEXT_LIMIT, read_input
 from simkit.install_command import install_command
 from simkit.loaders.resources.bundled_models import bundled_folders
@@ -81,6 +81,7 @@ def start(
     folder: Annotated[Path, argument("New folder of the lab.", "DIR")],
     solution: Annotated[bool, Option("--solution", help="Write a solution instead of the student's file.")] = False,
     lang: Language = "",
+    json_: options.Json = False,  # noqa: ARG001 (`report_errors` reads it)
 ) -> None:
     """Copy a lab into a new folder."""
     source, language = _named_lab(name), _language(lang)
@@ -109,6 +110,7 @@ def start(
     finally:
         if stage is not None:
             shutil.rmtree(stage, ignore_errors=True)  # after an error or an interrupt
+    add_to_report(folder=str(folder), files=sorted(path.name for path in target.iterdir() if path.name != _MARKER))
     print_line(f"{folder}: {', '.join(sorted(path.name for path in target.iterdir() if path.name != _MARKER))}")
     missing = _missing_packages(target)
     if missing:

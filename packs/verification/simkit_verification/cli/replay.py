@@ -12,7 +12,7 @@ import typer
 from typer import Option
 
 from simkit.cli.terminal import options
-from simkit.cli.terminal.output import JsonObject, printable, stdout_console
+from simkit.cli.terminal.output import JsonObject, print_json, printable, stdout_console
 from simkit.errors import InputError
 from simkit.extend import argument, option, report_errors
 from simkit.writers.atomic_output import current_umask, remove_abandoned, unfinished_folder
@@ -33,7 +33,7 @@ def replay(
     list_: Annotated[bool, Option("--list", help="Print the content of the bundle and run nothing.")] = False,
     extract: Annotated[Path | None, option("Extract the files into a new folder and run nothing.", "DIR")] = None,
     record: Annotated[Path | None, option("Bag of the replay to write: OUT.mcap.", "OUT")] = None,
-    as_json: options.Json = False,
+    json_: options.Json = False,
 ) -> int:
     """Repeat the run in a bundle and compare the results bit by bit.
 
@@ -47,12 +47,12 @@ def replay(
             if extract is not None:
                 _extract(opened, extract)
             if list_:
-                _print_contents(opened, as_json=as_json)
+                _print_contents(opened, json_=json_)
         return 0
     begun = time.perf_counter()
     result = play(bundle, allow_code=allow_code, record=record)
-    if as_json:
-        typer.echo(json.dumps(_result_dict(result)))
+    if json_:
+        print_json(_result_dict(result))
     else:
         _print_result(result, time.perf_counter() - begun)
     return 0 if result.is_same else _DIFFERENT
@@ -130,9 +130,9 @@ def _extract_whole(bundle: Bundle, folder: Path) -> None:
         shutil.rmtree(stage, ignore_errors=True)
 
 
-def _print_contents(bundle: Bundle, *, as_json: bool) -> None:
+def _print_contents(bundle: Bundle, *, json_: bool) -> None:
     manifest = bundle.manifest
-    if as_json:
+    if json_:
         typer.echo(manifest.text())
         return
     print_ = stdout_console().print

@@ -13,6 +13,7 @@ from typing import Annotated
 import typer
 from typer import Option
 
+from simkit import progress
 from simkit.cli.plot_sources import is_bag
 from simkit.cli.run import execute
 from simkit.cli.run_loop import Interrupts
@@ -20,7 +21,7 @@ from simkit.cli.run_options import NONE_GIVEN
 from simkit.cli.run_part import run_parts
 from simkit.cli.terminal import completion
 from simkit.cli.terminal.output import print_line, print_status
-from simkit.extend import GivenOptions, argument, option, report_errors, with_run_options
+from simkit.extend import GivenOptions, add_to_report, argument, option, report_errors, with_run_options
 from simkit.run_spec import LoadOptions
 from simkit.writers.atomic_output import check_writable, write_atomically
 from simkit_view.cli.run_parts.page import Host, NoOpen, PageOptions, open_page, show_address
@@ -51,6 +52,7 @@ def view(
     given: GivenOptions = NONE_GIVEN,
     html: Annotated[Path | None, option("HTML file to write instead: a bag that plays without simkit.", "OUT")] = None,
     verbose: Annotated[bool, Option("--verbose", "-v", help="Show every note instead of their number.")] = False,
+    json_: Annotated[bool, Option("--json", help="Print JSON.")] = False,  # noqa: ARG001 (`report_errors` reads it)
 ) -> int:
     """Show a world, a robot, a running simulation or a bag in a browser.
 
@@ -133,7 +135,10 @@ def _show_bag(path: Path, world: str | None, loading: LoadOptions, page: PageOpt
         recording, panels = make_recording(sim, bag), BagPanels(bag, sim)
         if html is not None:
             scene = make_scene_packet(sim, 1, {"seed": sim.seed, "recording": True})
-            write_atomically(html, html_file(f"{path.name} – simkit", scene, recording, panels.file_packet()).encode())
+            with progress.task(f"writing {html.name}"):
+                page_text = html_file(f"{path.name} – simkit", scene, recording, panels.file_packet())
+                write_atomically(html, page_text.encode())
+            add_to_report(html=str(html), bytes=html.stat().st_size)
             print_line(f"wrote {html} ({html.stat().st_size / 1e6:.2f} MB)")
             return 0
         interrupts = stack.enter_context(Interrupts())

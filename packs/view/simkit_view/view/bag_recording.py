@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
+from simkit import progress
 from simkit.msgs import Message
 from simkit.recording.bags.bag_motion import SCAN, BagMotion
 from simkit.run_spec import JsonObject
@@ -58,18 +59,22 @@ class _Playback:
         times: list[float] = []
         states: list[npt.NDArray[np.generic]] = []
         begun = None
-        for message in self._bag.messages(wanted) if wanted else ():
-            time = message.time_ns * 1e-9
-            begun = time if begun is None else begun
-            while time - begun >= len(times) / RATE:
-                times.append(len(times) / RATE)
-                states.append(scene_packet.poses(self._sim, self._moving))
-            decoded = self._bag.decode(message)
-            if message.topic in self._scans:
-                self._take_scan(message.topic, decoded, time - begun)
-            else:
-                self._motion.take(message.topic, decoded)
-                self._displays.take(message.topic, decoded, time - begun)
+        with progress.task(
+            f"reading {self._bag.path.name}", (self._bag.end - self._bag.start) * 1e-9, unit="s"
+        ) as task:
+            for message in self._bag.messages(wanted) if wanted else ():
+                time = message.time_ns * 1e-9
+                begun = time if begun is None else begun
+                task.done = time - begun
+                while time - begun >= len(times) / RATE:
+                    times.append(len(times) / RATE)
+                    states.append(scene_packet.poses(self._sim, self._moving))
+                decoded = self._bag.decode(message)
+                if message.topic in self._scans:
+                    self._take_scan(message.topic, decoded, time - begun)
+                else:
+                    self._motion.take(message.topic, decoded)
+                    self._displays.take(message.topic, decoded, time - begun)
         times.append(len(times) / RATE)
         states.append(scene_packet.poses(self._sim, self._moving))
         head: JsonObject = {"kind": "recording", "name": self._bag.path.name, "begin": begun or 0.0, "lidars": []}

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
+import cv2
+import numpy as np
 import pytest
 
 import simkit
@@ -141,6 +144,26 @@ def test_the_orbit_ends_at_the_floor(session: Open) -> None:  # noqa: F811
     assert found.get("app.stage.controls.target.z") >= -1e-6
     assert found.errors == []
     found.picture("orbit_at_floor")
+
+
+HILL = """<sdf version="1.9"><world name="w"><model name="hill"><static>true</static><link name="l"><visual name="v">
+<geometry><heightmap><uri>hill.png</uri><size>40 40 5</size></heightmap></geometry></visual></link></model>
+<model name="cart"><static>true</static><pose>8 0 3 0 0 0</pose><link name="l"><visual name="v">
+<geometry><box><size>1 1 1</size></box></geometry></visual></link></model></world></sdf>"""
+
+
+def test_the_orbit_ends_at_terrain(session: Open, tmp_path: Path) -> None:  # noqa: F811
+    across = np.linspace(-1, 1, 65)
+    heights = np.exp(-4 * (across[:, None] ** 2 + across[None, :] ** 2))  # 5 m high in the middle
+    cv2.imwrite(str(tmp_path / "hill.png"), (255 * heights).astype(np.uint8))
+    (tmp_path / "hill.sdf").write_text(HILL)
+    found = session(str(tmp_path / "hill.sdf"), paused=True)
+    found.until("app.stage.draws > 1 && app.state")
+    found.get("(app.stage.controls.target.set(8, 0, 3), app.stage.camera.position.set(2, 0, 1), app.stage.draw())")
+    found.get("app.stage.draw()")
+    x, y, z = found.get("app.stage.camera.position.toArray()")
+    assert z > 5 * np.exp(-4 * ((x / 20) ** 2 + (y / 20) ** 2))
+    assert found.get("app.stage.controls.target.toArray()") == pytest.approx([8, 0, 3], abs=0.1)
 
 
 ROBOT = """<robot name="cart"><link name="base">

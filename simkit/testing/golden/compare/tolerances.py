@@ -87,7 +87,7 @@ def quantity_text(value: float, unit: str, signed: bool = True, error: float = 0
 
 def value_text(value: float, unit: str, digits: int = 6) -> str:
     """Format a value with its unit and at most the given number of digits."""
-    number = float(value)
+    number = float(value) + 0.0  # without the sign of -0.0
     if unit == "ns":
         return f"{number * 1e-9:.9g} s"
     text = f"{number:.{digits}g}"

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from simkit.cli.run_part import OpenRun, RunPart
-from simkit.cli.terminal.output import print_status
+from simkit.cli.terminal.output import print_message, print_status
 from simkit.errors import InputError, NodeError
 from simkit.process_control import kill_process_tree
 from simkit.run_nodes import ROS_ARGUMENTS, label_of, node_arguments
@@ -129,7 +129,7 @@ class NodeProcesses(RunPart):
 
     def _meet_end(self, each: _NodeProcess, code: int, run: OpenRun) -> None:
         """Report the end of a process; start it again, or end the run, if the launch file says so."""
-        print_status(f"[{each.label}]: process has ended with exit code {code}")
+        print_message(f"[{each.label}]: process has ended with exit code {code}")
         each.process, respawn = None, each.node.get("respawn")
         if respawn is not None:
             each.due = run.sim.time + float(respawn)

@@ -9,11 +9,18 @@ import typer
 from typer import Option
 
 from simkit.cli.run_options import NONE_GIVEN
-from simkit.cli.terminal import options
-from simkit.cli.terminal.output import absolute_name, not_found_error, print_line, print_status, report_errors_quietly
+from simkit.cli.terminal import completion, options
+from simkit.cli.terminal.output import (
+    JsonObject,
+    absolute_name,
+    not_found_error,
+    print_line,
+    print_status,
+    report_errors_quietly,
+)
 from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name
 from simkit.errors import InputError
-from simkit.extend import GivenOptions, argument, option, with_run_options
+from simkit.extend import GivenOptions, add_to_report, argument, option, with_run_options
 
 if TYPE_CHECKING:
     from simkit.live import Client
@@ -22,7 +29,16 @@ _PROCESS = "SK-NODE-070"
 _WORDS = {"ignore_unknown_options": True, "allow_interspersed_args": False}
 
 node = typer.Typer()
-Name = Annotated[str, argument("Name of the node.", "NODE")]
+
+
+@completion.silent
+def _complete_nodes(ctx: typer.Context) -> list[str]:
+    """Complete nodes of the running simulation."""
+    with completion.connect_client(ctx) as client:
+        return list(client.ask("nodes"))
+
+
+Name = Annotated[str, argument("Name of the node.", "NODE", _complete_nodes)]
 
 
 @node.command(context_settings=_WORDS)
@@ -36,6 +52,7 @@ def run(
     sim: options.Sim = None,
     wait: Annotated[float, option("Longest wait for a simulation that has not started yet.", "S")] = 0.0,
     given: GivenOptions = NONE_GIVEN,
+    json_: options.Json = False,  # noqa: ARG001 (`report_errors` reads it)
 ) -> int:
     """Run a program for ROS in a process of its own, beside a running simulation. Options come before the program."""
     from simkit.live import connect
@@ -54,6 +71,7 @@ def run(
     host = LiveHost(path, program.rpartition("/")[2].removesuffix(".py"))
     started = LiveProgram(host, source, NodeOptions(args=tuple(words), package_paths=paths))
     host.start(started)
+    add_to_report(program=program)
     try:
         code = started.execute()
     finally:
@@ -71,6 +89,7 @@ def ping(
     node: Name,
     count: Annotated[int, Option("--count", "-c", help="Number of pings.", min=1)] = 1,
     sim: options.Sim = None,
+    json_: options.Json = False,  # noqa: ARG001 (`report_errors` reads it)
 ) -> None:
     """Measure how long a program in its own process, or the simulation of another node, needs to respond."""
     from simkit_nodes.live_host import PING
@@ -78,6 +97,7 @@ def ping(
     with connect_to_simulation(sim) as client:
         name = _known_node(client, node)
         is_process = f"{name}/{PING}" in client.services()
+        pings: list[JsonObject] = []
         for _ in range(count):
             begun = time.perf_counter()
             if is_process:
@@ -85,20 +105,26 @@ def ping(
             else:
                 client.flush()
                 place = "part of the simulation"
-            print_line(f"{name}: {place}, {(time.perf_counter() - begun) * 1e3:.1f} ms")
+            elapsed = (time.perf_counter() - begun) * 1e3
+            pings.append({"node": name, "place": place, "milliseconds": round(elapsed, 3)})
+            add_to_report(pings=pings)
+            print_line(f"{name}: {place}, {elapsed:.1f} ms")
 
 
 @node.command()
 @report_errors_quietly
 def kill(
-    nodes: Annotated[list[str], argument("Names of the nodes.", "NODE...")],
+    nodes: Annotated[list[str], argument("Names of the nodes.", "NODE...", _complete_nodes)],
     sim: options.Sim = None,
+    json_: options.Json = False,  # noqa: ARG001 (`report_errors` reads it)
 ) -> None:
     """End programs in their own processes, as Ctrl-C does."""
     from simkit_nodes.live_host import KILL
 
     with connect_to_simulation(sim) as client:
-        for name in [_program_node(client, each) for each in nodes]:
+        names = [_program_node(client, each) for each in nodes]
+        add_to_report(ended=names)
+        for name in names:
             client.call(f"{name}/{KILL}")
             print_line(f"{name}: ended")
 

@@ -58,21 +58,21 @@ def get_package_prefix(package_name: str) -> str:
     return prefix_of(_folder(package_name))
 
 
-def get_package_share_directory(package_name: str, print_warning: bool = True) -> str:
+def get_package_share_directory(package_name: str, print_message: bool = True) -> str:
     """Return the folder with the files of a package.
 
     Args:
         package_name: name of the package.
-        print_warning: accepted; the folder always exists.
+        print_message: accepted; the folder always exists.
 
     Raises:
         PackageNotFoundError: there is no such package.
         ValueError: the name is invalid.
     """
-    del print_warning
+    del print_message
     return os.fspath(_folder(package_name))
 
 
-def get_package_share_path(package_name: str, print_warning: bool = True) -> pathlib.Path:
+def get_package_share_path(package_name: str, print_message: bool = True) -> pathlib.Path:
     """Return the folder with the files of a package; see `get_package_share_directory`."""
-    return pathlib.Path(get_package_share_directory(package_name, print_warning))
+    return pathlib.Path(get_package_share_directory(package_name, print_message))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from simkit import RunSpec
 from simkit.cli.run_verdict import RunVerdict
-from simkit.cli.terminal.output import print_status
+from simkit.cli.terminal.output import print_message
 from simkit.errors import InputError
 from simkit.extend import OpenRun, RunPart, option
 
@@ -102,7 +102,7 @@ class RosConnection(RunPart):
             return
         from simkit_ros.bridge_process import RosBridge
 
-        with RosBridge(self.options, print_status) as self.bridge:
+        with RosBridge(self.options, print_message) as self.bridge:
             yield
 
     @contextmanager

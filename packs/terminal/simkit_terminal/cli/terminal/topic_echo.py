@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 from typer import Option
 
 from simkit.cli.terminal import options
-from simkit.cli.terminal.output import print_json, print_line, print_note
+from simkit.cli.terminal.output import print_json, print_line, print_message
 from simkit.cli.terminal.topic_sources import Feed, ReceivedMessage, Source, open_source
 from simkit.errors import InputError, MessageError
 from simkit.extend import argument, option
@@ -80,7 +80,7 @@ def _echo_field(feed: Feed, show: _MessagePrinter, *, once: bool, until: float |
         if show(received) and once:
             return
         if reports_lost and feed.lost > lost:
-            print_note(f"A message was lost!!!\n\ttotal count change:{feed.lost - lost}\n\ttotal count: {feed.lost}")
+            print_message(f"A message was lost!!!\n\ttotal count change:{feed.lost - lost}\n\ttotal count: {feed.lost}")
             lost = feed.lost
 
 

@@ -13,7 +13,7 @@ from simkit import RunSpec
 from simkit.cli.run_part import fill_in_value
 from simkit.cli.run_verdict import RunVerdict
 from simkit.cli.terminal.json_report import add_to_report
-from simkit.cli.terminal.output import print_status
+from simkit.cli.terminal.output import print_message
 from simkit.errors import InputError, SimkitError
 from simkit.extend import RunPart, option
 
@@ -88,10 +88,10 @@ class BundleOnFailure(RunPart):
             else:
                 path = pack_load_failure(spec, folder, failure)
         except (SimkitError, OSError) as error:
-            print_status(f"no bundle was written: {error}")
+            print_message(f"no bundle was written: {error}")
         else:
             add_to_report(bundle=str(path))
-            print_status(f"bundle {path}; repeat the run with `simkit replay {path}`")
+            print_message(f"bundle {path}; repeat the run with `simkit replay {path}`")
 
 
 def _is_folder(word: str, *, is_world_first: bool) -> bool:

@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Final
 import typer
 
 from simkit.cli.run_part import fill_in_value
-from simkit.cli.terminal.output import print_status
-from simkit.extend import OpenRun, RunPart, option
+from simkit.cli.terminal.output import print_message
+from simkit.extend import OpenRun, RunPart, add_to_report, option
 
 if TYPE_CHECKING:
     from simkit import Simulation
@@ -146,12 +146,13 @@ def open_page(
     view = stack.enter_context(LiveView(sim, options.host, options.port, recording=recording, streams=streams))
     if not view.is_local:
         text = "other machines reach the page; whoever has its address may drive, spawn, reset and call services"
-        print_status(f"warning SK-WEB-007: {text}; without --host only this machine reaches it")
+        print_message(f"warning SK-WEB-007: {text}; without --host only this machine reaches it")
     return view
 
 
 def show_address(address: str, *, opens: bool) -> None:
     """Print the address of a page alone on a line, and open it in a browser where there is a desktop."""
+    add_to_report(address=address)
     if sys.stdout is not None:
         sys.stdout.write(f"{address}\n")
         sys.stdout.flush()

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Final
 from simkit import RunSpec
 from simkit.cli.run_part import fill_in_value
 from simkit.cli.run_verdict import RunVerdict
-from simkit.cli.terminal.output import print_status
+from simkit.cli.terminal.output import print_message
 from simkit.extend import OpenRun, RunPart, option
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ class WebServers(RunPart):
             for options in self.servers:
                 from simkit_view.web.web_process import WebBridge
 
-                self.bridges.append(stack.enter_context(WebBridge(options, print_status)))
+                self.bridges.append(stack.enter_context(WebBridge(options, print_message)))
             yield
 
     @contextmanager
