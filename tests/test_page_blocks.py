@@ -204,7 +204,7 @@ class Reader:
     def _begin(self, command: str) -> None:
         terminal = Terminal("bash", "-c", command, cwd=self._folder, size=(40, 160), environment=self._environment)
         self._running[program_of(command)] = self._stack.enter_context(terminal)
-        started = r"t = (?:[1-9]|0\.0?[1-9])|paused|http://.*\n.*$" if WORLD.search(command) else r"\n"
+        started = r"http://" if "simkit view" in command else r"t = [1-9]|paused" if WORLD.search(command) else r"\n"
         assert "error" not in terminal.wait_for(rf"{started}|error.*\n.*")[0]
 
     def _end_of(self, command: str) -> None:
@@ -276,7 +276,7 @@ def test_the_commands_of_a_page_run(page: Path, tmp_path: Path) -> None:
         reader.end()
 
 
-def test_the_number_of_commands_that_are_left_out_is_known() -> None:
+def test_no_more_commands_are_left_out_than_are_stated() -> None:
     left_out = Counter(
         pattern_of(command)
         for page in pages()
@@ -285,7 +285,10 @@ def test_the_number_of_commands_that_are_left_out_is_known() -> None:
         for command, *_ in commands(block)
     )
     del left_out[""]
-    assert left_out == {pattern: left_out.number for pattern, left_out in LEFT_OUT.items()}
+    grown = {
+        LEFT_OUT[pattern].reason: number for pattern, number in left_out.items() if number > LEFT_OUT[pattern].number
+    }
+    assert not grown, "let a test run the new commands, or state the larger number"
 
 
 def test_another_test_reads_each_page_that_is_left_to_it() -> None:
