@@ -68,7 +68,7 @@ LEFT_OUT: Final = {
     r"base\.yaml|controllers\.yaml|bow|arena\.wo|\.sdf --score|my_robots|finger\.urdf|harbour|map_saver/|-v 4": LeftOut(
         "worlds and robots that the page does not show", 11
     ),
-    r"pytest -n auto|-m pytest|ruff|\.ci/|golden record golden/sensor_bench|lab (?:start|grade)|carry\.py|^cd |> docs/": LeftOut(
+    r"pytest -n auto|-m pytest|ruff|\.ci/|golden/sensor_bench|lab (?:start|grade)|carry\.py|^cd |> docs/": LeftOut(
         "other tests run it, or it changes the repository", 79
     ),
     r"^ros2 |^simkit ros$|--ros(?: |$)": LeftOut("ROS 2", 7),
@@ -80,7 +80,7 @@ SHORTER: Final = {
     "--duration 10 --video": "--duration 0.4 --video", "--duration 10 --gif": "--duration 0.4 --gif",
     "--duration 10 --record drive.mcap --skip": "--duration 0.4 --record drive.mcap --skip",
     "hits --steps 1,0.25": "hits --steps 4 --quick", "stepping.py": "stepping.py --rounds 1",
-    "--rounds 20": "--rounds 1", "motion play wave home": "motion play home",
+    "--rounds 20": "--rounds 1", "--jobs 8": "--jobs 2", "motion play wave home": "motion play home",
 }  # fmt: skip
 LONGEST: Final = 3.0  # [s] of simulated time
 LIMIT: Final = 900.0  # [s] of wall time for a command: a busy machine needs ten times the time of a free one
