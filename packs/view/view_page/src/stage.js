@@ -1,7 +1,7 @@
 // Renderer, cameras, lights, sky and the drawing loop. A frame is drawn only if something has changed.
 //
 // A full frame has all pixels, smooth edges, shadows and shininess; a fast one has none of them, and 3/4 of the pixels along
-// each axis. Without a graphics card, a full frame takes 5 times as long, so it is drawn only when nothing moves.
+// each axis. Without a graphics card, a full frame takes about ten times as long, so it is drawn only when nothing moves.
 import * as T from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 

@@ -190,24 +190,23 @@ export class Views {
     camera.lookAt(controls.target);
   }
 
-  /** Returns the level of the floor below the camera; null without a floor, and where a camera of the robot looks. */
-  floorLevel() {
-    const { stage: { camera, controls }, world, scene } = this.app;
-    return scene && !this.sensor ? world.floorAt(camera.position, controls.target.z + STOREY) : null;
+  /** Returns the level of the floor at a place; null without a floor, and while a camera of the robot is shown. */
+  floorAt(place) {
+    const { stage: { controls }, world, scene } = this.app;
+    return scene && !this.sensor ? world.floorAt(place, controls.target.z + STOREY) : null;
   }
 
   /** Ends the orbit just above the floor. */
   limitOrbit() {
-    const { camera, controls } = this.app.stage, level = this.floorLevel();
+    const { camera, controls } = this.app.stage, level = this.floorAt(camera.position);
     const height = level === null ? -1 : (level + CLEARANCE - controls.target.z) / camera.position.distanceTo(controls.target);
     controls.maxPolarAngle = Math.acos(Math.min(Math.max(height, -1), 1));
   }
 
   /** Lifts the camera and what it looks at above the floor, below which they can be moved. */
   liftAboveFloor() {
-    const { camera, controls } = this.app.stage, level = this.floorLevel();
-    if (level === null) return;
-    const lift = Math.max(0, level + CLEARANCE - camera.position.z, level - controls.target.z);
+    const { camera, controls } = this.app.stage, below = this.floorAt(camera.position), level = this.floorAt(controls.target);
+    const lift = Math.max(0, below === null ? 0 : below + CLEARANCE - camera.position.z, level === null ? 0 : level - controls.target.z);
     camera.position.z += lift;
     controls.target.z += lift;
   }

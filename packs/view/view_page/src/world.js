@@ -7,6 +7,7 @@ const ONE = new T.Vector3(1, 1, 1);
 const FAR_PLANE = 250; // [m] half size of a plane without edges
 const STILL = 1e-4; // least change of a position [m] or of a number of a quaternion that is a motion
 const FLOOR_SHARE = 0.5, FLOOR_SLOPE = 0.1; // least share of the world's width that a floor has; largest height by its width
+const HIGHEST = 1e4; // [m] above all terrain
 const GLASS = 0.5; // opacity below which a shape hides nothing
 
 const scratch = { m: new T.Matrix4(), b: new T.Matrix4(), p: new T.Vector3(), q: new T.Quaternion() };
@@ -406,10 +407,11 @@ export class World {
     }
   }
 
-  /** Returns the level of the highest floor at a place and below a level; null without a floor. */
+  /** Returns the level of the highest floor at a place: of terrain, or of a floor below a level; null without a floor. */
   floorAt({ x, y }, below) {
-    const ray = new T.Raycaster(new T.Vector3(x, y, below), new T.Vector3(0, 0, -1));
-    const levels = [...this.floors, this.drawnFloor ?? NaN, ...ray.intersectObjects(this.terrains, false).map(hit => hit.point.z)].filter(level => level <= below);
+    const ray = new T.Raycaster(new T.Vector3(x, y, HIGHEST), new T.Vector3(0, 0, -1));
+    const levels = [...this.floors, this.drawnFloor ?? Infinity].filter(level => level <= below);
+    levels.push(...ray.intersectObjects(this.terrains, false).map(hit => hit.point.z));
     return levels.length ? Math.max(...levels) : null;
   }
 }
