@@ -81,6 +81,7 @@ SHORTER: Final = {
     "--duration 10 --record drive.mcap --skip": "--duration 0.4 --record drive.mcap --skip",
     "hits --steps 1,0.25": "hits --steps 4 --quick", "stepping.py": "stepping.py --rounds 1",
     "--rounds 20": "--rounds 1", "--jobs 8": "--jobs 2", "motion play wave home": "motion play home",
+    "--foxglove --rosbridge": "--foxglove 0 --rosbridge 0",  # free ports: other programs may use 8765 and 9090
 }  # fmt: skip
 LONGEST: Final = 3.0  # [s] of simulated time
 LIMIT: Final = 900.0  # [s] of wall time for a command: a busy machine needs ten times the time of a free one
@@ -110,7 +111,7 @@ def pattern_of(command: str) -> str:
 
 
 def shorter(text: str) -> str:
-    """Return a command or a file with fewer or shorter runs."""
+    """Return a command or a file with fewer or shorter runs, or with free ports."""
     for long, short in SHORTER.items():
         text = text.replace(long, short)
     return text
