@@ -46,8 +46,9 @@ setNotice('');
 
 /** Tells why nothing moves while there is no connection. A hidden page ends its connection itself. */
 function showLink(isUp) {
+  const before = standing;
   standing = isUp || document.hidden || app.player ? '' : ENDED;
-  setNotice(standing);
+  if (standing !== before) setNotice(standing); // the first connection leaves the notice of the first view
 }
 
 const BY_NUMBER = /^(state|appearance|joints)$|^display:/; // packets with numbers of bodies, shapes or joints of the newest scene
