@@ -57,6 +57,7 @@ def test_each_title_and_hint_has_a_translation_and_each_translation_a_text(name:
     translations = read_words(ROOT / name, "fr").texts
     assert set(translations) == texts
     assert all(translations.values())
+    assert (ROOT / name / "README.fr.md").is_file()
 
 
 def test_the_language_is_that_of_the_option_or_of_the_environment(
@@ -67,9 +68,9 @@ def test_the_language_is_that_of_the_option_or_of_the_environment(
 
     assert f"read {tmp_path / 'a' / 'README.md'}, then" in lab("start", "1", tmp_path / "a")
     french = lab("start", "1", tmp_path / "b", "--lang", "fr")
-    assert f"read {tmp_path / 'b' / 'README.fr.md'}, then" in french and "--lang fr" in french
+    assert f"lisez {tmp_path / 'b' / 'README.fr.md'}, puis" in french and "--lang fr" in french
     monkeypatch.setenv("LANG", "fr_FR.UTF-8")
-    assert f"read {tmp_path / 'c' / 'README.fr.md'}, then" in lab("start", "1", tmp_path / "c")
+    assert f"lisez {tmp_path / 'c' / 'README.fr.md'}, puis" in lab("start", "1", tmp_path / "c")
     monkeypatch.setenv("LC_ALL", "de_DE.UTF-8")
     assert f"read {tmp_path / 'd' / 'README.md'}, then" in lab("start", "1", tmp_path / "d")
     assert "SK-CLI-018" in lab("start", "1", tmp_path / "e", "--lang", "de")
