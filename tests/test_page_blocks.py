@@ -62,7 +62,7 @@ class LeftOut(NamedTuple):
 LEFT_OUT: Final = {
     r"pip (un)?install|git clone|podman|-m venv |simkit fetch|simkit fleet": LeftOut("network", 32),
     r"articubot_one/|vectored|pal\b|tiago_gazebo|go2_desc|burger\.urdf|depot\.sdf|~/|baxter_sim": LeftOut(
-        "robots of public repositories", 17
+        "robots of public repositories", 16
     ),
     r"base\.yaml|controllers\.yaml|bow|arena\.wo|\.sdf --score|my_robots|finger\.urdf|harbour|map_saver/|-v 4": LeftOut(
         "worlds and robots that the page does not show", 11

@@ -1,5 +1,5 @@
 // Motions by name, and trajectories of the joints of a controller.
-import { element } from '../dom.js';
+import { element, fixed } from '../dom.js';
 import { makeCallList } from './call_list.js';
 
 const PLAY = 'play_motion2_msgs/action/PlayMotion2', FOLLOW = 'control_msgs/action/FollowJointTrajectory';
@@ -55,7 +55,7 @@ export function makeMotionTab(app) {
       const position = positions[row.index];
       if (row.isMoved || !Number.isFinite(position)) continue;
       row.slider.value = position;
-      row.value.textContent = position.toFixed(3);
+      row.value.textContent = fixed(position, 3);
     }
   };
   app.on('packet:joints', ({ arrays }) => { positions = arrays.position; if (isShown) show(); });
