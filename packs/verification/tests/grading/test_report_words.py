@@ -122,6 +122,8 @@ def test_values_and_texts_of_the_student_stay_as_they_are() -> None:
     values = "min(scan('/scan'), 3) was 0.1, topic('/a').x is unknown: no message received on /a at t = 2 s"
     french = "min(scan('/scan'), 3) valait 0.1, topic('/a').x est inconnu : aucun message reçu sur /a à t = 2 s"
     assert FRENCH.result(values) == french
+    near = "no publisher on /a; did you mean '/b'? at t = 3 s"
+    assert FRENCH.result(near) == "aucun éditeur sur /a ; vouliez-vous dire '/b' ? à t = 3 s"
     error = "a.py:3: ValueError: f(x) was 3, g is unknown: no, in before_step at t = 1.5 s\n  f(x) was 3"
     assert FRENCH.message(error) == error.replace(", in before_step at", ", dans before_step à")
     assert FRENCH.translated("the door was open") == "the door was open"
