@@ -91,6 +91,7 @@ def test_a_link_leads_to_a_page_of_the_site_or_to_the_repository(site_pages: typ
         ),
         ("| `a\\|b` | c |\n", "| `a|b` | c |\n"),
         ("```\ntext\n- no list\n```\n", "```\ntext\n- no list\n```\n"),
+        ("```yaml file=run.yaml\na: 1\n```\n", "```yaml\na: 1\n```\n"),
     ],
 )
 def test_lists_and_tables_of_github_become_those_of_the_site(
@@ -121,6 +122,15 @@ def test_each_command_and_each_of_its_options_is_in_the_reference(reference: typ
     assert "\n## simkit bag export\n" in text
     assert "--cmd-vel" in pages["reference/commands/run.md"][1]
     assert "../../docs/commands/run.md" in pages["reference/commands/run.md"][1]
+
+
+def test_the_page_of_a_command_links_to_its_options(reference: types.ModuleType) -> None:
+    def link(path: str) -> str:
+        return reference.with_options_link("# title\n\ntext", path, reference.command_pages()).split("\n\n")[1]
+
+    assert link("docs/commands/run.md") == "[All options](../../reference/commands/run.md)"
+    assert link("packs/x/docs/commands/grade.md") == "[All options](../../../../reference/commands/grade.md)"
+    assert link("docs/commands/index.md") == link("docs/run.md") == "text"
 
 
 def test_each_diagnostic_code_has_a_heading_in_the_reference(reference: types.ModuleType) -> None:

@@ -6,7 +6,7 @@ import re
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from reference import generated_pages
+from reference import generated_pages, with_options_link
 from site_pages import (
     ROOT,
     generated_nav,
@@ -70,6 +70,7 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
         page.meta["search"] = {"boost": 0.5}  # each of their 2000 names is a title
     if not path.startswith("reference/"):
         markdown = in_python_markdown(with_site_links(markdown, path, files.src_uris))
+        markdown = with_options_link(markdown, path, _pages())
     return markdown
 
 

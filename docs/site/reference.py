@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import ast
 import json
+import posixpath
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -167,6 +168,15 @@ def command_pages() -> dict[str, tuple[str, str]]:
             text = text.replace("\n\n", f"\n\n[Description and examples](../../{narrative[name]})\n\n", 1)
         pages[_path("commands", name)] = (f"simkit {name}", text)
     return pages
+
+
+def with_options_link(markdown: str, path: str, made: Container[str]) -> str:
+    """Return a page of a command with a link below its title to its page among the made ones, other pages unchanged."""
+    options = _path("commands", Path(path).stem)
+    if "/commands/" not in path or options not in made:
+        return markdown
+    target = posixpath.relpath(options, posixpath.dirname(path))
+    return markdown.replace("\n\n", f"\n\n[All options]({target})\n\n", 1)
 
 
 def _command_lines(command: Any, name: str, parent: Any, level: int) -> Iterator[str]:

@@ -13,19 +13,15 @@ PAGE = Path(__file__).resolve().parents[1] / "docs" / "terminal.md"
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 
 
-def sessions() -> list[tuple[str, list[tuple[str, str, str]]]]:
-    """World, and what is done in it: ROS 2's line (may be empty), ours, and the output."""
+def sessions() -> list[tuple[str, list[tuple[str, str]]]]:
+    """Return each world with its commands and their outputs."""
     found = []
     for part in PAGE.read_text(encoding="utf-8").split("<!-- run: ")[1:]:
-        steps: list[tuple[str, str, str]] = []
+        steps = []
         for block in re.findall(r"```console\n(.*?)```", part, re.DOTALL):
-            for step in re.split(r"^(?=# |\$ )", block, flags=re.MULTILINE):
-                if step.startswith("# "):
-                    steps.append((step[2:].strip(), "", ""))
-                elif step:
-                    line, _, output = step.partition("\n")
-                    ros = steps.pop()[0] if steps and not steps[-1][1] else ""
-                    steps.append((ros, line[2:], output))
+            for step in re.split(r"^(?=\$ )", block, flags=re.MULTILINE)[1:]:
+                line, _, output = step.partition("\n")
+                steps.append((line[2:], output))
         found.append((part.split(" -->")[0], steps))
     return found
 
@@ -55,7 +51,7 @@ def fits(expected: str, printed: str) -> bool:
 @pytest.mark.parametrize(("world", "steps"), sessions(), ids=[world for world, _ in sessions()])
 def test_the_commands_of_the_page_work(
     world: str,
-    steps: list[tuple[str, str, str]],
+    steps: list[tuple[str, str]],
     start: Any,
     simkit_line: Any,
     monkeypatch: pytest.MonkeyPatch,
@@ -63,18 +59,7 @@ def test_the_commands_of_the_page_work(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     start(world, world=world)
-    for _, line, output in steps:
+    for line, output in steps:
         result = simkit_line(*shlex.split(line)[1:])
         assert fits(output, result.stdout + result.stderr), f"$ {line}\n{result.stdout}{result.stderr}"
         assert result.exit_code == 0
-
-
-def test_ours_are_ros_2s_word_for_word() -> None:
-    """But for the first word, and what ends a command that goes on for ever."""
-    ended = re.compile(r" --(?:duration \S+|once)$")
-    pairs: list[Any] = [(ros, line) for _, steps in sessions() for ros, line, _ in steps if ros]
-    assert len(pairs) > 25
-    for ros, line in pairs:
-        if ros.startswith("ros2 run "):
-            continue
-        assert ended.sub("", line).removeprefix("simkit ") == ros.removeprefix("ros2 ")
