@@ -91,6 +91,7 @@ def test_a_link_leads_to_a_page_of_the_site_or_to_the_repository(site_pages: typ
         ),
         ("| `a\\|b` | c |\n", "| `a|b` | c |\n"),
         ("```\ntext\n- no list\n```\n", "```\ntext\n- no list\n```\n"),
+        ("```yaml file=run.yaml\na: 1\n```\n", "```yaml\na: 1\n```\n"),
     ],
 )
 def test_lists_and_tables_of_github_become_those_of_the_site(

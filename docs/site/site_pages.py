@@ -22,6 +22,7 @@ _PICTURE_ENDINGS = {".css", ".gif", ".jpg", ".png", ".svg", ".webp"}
 _OWN_TARGET = re.compile(rf"{re.escape(REPOSITORY)}(?:blob|tree|raw)/main/")
 _LINK = re.compile(r"(!?\[(?:[^\[\]]|\[[^\]]*\])*\]\()([^)\s]+)((?:\s+\"[^\"]*\")?\))")
 _FENCE = re.compile(r"^\s*(`{3,}|~{3,})")
+_FENCE_WORDS = re.compile(r"^(\s*[`~]{3,}\w+) .*")
 _ITEM = re.compile(r"^( *)([-*+]|\d+\.)( +)(?=\S)")
 _CODE = re.compile(r"(`+)(.+?)\1")
 
@@ -70,7 +71,7 @@ def in_python_markdown(text: str) -> str:
     r"""Return Markdown of GitHub in the dialect of the package Markdown.
 
     That package wants an empty line before a list, items of inner lists indented by 4 spaces, and `|` instead of `\|`
-    in the code of a table.
+    in the code of a table. It does not know words after the language of a block, such as `python skip`.
     """
     lines: list[str] = []
     columns: list[int] = []  # column of the text of each list item that is open
@@ -89,6 +90,7 @@ def in_python_markdown(text: str) -> str:
                 columns.pop()
         if match := _FENCE.match(line):
             fence = match[1]
+            line = _FENCE_WORDS.sub(r"\1", line)
         if item:
             if not is_in_list and lines and lines[-1].strip():
                 lines.append("")

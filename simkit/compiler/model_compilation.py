@@ -118,7 +118,7 @@ def add_idle_armature(
             continue
         if not joint:
             text = f"link {link} moves freely without mass, and the links on its joints do not give it any inertia"
-            hint = "give the link an <inertial>, or load the model with base='fixed'"
+            hint = "give the link an <inertial>, or fix the model: <static>, or --base fixed for a robot alone"
             diagnostics.error("SK-JOINT-010", text, binding.scene.where, hint)
             continue
         armature = _give_armature(spec, model, body)

@@ -245,7 +245,7 @@ class ModelWriter:
                     "SK-JOINT-010",
                     f"link {link.scoped} moves freely, but neither it nor any link that it carries has mass",
                     link.where,
-                    "give the link an <inertial>, or load the model with base='fixed'",
+                    "give the link an <inertial>, or fix the model: <static>, or --base fixed for a robot alone",
                 )
                 return True
             self.record.unladen.add(link.scoped)

@@ -65,9 +65,9 @@ def read_root(content: bytes) -> XmlElement:
         etree.fromstring(content, kind(target=target))
         root = etree.fromstring(content, kind())
     except (etree.XMLSyntaxError, ValueError) as problem:
-        raise MeshFileError(f"is not readable XML: {problem}") from None
+        raise MeshFileError(f"is not readable as XML: {problem}") from None
     if root is None or not isinstance(root.tag, str):
-        raise MeshFileError("is not readable XML")
+        raise MeshFileError("is not readable as XML")
     if etree.QName(root).localname != "COLLADA":
         raise MeshFileError(f"begins with <{etree.QName(root).localname}>; a COLLADA file begins with <COLLADA>")
     return root

@@ -5,11 +5,15 @@ from __future__ import annotations
 import os
 from functools import lru_cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 from urllib.parse import unquote
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.loaders.resources.model_folder import model_file
 from simkit.packs import pack_folders
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 MODELS = ("burger", "waffle", "waffle_pi")
 _URI = "model://turtlebot3"
@@ -121,6 +125,14 @@ _SUN = """<sdf version="1.7"><light type="directional" name="sun"><cast_shadows>
 <direction>-0.5 0.1 -0.9</direction></light></sdf>"""
 
 _MODELS = {"ground_plane": _GROUND_PLANE, "ground plane": _GROUND_PLANE, "sun": _SUN}
+
+
+def bundled_models() -> Iterator[str]:
+    """Return the names of the models that a world can include without a search path."""
+    yield from ("ground_plane", "sun")
+    for bundle in bundled_folders("assets"):
+        for pattern in ("*/model.config", "*/*/model.config"):
+            yield from (file.parent.name for file in sorted(bundle.glob(pattern)))
 
 
 def builtin_model_uri(text: str) -> str | None:

@@ -15,7 +15,7 @@ from simkit.diagnostics import Diagnostic, Diagnostics, Where, closest, did_you_
 from simkit.errors import InputError
 from simkit.home_folder import expand_home
 from simkit.linked_files import SEARCH_VARIABLES, choose_folders
-from simkit.loaders.resources.bundled_models import bundled_folders, is_bare_name
+from simkit.loaders.resources.bundled_models import bundled_folders, bundled_models, is_bare_name
 from simkit.loaders.resources.fuel_cache import parse_fuel_url
 from simkit.loaders.resources.install_rules import installed_sources
 from simkit.loaders.resources.ros_packages import enclosing_package
@@ -197,6 +197,8 @@ class Resolver(UriCandidates):
         name = rest.split("/")[0]
         is_unknown = scheme in ("model", "package") and folder_of_name(places, rest) is None
         near = did_you_mean(name, self._nearby_names(relative_to)) if is_unknown else ""
+        if scheme == "model" and is_unknown and not near:
+            near = did_you_mean(name, bundled_models())
         above = self._hint_above(uri, relative_to)
         folder, tried = self.find_package(name, relative_to) if scheme == "package" else (None, [])
         if scheme == "package" and folder is None:

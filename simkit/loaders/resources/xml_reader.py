@@ -84,7 +84,7 @@ def _describe_content(data: bytes) -> str:
     if head.startswith((b"v ", b"o ", b"mtllib ", b"# Blender")) or b"\nv " in head:
         return "an OBJ mesh"
     if head.startswith(b"world: ") or b"\nworld: " in head:
-        return "a scenario, the input of simkit golden record, certify, bundle and grade"
+        return "a scenario; simkit golden record runs it with its checks"
     if b"\0" in head:
         return "a binary file"
     if b"<" not in data:

@@ -171,6 +171,7 @@ def _matching_child(change: Params, target: Params) -> Params | None:
     if not same:
         tag = f"<{change.name}>" if name is None else f"<{change.name} name={name!r}>"
         near = did_you_mean(change.name, [c.name for c in target.children])
+        near = near or f'only what the file has can change; action="replace" takes a whole new <{target.name}>'
         change.error(_CODE, f"<{target.name} name={target.attribute('name')!r}> has no {tag} to change", near)
         return None
     return same[0]

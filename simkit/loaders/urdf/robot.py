@@ -175,7 +175,7 @@ def _choose_base(draft: RobotDraft, base: str, is_included: bool, fixed_reason: 
         return "fixed"
     if base == "auto" and not is_included:
         message = f"{owner}: base is floating, because no link is named 'world'"
-        element.note("SK-URDF-017", message, "to fix it in the world, use base='fixed'")
+        element.note("SK-URDF-017", message, "to fix it in the world: --base fixed, in Python base='fixed'")
     return base
 
 

@@ -150,7 +150,7 @@ def _report_unknown(plugin: ScenePlugin, diagnostics: Diagnostics, parent: Paren
         return
     spelled = plugin_kinds().written
     cores = {_core(name): spelled[name] for name in sorted(spelled, reverse=True)}
-    near = next(filter(None, (closest(_core(name), cores) for name in names)), None)
+    near = next(filter(None, (closest(_core(name), cores, 0.7) for name in names)), None)
     on = "" if parent in ("any", "model") else f" --on {parent}"
     new = f"simkit plugin new {quote(plugin.filename.rpartition('/')[2])}{on}"
     others = (

@@ -27,12 +27,15 @@ def _section(kind: str, title: str) -> Iterator[str]:
     yield f"## {title}\n"
     yield "| preset | Hz | gives | losses, sweep, timing | source, remarks |"
     yield "|---|---|---|---|---|"
+    first_with: dict[str, str] = {}
     for preset in presets():
         if preset.kind == kind:
             rate = f"{preset.rate:g}" if preset.rate else ""
             beside = f"`{outline(preset.beside)}`" if preset.beside else ""
             block = f"`{outline(preset.settings[preset.block])}`"
-            yield f"| {_names(preset)} | {rate} | {block} | {beside} | {_source(preset)} |"
+            first = first_with.setdefault(_source(preset), preset.name)
+            source = _source(preset) if first == preset.name else f"as {first}"
+            yield f"| {_names(preset)} | {rate} | {block} | {beside} | {source} |"
 
 
 def _names(preset: Preset) -> str:

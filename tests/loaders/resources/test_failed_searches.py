@@ -133,6 +133,14 @@ def test_the_help_suggests_another_model_only_if_the_model_of_the_uri_is_not_the
     assert help_text in problem.hint
 
 
+@pytest.mark.parametrize(("uri", "name"), [("model://sunn", "sun"), ("model://turtlebot3_burgr", "turtlebot3_burger")])
+def test_the_help_suggests_a_model_of_simkit(uri: str, name: str) -> None:
+    found = Diagnostics()
+    Resolver().resolve(uri, Where(None, 1), found, None)
+    (problem,) = found
+    assert (problem.code, problem.hint) == ("SK-URI-001", f"did you mean {name!r}?")
+
+
 def test_an_unknown_scheme_has_the_same_message_for_each_uri(tmp_path: Path) -> None:
     """Equal messages are shown once, with all their lines."""
     for name in ("a.dae", "b.dae"):

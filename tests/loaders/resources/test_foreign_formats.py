@@ -11,7 +11,7 @@ import simkit
 from simkit.diagnostics import Diagnostics
 from simkit.loaders.resources.xml_reader import parse_file
 
-SCENARIO = "a scenario, the input of simkit golden record, certify, bundle and grade"
+SCENARIO = "a scenario; simkit golden record runs it with its checks"
 LFS = "a pointer of Git LFS; the content was not fetched (git lfs pull)"
 
 

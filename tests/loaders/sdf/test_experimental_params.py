@@ -91,6 +91,7 @@ def test_a_removal_with_children_removes_only_these_children(arm):
         ('<link element_id="base"><inertial><mass>5</mass></inertial></link>', "needs action="),
         ('<link element_id="base"><plugin name="x" action="remove"/></link>', "has no <plugin name='x'>"),
         ('<link element_id="base" action="modify"><gravty>0</gravty></link>', "has no <gravty>"),
+        ('<link element_id="base" action="modify"><wind>0</wind></link>', 'action="replace" takes a whole new <link>'),
     ],
 )
 def test_a_wrong_change_is_an_error_at_its_line_and_changes_nothing(arm, change, expected_text):

@@ -93,6 +93,8 @@ def test_the_default_text_of_sdf_is_no_unknown_plugin() -> None:
 
 
 def test_a_dissimilar_name_gets_no_other_name() -> None:
+    blinker = named("libblinker.so")  # as similar to libgazebo_link_attacher.so as a typing error of four letters
+    assert find_plugin(blinker) is None and "did you mean" not in next(iter(blinker.params.diagnostics)).hint
     plugin = named("libgazebo_tutorials.so")
     assert find_plugin(plugin) is None
     (found,) = plugin.params.diagnostics
