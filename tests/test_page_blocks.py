@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import faulthandler
 import os
 import re
 import shutil
@@ -67,15 +68,22 @@ LEFT_OUT: Final = {
     r"base\.yaml|controllers\.yaml|bow|arena\.wo|\.sdf --score|my_robots|finger\.urdf|harbour|map_saver/|-v 4": LeftOut(
         "worlds and robots that the page does not show", 11
     ),
-    r"pytest -n auto|-m pytest|ruff|\.ci/|golden record golden/sensor_bench|lab (?:start|grade)|^cd |> docs/": LeftOut(
+    r"pytest -n auto|-m pytest|ruff|\.ci/|golden/sensor_bench|lab (?:start|grade)|carry\.py|^cd |> docs/": LeftOut(
         "other tests run it, or it changes the repository", 79
     ),
     r"^ros2 |^simkit ros$|--ros(?: |$)": LeftOut("ROS 2", 7),
     r"ray start|--cluster|SLURM": LeftOut("a cluster", 3),
     r"contact-nets|--quick|benchmarks/history|train_turtlebot3|toss1": LeftOut("hours, or data of a real cube", 3),
 }
-SHORTER: Final = {"samples: 64": "samples: 3", "duration: 10\n": "duration: 2\n", "--trials 200": "--trials 2"}
+SHORTER: Final = {
+    "samples: 64": "samples: 3", "duration: 10\n": "duration: 2\n", "--trials 200": "--trials 2",
+    "--duration 10 --video": "--duration 0.4 --video", "--duration 10 --gif": "--duration 0.4 --gif",
+    "--duration 10 --record drive.mcap --skip": "--duration 0.4 --record drive.mcap --skip",
+    "hits --steps 1,0.25": "hits --steps 4 --quick", "stepping.py": "stepping.py --rounds 1",
+    "--rounds 20": "--rounds 1", "--jobs 8": "--jobs 2", "motion play wave home": "motion play home",
+}  # fmt: skip
 LONGEST: Final = 3.0  # [s] of simulated time
+LIMIT: Final = 900.0  # [s] of wall time for a command: a busy machine needs ten times the time of a free one
 IN_CLONE: Final = re.compile(r"(?<!\S)(?:\.venv|benchmarks|examples|packs|tests|worlds)/")
 WRITES_FILES: Final = re.compile(r"write_text\(|Recorder\(")
 UNTIL_INTERRUPT: Final = re.compile(
@@ -186,7 +194,7 @@ class Reader:
 
     def _wait_for(self, process: subprocess.Popen[bytes]) -> None:
         """Wait for the end of a process, and read what the terminals show: a program that nobody reads waits."""
-        end = time.monotonic() + 250.0
+        end = time.monotonic() + LIMIT
         while process.poll() is None:
             for terminal in self._running.values():
                 terminal.read(0.02)
@@ -232,7 +240,7 @@ def run_python(block: Block, folder: Path) -> None:
     script.write_text("\n" * (block.line - 1) + block.text, encoding="utf-8")
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(
-        [sys.executable, script.name], cwd=folder, env=environment, capture_output=True, text=True, timeout=300
+        [sys.executable, script.name], cwd=folder, env=environment, capture_output=True, text=True, timeout=LIMIT
     )
     assert done.returncode == 0, f"block at line {block.line}\n{done.stderr}"
 
@@ -249,6 +257,7 @@ def copy_clone(folder: Path, programs: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(("page", "block"), PYTHON)
 def test_a_block_runs_alone(page: Path, block: Block, tmp_path: Path) -> None:
+    faulthandler.cancel_dump_traceback_later()
     run_python(block, tmp_path)
 
 
@@ -256,6 +265,7 @@ def test_a_block_runs_alone(page: Path, block: Block, tmp_path: Path) -> None:
 @pytest.mark.needs_packs
 @pytest.mark.parametrize("page", shell_pages().values(), ids=shell_pages())
 def test_the_commands_of_a_page_run(page: Path, tmp_path: Path) -> None:
+    faulthandler.cancel_dump_traceback_later()  # each command has a limit of its own
     programs, folder = tmp_path / "programs", tmp_path / "folder"
     programs.mkdir()
     parts = blocks(page, *SHELL, "python", "text")

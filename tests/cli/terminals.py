@@ -15,7 +15,7 @@ from types import TracebackType
 
 import pytest
 
-_PATIENCE = 60.0  # [s] until a command that says nothing is given up: no test ends by it
+_PATIENCE = 250.0  # [s] until a command that says nothing is given up: no test ends by it
 
 
 def open_terminal() -> tuple[int, int]:
