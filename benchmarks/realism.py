@@ -115,9 +115,19 @@ def main(arguments: list[str]) -> None:
     """Measure, then print or write."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--write", type=Path, help="page whose tables and plots are replaced")
-    page = parser.parse_args(arguments).write
+    parser.add_argument("--images", type=Path, metavar="DIR", help="only draw the plots, in this folder")
+    given = parser.parse_args(arguments)
+    page, images = given.write, given.images
+    if page is not None and images is None:
+        images = page.parent / "images" / "realism"
     ideal = x3_values("ideal")
     real = x3_values(X3_SET)
+    if images is not None:
+        from realism_plots import draw_x3
+
+        draw_x3(images, real, ideal, SIGMAS, SHARES, CELLS, FRAMES)
+    if page is None and images is not None:
+        return
     parts = {
         "X3 rows": list(x3_table({"ideal": ideal[0], X3_SET: real[0]})),
         "X3 commands": list(command_table()),
@@ -130,9 +140,6 @@ def main(arguments: list[str]) -> None:
     for name, lines in parts.items():
         text = replace_part(text, name, lines)
     page.write_text(text, encoding="utf-8")
-    from realism_plots import draw_x3
-
-    draw_x3(page.parent / "images" / "realism", real, ideal, SIGMAS, SHARES, CELLS, FRAMES)
 
 
 if __name__ == "__main__":

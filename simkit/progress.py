@@ -10,7 +10,7 @@ terminals (`simkit.cli.terminal.task_display`). A Python program can install its
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Protocol, TypeVar
@@ -30,6 +30,7 @@ class Task:
         done: amount of finished work.
         item: file or entity in progress; may be empty.
         begun: start of the task, as `time.perf_counter()` gives it [s].
+        translate: function from the line that a display shows to the line in the user's language; None for English.
     """
 
     title: str
@@ -39,6 +40,7 @@ class Task:
     done: float = 0.0
     item: str = ""
     begun: float = field(default_factory=time.perf_counter)
+    translate: Callable[[str], str] | None = None
 
     def advance(self, item: str = "") -> None:
         """Count one finished item; name it, or keep the name that is shown."""
@@ -105,9 +107,12 @@ def set_item(item: str) -> None:
         _innermost.item = item
 
 
-def report_each(title: str, items: Iterable[Item], total: float | None = None) -> Iterator[Item]:
-    """Report a loop over items as a task."""
+def report_each(
+    title: str, items: Iterable[Item], total: float | None = None, *, translate: Callable[[str], str] | None = None
+) -> Iterator[Item]:
+    """Report a loop over items as a task. The other arguments are attributes of `Task`."""
     with task(title, total) as progress:
+        progress.translate = translate
         for item in items:
             yield item
             progress.advance()

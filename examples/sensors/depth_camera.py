@@ -32,10 +32,10 @@ def main(out: Path) -> None:
         camera = sim.sensor("rig::l::d435")
         sim.run(0.1)
         found, true, focal = camera.depth, camera.true_depth, camera.options.model.fx
-    hit = np.isfinite(found) & np.isfinite(true)
+    hit = np.isfinite(found) & (found > 0) & np.isfinite(true)  # 0 in the shadow of the second camera
     figure, (image, errors) = plots.figure("Depth camera: the D435's disparity noise", columns=2, width_ratios=(3, 2))
     shown = image.imshow(np.where(hit, found, np.nan), cmap="viridis_r", interpolation="none")
-    image.set(title="depth [m]; white: nothing within 10 m", xlabel="column [px]", ylabel="row [px]")
+    image.set(title="depth [m]; white: no value", xlabel="column [px]", ylabel="row [px]")
     image.grid(visible=False)
     figure.colorbar(shown, ax=image, shrink=0.6)
     some = np.random.default_rng(0).permutation(np.flatnonzero(hit))[:4000]

@@ -63,6 +63,7 @@ class RunLoop:
         is_over: check between slices; True ends the run because it has reached its goal.
         server: server for other processes.
         on_pause: callback when the world becomes paused, or is paused at the start.
+        resumers: names of what can resume a paused world without a terminal, for the message about the pause.
         start_lines: lines that are printed on standard output when the loop starts, after all other messages.
     """
 
@@ -89,6 +90,7 @@ class RunLoop:
         self.is_over: Callable[[], bool] = lambda: False
         self.server: Server | None = None
         self.on_pause: Callable[[], None] = self._say_paused
+        self.resumers = ["a service"]
         self.start_lines: list[str] = []
 
     def run(self, duration: float | None) -> bool:
@@ -144,7 +146,7 @@ class RunLoop:
             self.server.poll()
 
     def _say_paused(self) -> None:
-        print_status(f"paused at t={self._sim.time:g} s until a service resumes it (Ctrl-C ends)")
+        print_status(f"paused at t={self._sim.time:g} s until {' or '.join(self.resumers)} resumes it (Ctrl-C ends)")
 
     # ------------------------------------------------------------------ pace
 

@@ -25,8 +25,9 @@ def parts(text: str) -> dict[str, list[str]]:
     text = re.sub(r"^ *```.*?^ *```", "", text, flags=re.MULTILINE | re.DOTALL)
     indented = re.findall(r"^    \S.*$", text, re.MULTILINE)
     text = re.sub(r"^    \S.*$", "", text, flags=re.MULTILINE)
-    displayed = re.findall(r"\$\$.*?\$\$", text, re.DOTALL)
+    displayed = [re.sub(r"\\text\{[a-zà-ÿ,.()' ]+\}", "", one) for one in re.findall(r"\$\$.*?\$\$", text, re.DOTALL)]
     text = re.sub(r"\$\$.*?\$\$", "", text, flags=re.DOTALL)
+    prose = re.sub(r"\$[^$]+\$|`[^`]+`|\]\([^)]*\)", "", text)
     return {
         "headings": re.findall(r"^#+(?= )", text, re.MULTILINE),
         "commands": fenced + indented,
@@ -34,6 +35,7 @@ def parts(text: str) -> dict[str, list[str]]:
         "rows": [str(row.count("|")) for row in re.findall(r"^ *\|.*$", text, re.MULTILINE)],
         "steps": re.findall(r"^\d+\.(?= )", text, re.MULTILINE),
         "links": sorted(re.findall(r"\]\(([^)]+)\)", text)),
+        "numbers": sorted(re.findall(r"\d+(?:\.\d+)?", re.sub(r"(\d),(\d)", r"\1.\2", prose))),
         "code": sorted(re.sub(r"\s+", " ", code) for code in re.findall(r"`([^`]+)`", text)),
     }
 
@@ -46,6 +48,12 @@ def test_the_french_readme_has_the_parts_of_the_english_one(name: str) -> None:
     assert french == english
 
 
+def test_the_french_page_of_the_course_has_the_parts_of_the_english_one() -> None:
+    french = (ROOT.parent / "docs" / "cours.md").read_text("utf-8")
+    english = (ROOT.parent / "docs" / "course.md").read_text("utf-8")
+    assert parts(french.replace("README.fr.md)", "README.md)").replace("(course.md)", "(cours.md)")) == parts(english)
+
+
 @pytest.mark.parametrize("name", LABS)
 def test_each_title_and_hint_has_a_translation_and_each_translation_a_text(name: str) -> None:
     texts = set()
@@ -55,8 +63,16 @@ def test_each_title_and_hint_has_a_translation_and_each_translation_a_text(name:
         for check in exercise.runs[0].scenario.checks:
             texts |= {check.title, check.hint} - {""}
     translations = read_words(ROOT / name, "fr").texts
-    assert set(translations) == texts
+    published = set(translations) - texts
+    code = "".join(file.read_text("utf-8") for file in (ROOT / name).glob("*.py"))
+    for sentence in published:  # of the referee
+        words = set(re.findall(r"[a-z]{4,}", re.sub(r"\{\w+\}", "", sentence)))
+        assert words and all(word in code for word in words), sentence
+        fields = (sorted(re.findall(r"\{(\w+)\}", text)) for text in (sentence, translations[sentence]))
+        assert len({tuple(names) for names in fields}) == 1, sentence
+    assert texts <= set(translations)
     assert all(translations.values())
+    assert (ROOT / name / "README.fr.md").is_file()
 
 
 def test_the_language_is_that_of_the_option_or_of_the_environment(
@@ -67,9 +83,9 @@ def test_the_language_is_that_of_the_option_or_of_the_environment(
 
     assert f"read {tmp_path / 'a' / 'README.md'}, then" in lab("start", "1", tmp_path / "a")
     french = lab("start", "1", tmp_path / "b", "--lang", "fr")
-    assert f"read {tmp_path / 'b' / 'README.fr.md'}, then" in french and "--lang fr" in french
+    assert f"lisez {tmp_path / 'b' / 'README.fr.md'}, puis" in french and "--lang fr" in french
     monkeypatch.setenv("LANG", "fr_FR.UTF-8")
-    assert f"read {tmp_path / 'c' / 'README.fr.md'}, then" in lab("start", "1", tmp_path / "c")
+    assert f"lisez {tmp_path / 'c' / 'README.fr.md'}, puis" in lab("start", "1", tmp_path / "c")
     monkeypatch.setenv("LC_ALL", "de_DE.UTF-8")
     assert f"read {tmp_path / 'd' / 'README.md'}, then" in lab("start", "1", tmp_path / "d")
     assert "SK-CLI-018" in lab("start", "1", tmp_path / "e", "--lang", "de")

@@ -149,7 +149,8 @@ def task_text(task: Task) -> str:
     left = task.seconds_left()
     rest = f", about {time_text(left)} left" if left is not None else ""
     item = f" ({task.item})" if task.item else ""
-    return f"{task.title}{':' if amount else ''}{amount}{item}, {time_text(time.perf_counter() - task.begun)}{rest}"
+    text = f"{task.title}{':' if amount else ''}{amount}{item}, {time_text(time.perf_counter() - task.begun)}{rest}"
+    return text if task.translate is None else task.translate(text)
 
 
 def time_text(seconds: float) -> str:

@@ -26,6 +26,10 @@ CallbackLimit = Annotated[
     float, option("Longest time of a callback without progress [s]; 0 for no limit.", "S", min=0.0, max=86400.0)
 ]
 
+Language = Annotated[
+    str, option("Language of the texts: en or fr; the default is that of the environment (LC_ALL, LANG).", "LANGUAGE")
+]
+
 
 @report_errors
 def grade(
@@ -41,13 +45,31 @@ def grade(
     plugin_path: options.CodePaths = [],
     allow_code: options.AllowCode = False,
     resource_path: options.ReadableFolders = [],
+    lang: Language = "",
     json_: options.Json = False,
 ) -> int:
     """Run an exercise with submitted plugins and print the results."""
-    return grade_files(
-        [exercise], submissions, junit, pictures, jobs, limit=limit, json_=json_,
-        allow_code=allow_code, plugin_paths=plugin_path, folders=resource_path,
-    )  # fmt: skip
+    words = report_words(exercise.parent, lang)
+    with words.translated_errors():
+        return grade_files(
+            [exercise], submissions, junit, pictures, jobs, limit=limit, json_=json_,
+            allow_code=allow_code, plugin_paths=plugin_path, folders=resource_path, words=words,
+        )  # fmt: skip
+
+
+def report_words(folder: Path | None, language: str) -> ReportWords:
+    """Return the sentences of reports in a language; an empty name is the language of the environment.
+
+    Args:
+        folder: Folder of the exercise, which may have translations of its titles and hints; None for none.
+        language: Language of the option `--lang`.
+
+    Raises:
+        InputError: SK-CLI-018 there is no such language.
+    """
+    from simkit_verification.testing.grading.report_words import LANGUAGES, default_language, read_words
+
+    return read_words(folder, options.validate_word("--lang", language, LANGUAGES) if language else default_language())
 
 
 def grade_files(
@@ -76,7 +98,14 @@ def grade_files(
     """
     from simkit.testing.scenarios.code_permission import check_requests
     from simkit_verification.testing.grading.exercise import read_exercise
-    from simkit_verification.testing.grading.exercise_grading import grade_all, grade_json, grade_text, junit_cases
+    from simkit_verification.testing.grading.exercise_grading import (
+        grade_all,
+        grade_json,
+        grade_text,
+        junit_cases,
+        points_text,
+        verdict_text,
+    )
     from simkit_verification.testing.grading.report_words import ENGLISH
 
     words = words or ENGLISH
@@ -96,7 +125,7 @@ def grade_files(
         folder = pictures if pictures is None or len(tasks) == 1 else pictures / task.file.stem
         if folder is not None:
             folder.mkdir(parents=True, exist_ok=True)
-        for result in grade_all(task, of_task, folder, jobs, limit=limit, lab=lab, stopped=stopped):
+        for result in grade_all(task, of_task, folder, jobs, limit=limit, lab=lab, stopped=stopped, words=words):
             grades.append(result)
             if not json_:
                 for line in grade_text(result, words):
@@ -110,10 +139,9 @@ def grade_files(
     if len(grades) > 1 and not json_:
         stdout_console().print("")
         for result in grades:
-            state = words.passed if result.passed else words.not_passed
             name = result.hand_in if len(tasks) == 1 else words.translated(result.exercise.title)
-            points = words.points.format(points=result.points, worth=result.worth)
-            stdout_console().print(f"    {points:<10}  {state:<11}{name}")
+            line = f"    {points_text(result, words):<10}  {verdict_text(result, words):<11}{name}"
+            stdout_console().print(line)
     return 0 if all(result.passed for result in grades) else _FAILED
 
 

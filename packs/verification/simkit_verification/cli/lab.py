@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 import shutil
 import sys
+from collections.abc import Callable
 from importlib import metadata
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from typer import Option
@@ -20,11 +21,10 @@ from simkit.input_file import TEXT_LIMIT, read_input
 from simkit.install_command import install_command
 from simkit.loaders.resources.bundled_models import bundled_folders
 from simkit.writers.atomic_output import copy_failure, remove_abandoned, unfinished_folder
-from simkit_verification.cli.grade import DEFAULT_LIMIT, CallbackLimit, grade_files
+from simkit_verification.cli.grade import DEFAULT_LIMIT, CallbackLimit, Language, grade_files, report_words
 
-Language = Annotated[
-    str, option("Language of the texts: en or fr; the default is that of the environment (LC_ALL, LANG).", "LANGUAGE")
-]
+if TYPE_CHECKING:
+    from simkit_verification.testing.grading.report_words import ReportWords
 
 lab = typer.Typer(help="List, start and grade the labs of the course.", no_args_is_help=True)
 
@@ -84,10 +84,33 @@ def start(
     json_: options.Json = False,  # noqa: ARG001 (`report_errors` reads it)
 ) -> None:
     """Copy a lab into a new folder."""
-    source, language = _named_lab(name), _language(lang)
+    words = report_words(None, lang)
+    with words.translated_errors():
+        source = _named_lab(name)
+        target = folder.absolute()
+        if target.exists() and (not target.is_dir() or any(target.iterdir())):
+            raise _not_writable(folder, "it exists and is not an empty folder")
+        _copy(source, folder, solution=solution)
+    files = sorted(path.name for path in target.iterdir() if path.name != _MARKER)
+    add_to_report(folder=str(folder), files=files)
+    print_line(f"{folder}: {', '.join(files)}")
+    missing = _missing_packages(target)
+    if missing:
+        packages, remedy = _joined(missing, words), words.message(_remedy(missing))
+        print_line(words.say("this lab needs {packages}: {remedy}", packages=packages, remedy=remedy))
+    translated = _TRANSLATED_README.format(words.language)
+    readme = translated if (target / translated).is_file() else "README.md"
+    again = f"simkit lab grade {folder}" + (f" --lang {lang}" if lang else "")
+    print_line(words.say("read {file}, then run: {command}", file=folder / readme, command=again))
+
+
+def _copy(source: Path, folder: Path, *, solution: bool) -> None:
+    """Copy a lab to a folder that is empty or does not exist, all files or none.
+
+    Raises:
+        InputError: SK-CLI-016 the folder cannot be written.
+    """
     target = folder.absolute()
-    if target.exists() and (not target.is_dir() or any(target.iterdir())):
-        raise _not_writable(folder, "it exists and is not an empty folder")
     stage: Path | None = None
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -110,15 +133,10 @@ def start(
     finally:
         if stage is not None:
             shutil.rmtree(stage, ignore_errors=True)  # after an error or an interrupt
-    add_to_report(folder=str(folder), files=sorted(path.name for path in target.iterdir() if path.name != _MARKER))
-    print_line(f"{folder}: {', '.join(sorted(path.name for path in target.iterdir() if path.name != _MARKER))}")
-    missing = _missing_packages(target)
-    if missing:
-        print_line(f"this lab needs {' and '.join(missing)}: {_remedy(missing)}")
-    translated = _TRANSLATED_README.format(language)
-    readme = translated if (target / translated).is_file() else "README.md"
-    again = f" --lang {lang}" if lang else ""
-    print_line(f"read {folder / readme}, then run: simkit lab grade {folder}{again}")
+
+
+def _joined(names: list[str], words: ReportWords) -> str:
+    return f" {words.say('and')} ".join(names)
 
 
 def _missing_packages(folder: Path) -> list[str]:
@@ -163,39 +181,37 @@ def grade(
     json_: options.Json = False,
 ) -> int:
     """Grade the exercises of the lab in a folder: exit code 0 for full points, 5 otherwise."""
-    from simkit_verification.testing.grading.exercise import read_exercise
     from simkit_verification.testing.grading.exercise_grading import LabHandIn
-    from simkit_verification.testing.grading.lab_files import changed_files, hand_in_files
-    from simkit_verification.testing.grading.report_words import read_words
 
-    language = _language(lang)
-    source, exercises = _graded_lab(folder, name, exercise)
-    missing = _missing_packages(source)
-    if missing:
-        message = f"{source.name}: the lab needs {' and '.join(missing)}"
-        raise InputError("SK-CLI-056", message, help=_remedy(missing))
+    words = report_words(None, lang)
+    with words.translated_errors():
+        source, exercises = _graded_lab(folder, name, exercise)
+        words = report_words(source, lang)
+        missing = _missing_packages(source)
+        if missing:
+            message = words.say("{lab}: the lab needs {packages}", lab=source.name, packages=_joined(missing, words))
+            raise InputError("SK-CLI-056", message, help=_remedy(missing))
+        files = _files_to_grade(source, exercises, folder, words, print_status if json_ else print_line)
+        return grade_files(
+            exercises, pictures=pictures, jobs=jobs, limit=limit, lab=LabHandIn(folder, tuple(files)), json_=json_,
+            words=words,
+            allow_code=allow_code or exercise is None,  # the code of the installed lab is simkit's own
+        )  # fmt: skip
+
+
+def _files_to_grade(
+    source: Path, exercises: list[Path], folder: Path, words: ReportWords, tell: Callable[[str], None]
+) -> list[str]:
+    """Return the files of a folder that are graded; tell which they are, and which changed files are not used."""
+    from simkit_verification.testing.grading.exercise import read_exercise
+    from simkit_verification.testing.grading.lab_files import changed_files, hand_in_files
+
     files = hand_in_files(source, [read_exercise(file).hand_in for file in exercises])
-    tell = print_status if json_ else print_line
-    tell(f"lab {source.name}: {', '.join(files)} of {folder}")
+    tell(words.say("lab {lab}: {files} of {folder}", lab=source.name, files=", ".join(files), folder=folder))
     changed = changed_files(source, folder, files)
     if changed:
-        tell(f"note: not used, because the lab has its own: {', '.join(changed)}")
-    return grade_files(
-        exercises, pictures=pictures, jobs=jobs, limit=limit, lab=LabHandIn(folder, tuple(files)), json_=json_,
-        words=read_words(source, language),
-        allow_code=allow_code or exercise is None,  # the code of the installed lab is simkit's own
-    )  # fmt: skip
-
-
-def _language(name: str) -> str:
-    """Return the language of an option, or that of the environment if the option is empty.
-
-    Raises:
-        InputError: SK-CLI-018 the labs have no such language.
-    """
-    from simkit_verification.testing.grading.report_words import LANGUAGES, default_language
-
-    return options.validate_word("--lang", name, LANGUAGES) if name else default_language()
+        tell(words.say("note: not used, because the lab has its own: {files}", files=", ".join(changed)))
+    return files
 
 
 def _graded_lab(folder: Path, name: str, exercise: Path | None) -> tuple[Path, list[Path]]:

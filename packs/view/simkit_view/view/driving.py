@@ -40,6 +40,7 @@ class Driving:
 
     def __init__(self, sim: Simulation) -> None:
         self._sim, self._sent, self._revision = sim, b"", -1
+        self._tick = sim.tick
         self._taps: dict[str, Subscription] = {}
         self._newest: dict[str, tuple[float, Speeds]] = {}
         self._drivers: dict[str, tuple[Teleop, object]] = {}
@@ -57,11 +58,13 @@ class Driving:
 
     def send_due(self) -> None:
         """Send the commands that are due at the present tick."""
+        self._forget_before_reset()
         for driver, _ in self._drivers.values():
             driver.send_due()
 
     def teleop(self, topic: str, client: object) -> Teleop | None:
         """Return the driver of a topic, and note who drives; None if no robot has the topic."""
+        self._forget_before_reset()
         driver = self._drivers.get(topic)
         if driver is None:
             target = next((t for t in find_targets(self._sim) if t.topic == topic), None)
@@ -77,6 +80,7 @@ class Driving:
         A command has its speeds, its time [s] (null while a page drives), and true if it is the stop of the timeout.
         """
         self._watch()
+        self._forget_before_reset()
         rows: JsonObject = {}
         for topic in self._taps:
             driver = self._drivers[topic][0] if topic in self._drivers else None
@@ -90,6 +94,13 @@ class Driving:
             return None
         self._sent = packet
         return packet
+
+    def _forget_before_reset(self) -> None:
+        """Drop the commands of the time before a reset: the robots are at rest."""
+        if self._sim.tick < self._tick:
+            self._drivers.clear()
+            self._newest.clear()
+        self._tick = self._sim.tick
 
     def _watch(self) -> None:
         """Receive the commands of all robots that can be driven, also of robots that were spawned later."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import queue
 import shutil
@@ -14,6 +15,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import simkit
 from packs.view.tests.view.conftest import YARD
@@ -352,6 +354,9 @@ def test_one_file_opens_without_simkit_and_seeks(browser: Any, tmp_path: Path) -
     page.on("request", lambda request: requests.append(request.url))
     page.goto(path.as_uri())
     page.locator("#seek").wait_for(timeout=TIMEOUT)
+    end = time.monotonic() + TIMEOUT / 1000
+    while _colours_of_the_scene(page) <= 12:  # the first pictures of a slow browser may be empty
+        assert time.monotonic() < end
     page.locator("#seek").fill("1.5")
     page.locator("#time", has_text="1.500 s").wait_for(timeout=TIMEOUT)
     assert page.evaluate("simkitView.world.bodies[simkitView.bodyOf.get('rover')].elements[12]") == pytest.approx(1.5)
@@ -359,6 +364,16 @@ def test_one_file_opens_without_simkit_and_seeks(browser: Any, tmp_path: Path) -
     page.locator("#rtf", has_text="paused").wait_for(timeout=TIMEOUT)  # at the end
     assert [url for url in requests if not url.startswith(("file:", "data:", "blob:"))] == []
     page.close()
+
+
+def _colours_of_the_scene(page: Any) -> int:
+    """Return the number of colours in a screenshot of the scene, with 16 levels of red, green and blue."""
+    box = page.evaluate(
+        "(() => { const b = simkitView.stage.canvas.getBoundingClientRect();"
+        "return {x: b.x, y: b.y, width: b.width, height: b.height * 0.8}; })()"
+    )
+    image = Image.open(io.BytesIO(page.screenshot(clip=box, timeout=TIMEOUT))).convert("RGB")
+    return len(np.unique(np.asarray(image).reshape(-1, 3) >> 4, axis=0))
 
 
 def _moving_poses(sim: simkit.Simulation) -> np.ndarray:

@@ -55,7 +55,7 @@ def test_the_address_is_the_last_line_before_the_run(folder: Path) -> None:
         lines = []
         while not ADDRESS.fullmatch(lines[-1] if lines else ""):
             lines.append(view.stdout.readline())
-        assert any("paused at t=0 s" in line for line in lines)
+        assert any("paused at t=0 s until the page or a service resumes it" in line for line in lines)
         view.send_signal(signal.SIGINT)
         assert view.stdout.readline().startswith("simulated 0.000 s")
 

@@ -72,6 +72,74 @@ def test_a_goal_without_a_navigator_says_what_is_missing(session: Callable[..., 
     assert found.do(lambda: goals.latest) is not None
 
 
+def test_a_goal_selects_nothing_and_a_reset_removes_its_arrow(session: Callable[..., Session]) -> None:
+    found = session()
+    found.until("app.stage.draws > 1 && document.getElementById('drive').hidden === false")
+    goals = found.do(lambda: found.sim.subscribe("/goal_pose"))
+    arrows = found.get("app.stage.helpers.children.filter(child => child.visible).length")
+    found.page.locator("#go").click()
+    found.page.mouse.click(*found.get(GROUND))
+    found.page.locator("#pose-answer", has_text="published on /goal_pose").wait_for(timeout=TIMEOUT)
+    assert found.do(lambda: goals.latest) is not None
+    assert found.get("app.selected") is None
+    assert found.get("app.stage.helpers.children.filter(child => child.visible).length") == arrows + 1
+    found.page.locator("#reset").click()
+    found.until("document.getElementById('pose-answer').textContent === ''")
+    assert found.get("app.stage.helpers.children.filter(child => child.visible).length") == arrows
+
+
+def test_a_reset_ends_what_the_keys_began(session: Callable[..., Session]) -> None:
+    found = session()
+    found.until("document.getElementById('drive').hidden === false")
+    found.page.locator("#canvas").press("w")
+    found.until("!document.getElementById('speeds').textContent.startsWith('0.00')")
+    found.page.locator("#play").click()
+    found.until("app.state.paused")
+    found.page.locator("#reset").click()
+    found.until("app.state.tick === 0")
+    found.until("document.getElementById('speeds').textContent === '0.00 m/s  0.00 m/s left  0.00 rad/s'")
+    sent = found.do(lambda: found.sim.subscribe("/cmd_vel"))
+    found.page.locator("#play").click()
+    found.until("app.state.time > 0.5")
+    assert found.do(lambda: sent.latest) is None
+
+
+def test_the_chosen_robot_stays_chosen_when_a_model_is_spawned(session: Callable[..., Session]) -> None:
+    second = YARD[YARD.index('<model name="rover">') : YARD.index("</world>")].replace("rover", "second")
+    found = session(YARD.replace("</world>", f"{second.replace('/cmd_vel', '/second/cmd_vel')}</world>"))
+    found.until("document.getElementById('target').options.length === 2")
+    found.page.locator("#target").select_option("second")
+    found.page.evaluate("xml => window.simkitView.ask('spawn', { source: xml, x: 3, y: 3, z: 0.5 })", LIFT)
+    found.until("app.models.has('lift')")
+    found.page.evaluate("window.simkitView.ask('targets')")  # the answer to the page's own request came before
+    found.until("document.getElementById('target').value === 'second'")
+
+
+# ---------------------------------------------------------------------- connection
+
+
+def test_a_long_name_of_a_world_leaves_the_state_of_the_connection_in_the_bar(session: Callable[..., Session]) -> None:
+    found = session(YARD.replace('"yard"', f'"{"yard_with_a_long_name_" * 4}"'), size=(1280, 800))
+    found.until("app.state && document.getElementById('frames').textContent !== ''")
+    box = found.page.locator("#link").bounding_box()
+    assert box["x"] + box["width"] <= 1280
+
+
+def test_a_page_without_connection_says_so_until_it_has_one(session: Callable[..., Session]) -> None:
+    found = session(size=PHONE)
+    notice = found.page.locator("#notice")
+    assert not notice.is_visible()
+    found.page.evaluate("(() => { const c = window.simkitView.connection; c.open = () => {}; c.socket.close(); })()")
+    found.page.locator("#link.off").wait_for(timeout=TIMEOUT)
+    notice.filter(has_text="The simulation has ended or cannot be reached").wait_for(timeout=TIMEOUT)
+    box = notice.bounding_box()
+    assert box["x"] >= 0
+    assert box["x"] + box["width"] <= PHONE[0]
+    found.page.evaluate("(() => { const c = window.simkitView.connection; delete c.open; c.open(); })()")
+    found.page.locator("#link.on").wait_for(timeout=TIMEOUT)
+    notice.wait_for(state="hidden", timeout=TIMEOUT)
+
+
 # ---------------------------------------------------------------------- joints
 
 

@@ -50,7 +50,7 @@ def test_a_topic_is_drawn_while_its_box_is_checked(session: Callable[..., Sessio
     assert found.get(children % "markers").endswith("Mesh,Mesh,Mesh,Points,Sprite")
     found.page.locator(".problem", has_text="the frame 'nowhere' is unknown").wait_for(timeout=TIMEOUT)
     found.until("app.stage.draws > 3")
-    found.picture("displays")
+    found.picture("view_displays")
     found.do(lambda: sim.spawn(SPHERE))
     found.until("app.models.has('ball') && app.displays.shown.has('/plan')")
     found.page.locator("[id='display-/map']").uncheck()

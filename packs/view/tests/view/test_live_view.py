@@ -213,7 +213,10 @@ def test_the_command_of_another_program_is_sent_with_its_time(stage: Stage) -> N
     page.until(lambda: page.packets["driving"][0]["commands"]["/cmd_vel"][0] == [0.25, 0.0, 0.0])
     assert page.packets["driving"][0]["commands"]["/cmd_vel"][1] == pytest.approx(0.5, abs=0.003)
     stage.sim.reset()
-    page.until(lambda: page.packets["driving"][0]["commands"] == {})
+    page.until(lambda: page.packets["driving"][0]["commands"] == {"/cmd_vel": [[0.0, 0.0, 0.0], 0.0, False]})
+    stage.sim.run(0.7)  # the time of the command comes again
+    page.until(lambda: page.packets["state"][0]["time"] > 0.6)
+    assert page.packets["driving"][0]["commands"]["/cmd_vel"][0] == [0.0, 0.0, 0.0]
 
 
 NONSENSE: tuple[str | bytes, ...] = (
@@ -264,8 +267,8 @@ def test_a_page_that_reads_nothing_holds_one_packet_of_each_stream(stage: Stage)
         server.send({"big": make_packet({"kind": "big", "number": number}, {"x": np.zeros(50_000, np.float32)})})
     server.send({"last": make_packet({"kind": "last"}, {})})
     quick.until(lambda: "last" in quick.packets)
-    waiting = [client.slots for client in server._clients if client.slots]
-    assert sum(len(slots) for slots in waiting) <= 1
+    waiting = [packet for client in server._clients for packet in client.slots.values()]
+    assert sum(map(len, waiting)) < 400_000  # two big packets; small ones of other streams may wait
     slow.until(lambda: slow.packets.get("big", [{}])[0].get("number") == 199)
 
 

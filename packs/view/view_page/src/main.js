@@ -30,15 +30,26 @@ const app = {
 app.receive = packet => receive(packet);
 window.simkitView = app; // for tests, and for the curious
 
-let noticeTimer;
+const ENDED = 'The simulation has ended or cannot be reached. The page connects again when it can; a new run has a new address.';
+let noticeTimer, standing = ''; // text that is shown until its cause is gone
 function showNotice(text) {
+  setNotice(text);
+  clearTimeout(noticeTimer);
+  noticeTimer = setTimeout(() => setNotice(standing), 6000);
+}
+function setNotice(text) {
   const notice = document.getElementById('notice');
   notice.textContent = text;
   notice.hidden = !text;
-  clearTimeout(noticeTimer);
-  noticeTimer = setTimeout(() => { notice.hidden = true; }, 6000);
 }
-document.getElementById('notice').hidden = true;
+setNotice('');
+
+/** Tells why nothing moves while there is no connection. A hidden page ends its connection itself. */
+function showLink(isUp) {
+  const before = standing;
+  standing = isUp || document.hidden || app.player ? '' : ENDED;
+  if (standing !== before) setNotice(standing); // the first connection leaves the notice of the first view
+}
 
 const BY_NUMBER = /^(state|appearance|joints)$|^display:/; // packets with numbers of bodies, shapes or joints of the newest scene
 const early = new Map(); // the newest of them, while the page loads that scene
@@ -160,6 +171,7 @@ app.groundAt = ({ clientX, clientY }) => {
 };
 
 try {
+  app.on('link', showLink);
   app.stage = new Stage(document.getElementById('canvas'), new URLSearchParams(location.search).get('quality') ?? 'auto');
   app.world = new World(app.stage);
   app.connection = new Connection(packet => { if (!app.player || packet.recorded) receive(packet); }, showNotice, isUp => app.emit('link', isUp));

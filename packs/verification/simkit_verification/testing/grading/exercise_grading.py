@@ -160,6 +160,7 @@ def grade_all(
     stopped: set[Path] | None = None,
     allow_code: bool = False,
     plugin_paths: Sequence[FilePath] = (),
+    words: ReportWords = ENGLISH,
 ) -> Iterator[Grade]:
     """Run an exercise with several plugins; yield the grades in the order of the plugins, each as soon as possible.
 
@@ -173,6 +174,7 @@ def grade_all(
         stopped: Plugins with a callback that was stopped; no further run of them is started. New ones are added.
         allow_code: Allow the plugin folders that the exercise names. Their code has the same rights as the user.
         plugin_paths: Allow these folders only.
+        words: Language of the line of progress; the grades are in English.
 
     Raises:
         InputError: The exercise itself has an error, or SK-SCEN-008 it needs code that is not allowed.
@@ -193,7 +195,9 @@ def grade_all(
             for hand_in, name in zip(hand_ins, names, strict=True)
         ]
         try:
-            for hand_in, name, outcomes in report_each("grading", submissions, len(submissions)):
+            for hand_in, name, outcomes in report_each(
+                "grading", submissions, len(submissions), translate=words.message
+            ):
                 file = "" if hand_in is None else str(hand_in)
                 yield Grade(exercise, file, tuple(pending.result() for pending in outcomes), name)
         finally:  # cancel waiting runs and end running processes, even if the caller does not read all grades
@@ -321,32 +325,46 @@ def _read_process_result(target: Path, token: str, count: int) -> JsonObject | N
 def grade_text(graded: Grade, words: ReportWords = ENGLISH) -> Iterator[str]:
     """Yield the lines of a text report: runs, checks with results, hints for failed checks, and points.
 
-    The measured values and errors are in English in any language.
+    Expressions, texts of exceptions and printed output are as they are in any language.
     """
-    exercise, translated = graded.exercise, words.translated
+    exercise, say, translated = graded.exercise, words.say, words.translated
     yield translated(exercise.title) + (f" - {Path(graded.hand_in).name}" if graded.hand_in else "")
     for outcome in graded.outcomes:
-        yield "  " + words.run.format(name=translated(outcome.name), time=outcome.time, seed=outcome.seed)
+        head = {"name": translated(outcome.name), "time": outcome.time, "seed": outcome.seed}
+        yield f"  {say('{name}: {time:g} s simulated, seed {seed}', **head)}"
         titles = [translated(mark.title) for mark in outcome.marks]
         width = max(map(len, titles), default=0)
-        for number, line in enumerate(outcome.error.splitlines()):
-            yield f"      {line}" if number else f"    {words.stopped} {line}"
+        for number, line in enumerate(words.message(outcome.error).splitlines()):
+            yield f"      {line}" if number else f"    {say('stopped:')} {line}"
         for mark, title in zip(outcome.marks, titles, strict=True):
-            sign = words.passed_sign if mark.passed else words.failed_sign
-            points = words.points.format(points=mark.points, worth=mark.worth)
-            yield f"    {sign}  {title:<{width}}  {points}   {mark.message}".rstrip()
+            sign = say("pass") if mark.passed else say("FAIL")
+            yield f"    {sign}  {title:<{width}}  {points_text(mark, words)}   {words.result(mark.message)}".rstrip()
             if mark.required:
-                yield f"          {words.required} {mark.required}"
+                yield f"          {say('required:')} {mark.required}"
             if mark.hint:
-                yield f"          {words.hint} {translated(mark.hint)}"
+                yield f"          {say('hint:')} {translated(mark.hint)}"
         if outcome.printed and not all(mark.passed for mark in outcome.marks):
-            yield f"    {words.printed}"
+            yield f"    {say('printed output:')}"
             yield from (f"      {line}" for line in outcome.printed.splitlines())
     share = graded.points / graded.worth if graded.worth else 1.0
-    verdict = words.passed if graded.passed else words.not_passed
-    yield "  " + words.result.format(
-        points=graded.points, worth=graded.worth, share=share, needed=exercise.pass_mark, verdict=verdict
-    )
+    result = {
+        "points": graded.points,
+        "worth": graded.worth,
+        "share": f"{100.0 * share:.0f}",
+        "needed": f"{100.0 * exercise.pass_mark:.0f}",
+        "verdict": verdict_text(graded, words),
+    }
+    yield f"  {say('{points:g} of {worth:g} points ({share}%), {needed}% needed: {verdict}', **result)}"
+
+
+def points_text(graded: Grade | CheckGrade, words: ReportWords) -> str:
+    """Return the achieved and the achievable points."""
+    return words.say("{points:g} of {worth:g}", points=graded.points, worth=graded.worth)
+
+
+def verdict_text(graded: Grade, words: ReportWords) -> str:
+    """Return whether a submission passed."""
+    return words.say("passed") if graded.passed else words.say("not passed")
 
 
 def grade_json(graded: Grade) -> JsonObject:

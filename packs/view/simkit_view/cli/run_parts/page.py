@@ -108,6 +108,7 @@ class WebPage(RunPart):
     def _show(self, run: OpenRun, view: LiveView) -> None:
         """Update a live view between slices, and send the commands of its pages at their ticks."""
         self.view = view
+        run.loop.resumers.insert(0, "the page")
         run.loop.pollers.append(view.update)
         run.loop.senders.append(view.driving)
         run.loop.slice_limits.append(view.slices)

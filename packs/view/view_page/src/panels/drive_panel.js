@@ -124,6 +124,7 @@ export function makeDrivePanel(app) {
   });
   canvas.addEventListener('pointerup', event => {
     if (!from || !aiming) return;
+    event.stopImmediatePropagation(); // the click selects nothing
     app.ask('pose', { kind: aiming, x: from.x, y: from.y, yaw: yawTo(event) }).then(tell, error => app.report(error.message));
     from = null;
     endAim();
@@ -136,11 +137,22 @@ export function makeDrivePanel(app) {
     if (missing) app.report(missing);
   };
 
+  let newest = 0;
+  app.on('state', ({ tick }) => {
+    if (tick < newest) { // a reset: the goal belongs to the time before it
+      arrow.visible = false;
+      answer.textContent = '';
+      app.stage.invalidate();
+    }
+    newest = tick;
+  });
   app.on('scene', () => app.ask('targets').then(found => fill(found)).catch(() => {}));
   app.on('link', isUp => { if (isUp) app.ask('targets').then(found => fill(found)).catch(() => {}); });
   const fill = found => {
+    const chosen = target()?.topic;
     targets = found;
     choice.replaceChildren(...found.map(one => element('option', {}, one.model || one.topic)));
+    choice.selectedIndex = Math.max(0, found.findIndex(one => one.topic === chosen));
     show();
   };
   app.on('packet:driving', packet => { commands = packet.commands; showCommand(); });
