@@ -75,7 +75,7 @@ LEFT_OUT: Final = {
     r"contact-nets|--quick|benchmarks/history|train_turtlebot3|toss1": LeftOut("hours, or data of a real cube", 3),
 }
 SHORTER: Final = {
-    "samples: 64": "samples: 3", "duration: 10\n": "duration: 2\n", "--trials 200": "--trials 2",
+    "samples: 64": "samples: 3", "duration: 10\n": "duration: 4\n", "--trials 200": "--trials 2",
     "--duration 10 --video": "--duration 0.4 --video", "--duration 10 --gif": "--duration 0.4 --gif",
     "--duration 10 --record drive.mcap --skip": "--duration 0.4 --record drive.mcap --skip",
     "hits --steps 1,0.25": "hits --steps 4 --quick", "stepping.py": "stepping.py --rounds 1",
