@@ -51,12 +51,12 @@ def declared_packs(root: Path) -> dict[str, Path]:
 
 
 def left_out_names(root: Path) -> dict[str, dict[str, str]]:
-    """Return the pack of each name that a plugin or sensor of it has, by class attribute, and of each command.
+    """Return the pack of each name: of its plugins and sensors by class attribute, of its commands and demo steps.
 
     The core alone uses them in its messages.
     """
     found: dict[str, dict[str, str]] = {
-        attribute: {} for attribute in (*_NAMES["plugins"], *_NAMES["sensors"], "commands")
+        attribute: {} for attribute in (*_NAMES["plugins"], *_NAMES["sensors"], "commands", "demo_steps")
     }
     for toml in sorted((root / "packs").glob("*/pack.toml")):
         table = tomllib.loads(toml.read_text(encoding="utf-8"))
@@ -66,6 +66,8 @@ def left_out_names(root: Path) -> dict[str, dict[str, str]]:
                     found[attribute][name] = table["name"]
         for file in sorted((toml.parent / table["package"] / "cli").glob("[a-z]*.py")):
             found["commands"][file.stem] = table["name"]
+        for file in sorted((toml.parent / table["package"] / "cli" / "demo_steps").glob("*/step.toml")):
+            found["demo_steps"][file.parent.name] = table["name"]
     return found
 
 

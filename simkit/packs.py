@@ -25,7 +25,7 @@ _CORE: Final = "simkit"
 _DISTRIBUTION: Final = "simkit_robotics"
 _SECTION: Final = f"[{GROUP}]"
 _LEFT_OUT: Final = "left_out_packs.json"
-"""File in a wheel without packs (`SIMKIT_PACKS=none`): the names of plugins, sensors and commands in the packs."""
+"""File in a wheel without packs (`SIMKIT_PACKS=none`): names of plugins, sensors, commands and demo steps of packs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,10 +97,10 @@ def shipped_folders() -> tuple[Path, ...]:
 
 @cache
 def left_out_names(*attributes: str) -> Mapping[str, str]:
-    """Return the pack of each name of a plugin, sensor or command; empty if simkit was built with its packs.
+    """Return the pack of each name of a plugin, sensor, command or demo step; empty if simkit was built with its packs.
 
     Args:
-        attributes: class attributes with the names, such as `filenames` or `kinds`, or `commands`.
+        attributes: class attributes with the names, such as `filenames` or `kinds`; or `commands`, `demo_steps`.
     """
     try:
         tables = json.loads(Path(__file__).with_name(_LEFT_OUT).read_text(encoding="utf-8"))

@@ -79,11 +79,14 @@ class Sail:
     (checkout / "packs" / "boats" / "simkit_boats" / "sensors" / "log.py").write_text(
         "class Log:\n    kinds = ('log', 'chip_log')\n    names = ('no plugin',)\n"
     )
+    step = checkout / "packs" / "boats" / "simkit_boats" / "cli" / "demo_steps" / "sailing"
+    step.mkdir(parents=True)
+    (step / "step.toml").touch()
     names = build.left_out_names(checkout)
     assert names["filenames"] == {"libsail.so": "boats", "sail-system": "boats"}
     assert names["hooks"] == {"hoist": "boats"} and names["entities"] == {} and "size" not in names
     assert names["kinds"] == {"log": "boats", "chip_log": "boats"} and names["names"] == {}
-    assert names["commands"] == {"harbour": "boats"}
+    assert names["commands"] == {"harbour": "boats"} and names["demo_steps"] == {"sailing": "boats"}
 
 
 @pytest.mark.parametrize(

@@ -68,9 +68,8 @@ LEFT_OUT: Final = {
     r"base\.yaml|controllers\.yaml|bow|arena\.wo|\.sdf --score|my_robots|finger\.urdf|harbour|map_saver/|-v 4": LeftOut(
         "worlds and robots that the page does not show", 11
     ),
-    r"pytest -n auto|-m pytest|ruff|\.ci/|golden/sensor_bench|lab (?:start|grade)|carry\.py|^cd |> docs/": LeftOut(
-        "other tests run it, or it changes the repository", 79
-    ),
+    r"pytest -n auto|-m pytest|ruff|\.ci/|golden/sensor_bench|lab (?:start|grade)|carry\.py|^cd |> docs/"
+    r"|grade leave\.yaml wander\.py": LeftOut("other tests run it, or it changes the repository", 81),
     r"^ros2 |^simkit ros$|--ros(?: |$)": LeftOut("ROS 2", 7),
     r"ray start|--cluster|SLURM": LeftOut("a cluster", 3),
     r"contact-nets|--quick|benchmarks/history|train_turtlebot3|toss1": LeftOut("hours, or data of a real cube", 3),
@@ -81,6 +80,8 @@ SHORTER: Final = {
     "--duration 10 --record drive.mcap --skip": "--duration 0.4 --record drive.mcap --skip",
     "hits --steps 1,0.25": "hits --steps 4 --quick", "stepping.py": "stepping.py --rounds 1",
     "--rounds 20": "--rounds 1", "--jobs 8": "--jobs 2", "motion play wave home": "motion play home",
+    "certify turtlebot3_world": "certify turtlebot3_world --runs 2",
+    "--foxglove --rosbridge": "--foxglove 0 --rosbridge 0",  # free ports: other programs may use 8765 and 9090
 }  # fmt: skip
 LONGEST: Final = 3.0  # [s] of simulated time
 LIMIT: Final = 900.0  # [s] of wall time for a command: a busy machine needs ten times the time of a free one
@@ -110,7 +111,7 @@ def pattern_of(command: str) -> str:
 
 
 def shorter(text: str) -> str:
-    """Return a command or a file with fewer or shorter runs."""
+    """Return a command or a file with fewer or shorter runs, or with free ports."""
     for long, short in SHORTER.items():
         text = text.replace(long, short)
     return text

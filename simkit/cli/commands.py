@@ -296,7 +296,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["--help", "-h"]},
 )
 COMMANDS = {
-    "demo": "Run five short examples one after the other, in about a minute.",
+    "demo": "Run short examples one after the other, in about a minute.",
     "run": "Run a world without a window, as fast as possible.",
     "check": "Print all problems of a file without running it, or the scores of all files of a folder.",
     "explain": "Explain a diagnostic code, with its remedy and an example.",

@@ -9,7 +9,7 @@ from typer import Option
 
 from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
 from simkit.cli.terminal import options
-from simkit.cli.terminal.json_report import add_to_report
+from simkit.cli.terminal.json_report import add_diagnostics, add_to_report
 from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
 from simkit.diagnostics import Diagnostics
@@ -63,6 +63,7 @@ def _to_mjcf(file: str, output: Path, source: SourceOptions, *, strict: bool, fo
     check_target(output, f"{output.stem}_assets", overwrite=force)
     with load(file, strict=strict, **source) as sim:
         print_diagnostics(sim.diagnostics, verbose=verbose)
+        add_diagnostics(sim.diagnostics)
         written = write_mjcf(sim.engine.compiled.builder, output, overwrite=force)
     if written.balanced:
         print_status(
@@ -84,4 +85,5 @@ def _to_sdf(
     lost.raise_if_errors(strict)
     written = write_sdf(scene, output, lost, keep_uris=keep_uris, overwrite=force)
     print_diagnostics(lost, verbose=verbose)
+    add_diagnostics(lost)
     return written.files

@@ -22,9 +22,9 @@ from simkit import progress
 from simkit.cli.terminal import options
 from simkit.cli.terminal.json_report import add_to_report, report_errors_and_json
 from simkit.cli.terminal.options import option, validate_word
-from simkit.cli.terminal.output import stdout_console
+from simkit.cli.terminal.output import print_status, stdout_console
 from simkit.errors import InputError, SimkitError
-from simkit.packs import shipped_packs
+from simkit.packs import left_out_names, missing_pack_text, shipped_packs
 from simkit.writers.atomic_output import check_folder, current_umask, remove_abandoned, unfinished_folder
 
 _FOLDER: Final = "cli/demo_steps"
@@ -94,14 +94,20 @@ def demo(
     force: options.Force = False,
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
 ) -> None:
-    """Run five short examples one after the other, in about a minute."""
-    steps = demo_steps()
+    """Run short examples one after the other, in about a minute."""
+    steps, left_out = demo_steps(), left_out_names("demo_steps")
+    for name in names:
+        if name in left_out:
+            needs, advice = missing_pack_text(left_out[name])
+            raise InputError("SK-INPUT-004", f"the step {name} {needs}", help=advice)
     chosen = [steps[validate_word("STEP", name, list(steps))] for name in dict.fromkeys(names)] or list(steps.values())
     check_folder(output)
     existing = [output / step.name for step in chosen if (output / step.name).exists()]
     if existing and not force:
         message = f"{existing[0]} already exists"
         raise InputError("SK-CLI-016", message, help="name another folder with --output, or replace it with --force")
+    if left_out and not names:
+        print_status(f"steps of packs that are not installed: {', '.join(left_out)}")
     console, rows = stdout_console(), []
     for number, step in enumerate(progress.report_each("running the examples", chosen, len(chosen)), 1):
         console.print(f"{number}/{len(chosen)} {step.name}: {step.title}", style="bold")

@@ -95,6 +95,15 @@ def test_json_is_one_value_and_nothing_else(
     assert "note" not in result.stderr
 
 
+def test_the_report_of_a_conversion_has_its_warnings(folder: Path, simkit_line: Callable[..., Any]) -> None:
+    (folder / "odd.sdf").write_text(BALL.replace("</world>", '<plugin filename="none.so" name="n"/></world>'))
+    for output in ("odd.xml", "odd_copy.sdf"):
+        result = simkit_line("convert", str(folder / "odd.sdf"), "-o", str(folder / output), "--json")
+        report = json.loads(result.stdout)
+        assert {each["code"] for each in report["diagnostics"]} >= ({"SK-PLUGIN-001"} if "xml" in output else set())
+        assert ("SK-PLUGIN-001" in result.stderr) == ("SK-PLUGIN-001" in result.stdout)
+
+
 @pytest.mark.needs_packs
 @pytest.mark.parametrize(
     "name",

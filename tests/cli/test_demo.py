@@ -78,6 +78,18 @@ def test_an_existing_folder_and_an_unknown_step_are_errors(
     assert unknown.exit_code == 2 and "did you mean 'small'" in unknown.stderr
 
 
+def test_a_step_of_a_missing_pack_gets_its_name(
+    tmp_path: Path, source: Path, monkeypatch: pytest.MonkeyPatch, simkit_line: Callable[..., Any]
+) -> None:
+    only(monkeypatch, source, {"edit": "out.txt", "text": "one", "by": "1"})
+    monkeypatch.setattr(demo_module, "left_out_names", lambda kind: {"sailing": "boats"})
+    missing = simkit_line("demo", "sailing", "-o", str(tmp_path / "new"))
+    assert missing.exit_code == 2 and "the step sailing needs the pack boats, which is not installed" in missing.stderr
+    assert "pip install" in missing.stderr and not (tmp_path / "new").exists()
+    rest = simkit_line("demo", "-o", str(tmp_path / "new"))
+    assert rest.exit_code == 0 and "steps of packs that are not installed: sailing\n" in rest.stderr
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="no such signals there")
 def test_an_interrupt_leaves_no_files(tmp_path: Path) -> None:

@@ -19,6 +19,7 @@ import numpy as np
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 from simkit.msgs.definition_parser import ARRAY, BASE, NAME, SEQUENCE, FieldNode
+from simkit.msgs.image_arrays import image
 from simkit.msgs.message_text import NUMBER_CODES, field_nodes, field_value
 from simkit.msgs.message_types import FieldValue, Message
 
@@ -38,6 +39,9 @@ _COMPUTED = re.compile(r"\[[^\]]*\]|\.(norm|min|max|mean)$")
 _SPREAD: Final = 12  # largest fixed-length array that a path without an index expands to all items
 _ANGLES: Final = ("roll", "pitch", "yaw")
 _OF_ARRAYS: Final = ("min", "max", "mean", "length")
+_PICTURES: Final = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
+_PIXELS: Final = "pixels"  # name for the rows of numbers of a picture; its own field `data` has bytes
+_ROWS: Final[FieldNode] = (SEQUENCE, ((SEQUENCE, ((BASE, ("float64", 0)), 0)), 0))
 _NAMES: Final = ("name", "names", "joint_names")  # arrays with the names of the items of sibling arrays
 _NAMED: Final = ("child_frame_id", "name", "id")  # fields with the name of a message in an array
 
@@ -175,6 +179,9 @@ class _FieldPath:
             hint = self._hint(step)
             raise self._field_error(f"{step.path or 'it'} is {_kind_in_words(step.node)} and has no {name!r}; {hint}")
         fields = dict(field_nodes(step.node[1], self._store))
+        if name == _PIXELS and step.node[1] in _PICTURES:
+            read = _compose(step.read, _pixels)
+            return _PathStep(_ROWS, read, f"{step.path}.{name}" if step.path else name, step.node[1], step.read)
         if name not in fields:
             suggestion = did_you_mean(name, [*fields, *self._computed_names(step)])
             hint = suggestion or "its fields: " + (", ".join(fields) or "none")
@@ -246,7 +253,7 @@ class _FieldPath:
 
     def _derived(self, step: _PathStep, name: str) -> Curve | None:
         """Return the curve of a computed number; None if the type has no such number, or has a field of that name."""
-        if name not in self._computed_names(step):
+        if name not in self._computed_names(step) or name == _PIXELS:
             return None
         path = f"{step.path}.{name}" if step.path else name
         read = step.read
@@ -266,7 +273,7 @@ class _FieldPath:
         """Return the names of numbers that can be computed from a type, in addition to its fields."""
         kind = int(step.node[0])
         if kind in (ARRAY, SEQUENCE):
-            is_number = int(step.node[1][0][0]) == BASE and not _is_text(step.node[1][0])
+            is_number = step.node is _ROWS or (int(step.node[1][0][0]) == BASE and not _is_text(step.node[1][0]))
             return _OF_ARRAYS if is_number else ("length",)
         if kind != NAME:
             return ()
@@ -276,6 +283,8 @@ class _FieldPath:
             names = _ANGLES
         elif fields and set(fields) <= {"x", "y", "z"} and len(fields) > 1:
             names = ("norm",)
+        elif step.node[1] in _PICTURES:
+            names = (_PIXELS,)
         return tuple(name for name in names if name not in fields)
 
     def _is_quaternion(self, node: FieldNode) -> bool:
@@ -322,6 +331,12 @@ def _compose(first: Reader, second: Reader) -> Reader:
 
 def _field_value(name: str, value: FieldValue) -> FieldValue:
     return field_value(value, name)
+
+
+def _pixels(message: Message) -> np.ndarray:
+    """Return the depths [m] or grey values of a picture; a colour counts with its mean."""
+    pixels = image(message)
+    return pixels if pixels.ndim == 2 else pixels[..., :3].mean(axis=2)
 
 
 def _item(number: int, value: FieldValue) -> FieldValue:
@@ -388,6 +403,8 @@ def _kind_in_words(node: FieldNode) -> str:
         return "a text" if _is_text(node) else "a number"
     if kind == NAME:
         return str(node[1])
+    if node is _ROWS:
+        return "an array of rows"
     inner, size = node[1]
     item = inner[1] if int(inner[0]) == NAME else inner[1][0]
     return f"an array of {size} {item}" if kind == ARRAY else f"an array of {item}"

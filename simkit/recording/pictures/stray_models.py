@@ -51,7 +51,7 @@ def find_stray_models(
         bounds = _leave_out_far_models(kept, scene, left_out, None, _FARTHEST, _SIZES)
     elif scene:
         bounds = _bounds([kept[name] for name in scene])
-    if bounds is not None:
+    if bounds is not None and norm(bounds[1] - bounds[0]) > 0.0:  # a robot without shapes is a point
         _leave_out_far_models(kept, objects, left_out, bounds, 0.0, _OBJECT_SIZES)
     if np.isfinite(ground):
         rest = [box for name, box in kept.items() if name not in left_out and box[:, 2].max() >= ground - _DEEPEST]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
 import pytest
 
 from simkit import msgs
@@ -22,6 +23,7 @@ TOPICS = {
     "/on": "std_msgs/msg/Bool",
     "/said": "std_msgs/msg/String",
     "/clock": "rosgraph_msgs/msg/Clock",
+    "/depth": "sensor_msgs/msg/Image",
 }
 
 
@@ -53,6 +55,19 @@ def test_a_small_vector_expands_to_its_components() -> None:
     ]
     assert len(labels("/imu.orientation_covariance")) == 9
     assert labels("/on") == ["/on.data"]
+
+
+def test_the_pixels_of_a_picture_are_depths_or_grey_values() -> None:
+    depths = msgs.image_message(np.array([[1.5, np.inf], [2.5, 4.0]], np.float32), "32FC1")
+    assert number("/depth.pixels.min", depths) == 1.5
+    assert number("/depth.pixels[1][0]", depths) == 2.5
+    assert math.isnan(number("/depth.pixels[2][0]", depths))
+    colours = msgs.image_message(np.array([[[30, 60, 90]]], np.uint8), "rgb8")
+    assert number("/depth.pixels.mean", colours) == 60.0
+    with pytest.raises(InputError, match=r"pixels is an array of rows; give an item or a range, such as pixels\[0\]"):
+        curves("/depth.pixels")
+    with pytest.raises(InputError, match="did you mean 'pixels'"):
+        curves("/depth.pixel")
 
 
 @pytest.mark.parametrize(("angle", "value"), [("roll", 0.3), ("pitch", -0.7), ("yaw", 2.9)])

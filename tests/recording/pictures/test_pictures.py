@@ -99,6 +99,15 @@ def test_a_ball_that_rolled_away_does_not_decide_the_frame_of_a_robot() -> None:
         assert subject.robots[:, 0].max() == pytest.approx(9.1 if not left_out else 0.5)
 
 
+def test_an_object_beside_a_robot_without_shapes_is_framed() -> None:
+    robot = """<model name="robot"><link name="a"/><link name="b"/><joint name="j" type="revolute"><parent>a</parent>
+      <child>b</child><axis><xyz>0 0 1</xyz></axis></joint></model>"""
+    text = world(("box", "1 0 0.5", "1 1 1", False)).replace("<gravity>", robot + "<gravity>")
+    with simkit.load(text) as sim:
+        subject = find_subject(sim, [])
+    assert subject.left_out == () and subject.points[:, 0].max() >= 1.0
+
+
 def test_the_box_of_a_mesh_has_the_axes_of_the_world(tmp_path: Path) -> None:
     """The engine's box of a triangular prism lies along its principal axes, at 45 degrees."""
     lines = [f"v {x} {y} {z}" for z in (0, 1) for x, y in ((0, 0), (2, 0), (2, 2))]

@@ -9,6 +9,7 @@ from typer import Option
 
 from simkit.cli.run_options import NONE_GIVEN, scenario_spec
 from simkit.cli.terminal import options
+from simkit.cli.terminal.json_report import add_diagnostics
 from simkit.cli.terminal.output import print_diagnostics, print_message, stdout_console
 from simkit.errors import InputError, SimkitError
 from simkit.extend import GivenOptions, add_to_report, option, report_errors, with_run_options
@@ -49,6 +50,7 @@ def bundle(
     scenario = scenario_spec(world, given, allow_code=allow_code)
     with open_scenario(scenario) as sim:
         print_diagnostics(sim.diagnostics, verbose=False)
+        add_diagnostics(sim.diagnostics)
         recorder = BundleRecorder(sim, last, topic, scenario)
         scenario = resolve_commands(scenario, sim.communication.bus)
         failure = None

@@ -8,13 +8,12 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
 from typer import Option
 
 from simkit.cli.terminal import options
 from simkit.cli.terminal.output import JsonObject, print_json, printable, stdout_console
 from simkit.errors import InputError
-from simkit.extend import argument, option, report_errors
+from simkit.extend import add_to_report, argument, option, report_errors
 from simkit.writers.atomic_output import current_umask, remove_abandoned, unfinished_folder
 
 if TYPE_CHECKING:
@@ -109,8 +108,9 @@ def _extract(bundle: Bundle, folder: Path) -> None:
         _extract_whole(bundle, folder.absolute())
     except OSError as error:
         raise InputError("SK-CLI-016", f"cannot write {folder}: {error.strerror or error}") from None
-    text = f"{folder / bundle.manifest.run.world} and {len(bundle.manifest.files) - 1} other files"
-    stdout_console().print(printable(text))
+    world, count = folder / bundle.manifest.run.world, len(bundle.manifest.files)
+    add_to_report(world=str(world), files=count)
+    stdout_console().print(printable(f"{world} and {count - 1} other files"))
 
 
 def _extract_whole(bundle: Bundle, folder: Path) -> None:
@@ -133,7 +133,7 @@ def _extract_whole(bundle: Bundle, folder: Path) -> None:
 def _print_contents(bundle: Bundle, *, json_: bool) -> None:
     manifest = bundle.manifest
     if json_:
-        typer.echo(manifest.text())
+        print_json(json.loads(manifest.text()), indent=1)
         return
     print_ = stdout_console().print
     end = manifest.end

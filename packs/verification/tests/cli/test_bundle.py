@@ -75,6 +75,18 @@ def test_a_scenario_is_packed_and_repeated(folder: Path) -> None:
     assert simkit("replay", "run.zip").exit_code == 0
 
 
+def test_json_of_a_bundle_is_on_standard_output(folder: Path) -> None:
+    sled = (folder / "sled.sdf").read_text()
+    (folder / "sled.sdf").write_text(sled.replace("</world>", '<plugin filename="none.so" name="n"/></world>'))
+    made = json.loads(simkit("bundle", "sled.sdf", "--duration", "0.1", "-o", "run.zip", "--json").stdout)
+    assert "SK-PLUGIN-001" in [each["code"] for each in made["diagnostics"]]
+    listed = json.loads(simkit("replay", "run.zip", "--list", "--json").stdout)
+    assert listed["end"]["state"] == made["state"]
+    extracted = json.loads(simkit("replay", "run.zip", "--extract", "new", "--json").stdout)
+    assert Path(extracted["world"]) == Path("new/world/sled.sdf")
+    assert extracted["files"] == sum(path.is_file() for path in Path("new").rglob("*"))
+
+
 def test_a_failed_run_leaves_a_bundle_that_fails_in_the_same_way(folder: Path) -> None:
     run = simkit(
         *("run", "sled.sdf", "--duration", "1", "--plugin-path", "plugins", "--script", "drive.yaml", "-q"),

@@ -37,7 +37,8 @@ class ReportWords:
     Attributes:
         sentences: Translation of each sentence of the grader by its English text, with the same fields. A field
             `{name:g}` is a number.
-        texts: Translation of each title and hint of the exercises by its English text.
+        texts: Translation of each title and hint of the exercises by its English text, and of the sentences that the
+            lab's own modules publish as strings, with fields.
         language: One of LANGUAGES.
     """
 
@@ -117,7 +118,29 @@ class ReportWords:
             name: self._translated_line(value, has_values) if name in _NESTED else value
             for name, value in match.groupdict().items()
         }
+        if has_values and "value" in fields:
+            fields["value"] = self._translated_value(fields["value"])
         return self.sentences[sentence].format(**fields)
+
+    def _translated_value(self, value: str) -> str:
+        """Return the value of a string field of a topic with the translations of the lab; other values stay."""
+        quote, content = value[:1], value[1:-1]
+        if quote not in ("'", '"') or value[-1] != quote:
+            return value
+        items = content.split("; ")
+        translated = [self._published(item) for item in items]
+        whole = None if all(translated) else self._published(content)  # a sentence can contain a semicolon
+        if whole is None:
+            whole = " ; ".join(french or item for french, item in zip(translated, items, strict=True))
+        return f'"{whole}"' if "'" in whole else f"{quote}{whole}{quote}"
+
+    def _published(self, text: str) -> str | None:
+        """Return the translation of a sentence that a module of the lab publishes; None if there is none."""
+        for english, french in self.texts.items():
+            match = _pattern(english).fullmatch(text)
+            if match is not None:
+                return french.format(**match.groupdict())
+        return None
 
 
 ENGLISH: Final = ReportWords()
