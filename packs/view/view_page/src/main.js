@@ -39,7 +39,7 @@ function showNotice(text) {
 }
 function setNotice(text) {
   const notice = document.getElementById('notice');
-  notice.textContent = text;
+  if (text) notice.textContent = text; // a hidden notice keeps its text
   notice.hidden = !text;
 }
 setNotice('');
