@@ -23,6 +23,7 @@ FILES = sorted(
 )
 OWN_FILES = {
     "cli/bench_figures.py": "/proc/self/statm",
+    "cli/demo.py": "data of the package, and its copy in a folder that simkit made",
     "cli/diagnostic_catalogue.py": "data of the package",
     "packs/view/simkit_view/view/page_server.py": "data of the package",
     "cli/commands.py": "modules of packs",
