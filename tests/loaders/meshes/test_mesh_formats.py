@@ -257,8 +257,8 @@ def test_collada_opacity_is_read_and_what_would_vanish_is_drawn(tmp_path, transp
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("<COLLADA", "has no triangles|not readable XML"),
-        ("", "not readable XML"),
+        ("<COLLADA", "has no triangles|not readable as XML"),
+        ("", "not readable as XML"),
         ("<sdf/>", "begins with <sdf>"),
         (collada("<node><translate>1 2</translate></node>"), "<translate> with 2 numbers"),
         (collada(f"<node>{PLACED}</node>").replace("<p>0 2 1", "<p>0 2 77"), "vertex 77; there are 4"),
