@@ -12,7 +12,6 @@ from __future__ import annotations
 import functools
 import math
 import os
-import re
 import runpy
 import shutil
 import subprocess
@@ -206,49 +205,6 @@ def save_window(image: Any, path: Path) -> None:
     Image.fromarray(np.asarray(image.data).reshape(image.height, image.width, 3)).save(path, optimize=True)
 
 
-def lab_folder(name: str) -> Path:
-    """Return a new folder with the files of a lab and of its solution."""
-    folder = Path(tempfile.mkdtemp()) / name
-    shutil.copytree(ROOT / "labs" / name, folder)
-    shutil.copytree(folder / "solution", folder, dirs_exist_ok=True)
-    return folder
-
-
-def lab_square(path: Path) -> None:
-    """Draw the window of turtlesim after the drive of lab 1."""
-    square = runpy.run_path(str(lab_folder("01_turtlesim") / "square.py"))["Square"]()
-    with simkit.load("turtlesim", plugins=[("turtle1", square)]) as sim:
-        images = sim.subscribe("/turtlesim/image", keep=1)
-        sim.run(40.0)
-        save_window(images.latest, path)
-
-
-def lab_graph(path: Path) -> None:
-    """Draw the four nodes of lab 2, without their referee."""
-    folder = lab_folder("02_interfaces")
-    world = (folder / "nodes.sdf").read_text(encoding="utf-8")
-    (folder / "nodes.sdf").write_text(re.sub('.*"referee.py".*\n', "", world), encoding="utf-8")
-    options = ("--plugin-path", str(folder), "--interfaces", str(folder / "lab_interfaces"))
-    command("-m", "simkit", "graph", str(folder / "nodes.sdf"), *options, "-o", "{}")(path)
-
-
-def lab_robot(path: Path) -> None:
-    """Draw the robot of lab 13 after its drive, and with its tool at both goals, at one scale."""
-    folder = lab_folder("13_urdf")
-    spawned = [f"{folder / 'robot.urdf.xacro'}:0,0,0.08,0"]
-    views: list[Any] = []
-    distance = 0.0
-    with simkit.load(folder / "lab.sdf", plugin_paths=[folder], spawn=spawned) as sim:
-        for time in (10.5, 13.0, 15.0):  # [s]
-            sim.run(time - sim.time)
-            subject, sight = find_subject(sim, []), line_of_sight(math.radians(-60.0), math.radians(12.0))
-            found = frame_points(subject.robots, sight, 330, 330)
-            distance = max(distance, found.distance)
-            camera = Camera(found.target - distance * sight, found.target, 330, 330)
-            views.append(draw_frame(sim, render_view, camera, Look(330, 330), Marks(), subject))
-    Image.fromarray(np.hstack(views)).save(path, optimize=True)
-
-
 def drive(world: str, duration: str) -> Picture:
     """Return a picture of the end of a drive by the script of a world; the duration is in s."""
     return Picture(run(world, "--script", f"worlds/{world}_drive.yaml", "--duration", duration))
@@ -286,9 +242,6 @@ PICTURES: dict[str, Picture] = {
         is_long=True,
     ),
     "packs/turtlesim/docs/images/turtlesim.png": Picture(turtlesim),
-    "labs/01_turtlesim/square.png": Picture(lab_square),
-    "labs/02_interfaces/graph.svg": Picture(lab_graph),
-    "labs/13_urdf/robot.png": Picture(lab_robot),
     **{f"docs/images/rendering/{name}.png": Picture(one_of(f"{name}.png", "examples/rendering/looks.py", "{}"))
        for name in ("fog", "house", "looks")},
     **{f"docs/images/rendering/software_{name}.jpg": Picture(one_of(drawn, *RENDERERS), is_long=True)
