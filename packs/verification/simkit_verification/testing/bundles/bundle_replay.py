@@ -25,7 +25,7 @@ from simkit_verification.testing.bundles.journal_player import JournalPlayer
 from simkit_verification.testing.bundles.manifest import BAG, Failure, Manifest, failure_from_error
 
 CODE: Final = "SK-BUNDLE-005"
-_CODE_POSITION: Final = re.compile(r"\([^()\s]*:\d+\)")
+_CODE_POSITION: Final = re.compile(r"\([^()\n]*:\d+\)")  # a place may have spaces: (world given as text:10)
 _SLICE: Final = 0.5  # [s] of simulated time between two calls of on_slice
 
 
