@@ -35,7 +35,7 @@ def grade(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], Re
     """Runs a line of a page in a copy of the folder."""
     shutil.copytree(FOLDER, tmp_path, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
-    return lambda line: CliRunner().invoke(app, shlex.split(line)[1:])
+    return lambda line: CliRunner().invoke(app, shlex.split(line, comments=True)[1:])
 
 
 def test_the_solution_passes_and_who_drives_straight_on_is_told_why(grade, tmp_path):

@@ -19,7 +19,7 @@ PAGE = (Path(__file__).resolve().parents[2] / "docs" / "bundles.md").read_text(e
 def test_the_page_works_from_its_beginning_to_its_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (block,) = re.findall(r"^```sh\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
-    made, repeated = [shlex.split(line)[1:] for line in block.splitlines()]
+    made, repeated = [shlex.split(line, comments=True)[1:] for line in block.splitlines()]
     assert CliRunner().invoke(app, made).exit_code == 5
     (bundle,) = tmp_path.glob(repeated[1])
     done = CliRunner().invoke(app, [repeated[0], str(bundle)])
@@ -29,5 +29,3 @@ def test_the_page_works_from_its_beginning_to_its_end(tmp_path: Path, monkeypatc
     names: dict[str, Any] = {}
     exec(compile(program, "bundles.md", "exec"), names)
     assert names["found"].is_same
-    (entry,) = re.findall(r"^```json\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
-    assert '"do": "publish", "topic": "/cmd_vel"' in entry
