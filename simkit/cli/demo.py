@@ -136,6 +136,7 @@ def _run(step: Step, target: Path) -> StepResult:
         SimkitError: SK-CLI-063 a command failed.
     """
     stage: Path | None = None
+    is_new = not target.parent.exists()
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         remove_abandoned(target.parent, target.name)
@@ -154,7 +155,7 @@ def _run(step: Step, target: Path) -> StepResult:
     finally:
         if stage is not None:
             shutil.rmtree(stage, ignore_errors=True)  # after an error or an interrupt
-            if target.parent.is_dir() and not any(target.parent.iterdir()):
+            if is_new and target.parent.is_dir() and not any(target.parent.iterdir()):
                 target.parent.rmdir()
     return result
 
