@@ -158,11 +158,15 @@ def test_each_plugin_has_its_elements_in_the_reference_and_links_to_them(referen
     for page, _, heading in (anchor.partition("#") for anchor in set(anchors.values())):
         headings = re.findall(r"^## (.+)$", pages[page][1], re.MULTILINE)
         assert heading in {reference.github_anchor(each, "-") for each in headings}
-    linked = reference.with_plugin_links("## Gazebo: `libgazebo_ros_kobuki.so`\n\ntext", "docs/drives.md", anchors)
-    assert linked.splitlines()[2] == (
-        "All elements and topics: [`libgazebo_ros_kobuki.so`]"
-        "(../reference/plugins/robots_gazebo_classic.md#gazebo_ros_kobuki)"
-    )
+    kobuki = "[`libgazebo_ros_kobuki.so`](../reference/plugins/robots_gazebo_classic.md#gazebo_ros_kobuki)"
+
+    def linked(text: str) -> str:
+        return reference.with_plugin_links(text, "docs/drives.md", anchors)
+
+    assert f"All elements and topics: {kobuki}\n" in linked("## Kobuki: `libgazebo_ros_kobuki.so`\n\ntext")
+    assert linked("`libgazebo_ros_kobuki.so` or `libx.so`\n") == f"{kobuki} or `libx.so`\n"
+    assert linked("[`libgazebo_ros_kobuki.so`](robots.md)") == "[`libgazebo_ros_kobuki.so`](robots.md)"
+    assert linked("```xml\n`libgazebo_ros_kobuki.so`\n```\n") == "```xml\n`libgazebo_ros_kobuki.so`\n```\n"
 
 
 @pytest.mark.slow

@@ -10,7 +10,7 @@ from collections.abc import Container, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from site_pages import ROOT, github_anchor, repository_pages
+from site_pages import ROOT, github_anchor, outside_fences, repository_pages
 
 _HANDLES = {
     "Simulation": ("A running simulation, which `simkit.load` returns.", ("simkit.Simulation",)),
@@ -308,14 +308,29 @@ def plugin_anchors() -> dict[str, str]:
 
 
 def with_plugin_links(markdown: str, path: str, anchors: Mapping[str, str]) -> str:
-    """Return a page with a line of links to the reference below each heading that names plugins."""
+    """Return a page in which the first mention of each plugin leads to its elements and topics in the reference.
 
-    def linked(heading: re.Match[str]) -> str:
-        named = [name for name in re.findall(r"`([^`]+)`", heading[0]) if name in anchors]
-        links = [f"[`{n}`]({posixpath.relpath(anchors[n], posixpath.dirname(path))})" for n in named]
-        return heading[0] + (f"\n\nAll elements and topics: {', '.join(links)}" if links else "")
+    Below a heading that names plugins, a line has these links.
+    """
+    linked: set[str] = set()
 
-    return re.sub(r"^##+ .+$", linked, markdown, flags=re.MULTILINE)
+    def link(name: str) -> str:
+        linked.add(name)
+        return f"[`{name}`]({posixpath.relpath(anchors[name], posixpath.dirname(path))})"
+
+    def named(text: str) -> list[str]:
+        return [name for name in re.findall(r"`([^`]+)`", text) if name in anchors]
+
+    def in_paragraph(paragraph: str) -> str:
+        if paragraph.startswith("#"):
+            links = ", ".join(link(name) for name in named(paragraph))
+            return paragraph + (f"\n\nAll elements and topics: {links}\n" if links else "")
+        for name in named(paragraph):
+            if name not in linked and (found := re.search(rf"(?<!\[)`{re.escape(name)}`(?!\])", paragraph)):
+                paragraph = paragraph[: found.start()] + link(name) + paragraph[found.end() :]
+        return paragraph
+
+    return outside_fences(markdown, in_paragraph)
 
 
 def _listed(names: Iterable[str]) -> str:
