@@ -128,6 +128,11 @@ class PackageIndex:
                 return True
         return False
 
+    def roots(self, around: Iterable[Path]) -> list[Path]:
+        """Return the folders below which all packages are searched, without folders that are in another one."""
+        places = list(self._all_places(tuple(dict.fromkeys(around))))
+        return [place for place in places if not any(other in place.parents for other in places)]
+
     def unfinished(self) -> list[Path]:
         """Return the folders whose search ended at a limit."""
         return [place for place, area in self._areas.items() if not area.is_complete]
