@@ -16,8 +16,8 @@ Entry = Mapping[str, Any]
 
 _HEAD = """## Against MuJoCo alone
 
-Both take turns in one process, on the same compiled model. A ratio of 1 is the speed of MuJoCo; less is faster. The rest
-of a ratio above 1 is what a simulator adds: plugins, sensors with their noise, and messages.
+Both take turns in one process, on the same compiled model. A ratio of 1 is the speed of MuJoCo; less is faster. The
+rest of a ratio above 1 is what a simulator adds: plugins, sensors with their noise, and messages.
 
 The robot of the first rows is a TurtleBot3 waffle in `turtlebot3_world`, with steps of 1 ms. "Main job" is its drive of
 36 s; recorded, it writes nine topics to a bag. [The other benchmarks](../benchmarks/README.md) measure parts in more
@@ -50,9 +50,7 @@ def page_text(entries: Sequence[Entry]) -> str:
     """Return the text of the page."""
     figures = tomllib.loads((FOLDER / "figures.toml").read_text(encoding="utf-8"))
     costs = (FOLDER / "costs.md").read_text(encoding="utf-8")
-    return "\n".join(
-        ("# Speed\n", costs, _HEAD, last_entry(entries), history(), peers(figures), memory(figures))
-    )
+    return "\n".join(("# Speed\n", costs, _HEAD, last_entry(entries), history(), peers(figures), memory(figures)))
 
 
 def amount(name: str, value: float) -> str:
