@@ -170,7 +170,7 @@ ROWS = [
         urdf(link("base", shape=collision("<mesh filename='package://foo_description/meshes/base.stl'/>"))),
         printed=(
             "a.urdf:2: warning SK-URI-009: package://foo_description/meshes/base.stl: "
-            "the package 'foo_description' is not found; searched /",
+            "the package 'foo_description' is not found; searched below /",
             "help: give its folder, --package-path foo_description=DIR",
         ),
     ),
