@@ -169,7 +169,7 @@ class PackageIndex:
             yield self._offer(name, folder, reason)
 
     def _folders_of_that_name(self, name: str, around: tuple[Path, ...]) -> Iterator[Path]:
-        """Yield the packages whose folder has this name, and such a folder beside the package of the file."""
+        """Yield packages in a folder of this name, and such folders beside the file's package and in the user's folders."""
         for folder in self.packages(around):
             if folder.name == name:
                 yield self._offer(name, folder, f"no package is named {name}; {self._shown(folder)} is used")
@@ -178,7 +178,7 @@ class PackageIndex:
             home = enclosing_package(folder)
             if home is not None and not is_private(join_below(home.parent, name)):
                 yield self._offer(name, join_below(home.parent, name))
-        for path in self.paths:
+        for path in (*self.workspaces, *self.paths):
             yield self._offer(name, join_below(path, name))
 
     def _similar(self, name: str, around: tuple[Path, ...]) -> Iterator[Path]:
