@@ -127,11 +127,11 @@ def inertial(mass: float, *moments: object) -> str:
 
 
 BROKEN = {  # of a link of 0.1 × 0.1 × 0.2 m: the report of its line, and its help
-    "zero": (inertial(1, 0, 0, 0), "SK-PHYS-011", "moments (0, 0, 0) kg m2: each must be positive", "--fix-inertia"),
+    "zero": (inertial(1, 0, 0, 0), "SK-PHYS-011", "(0, 0, 0) kg m2: each must be positive", "--fix-inertia"),
     "tiny": (inertial(1, 1e-18, 1e-18, 1e-18), "SK-PHYS-011", "must be larger than 1e-14; (0.001667, 0.00", "--fix"),
     "negative": (inertial(1, -1, 1, 1), "SK-INERTIA-002", "(-1, 1, 1) kg m2: each must be positive", "--fix-inertia"),
-    "products": (inertial(1, 1, 1, 1, 2), "SK-INERTIA-002", "(-1, 1, 3) kg m2: each must be positive", "--fix-inertia"),
-    "triangle": (inertial(1, 0.01, 0.01, 0.05), "SK-INERTIA-001", "A + B falls short of C by 60 % of C", "--fix-inertia"),
+    "products": (inertial(1, 1, 1, 1, 2), "SK-INERTIA-002", "(-1, 1, 3) kg m2: each must be positive", "--fix"),
+    "triangle": (inertial(1, 0.01, 0.01, 0.05), "SK-INERTIA-001", "A + B falls short of C by 60 % of C", "--fix"),
     "units": (inertial(1, 1e4, 1e4, 1e4), "SK-LINT-008", "666667 times too large", "check the units"),
     "density": (inertial(5000, 10, 10, 10), "SK-LINT-009", "are 2.5e+06 kg/m3", "check the units"),
     "no mass": (inertial(0, 0.01, 0.01, 0.01), "SK-PHYS-011", "0 kg is too light to move", "give the link its mass"),
