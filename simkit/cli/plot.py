@@ -29,7 +29,8 @@ def plot(
     arguments: Annotated[
         list[str],
         argument(
-            "One or more worlds, scenarios or bags, then fields: /odom.pose.pose.position.x, /scan.ranges[0].",
+            "One or more worlds, scenarios or bags, then fields and expressions: /odom.pose.pose.position.x, "
+            "/scan.ranges[0], \"distance('a', 'b')\".",
             "WORLD-or-BAG... FIELD...",
             completion.sources_and_fields,
         ),
@@ -43,7 +44,7 @@ def plot(
     allow_code: options.AllowCode = False,
     json_: options.Json = False,
 ) -> None:
-    """Plot fields of bags, worlds and scenarios over time."""
+    """Plot fields of topics, and expressions as in conditions, over time."""
     sources, fields = split_sources_and_fields(arguments)
     run = partial(scenario_spec, given=given, allow_code=allow_code)
     draw_chart(sources, fields, PlotRequest(output, against, start, end, title, run), json_=json_)
