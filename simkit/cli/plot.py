@@ -9,11 +9,13 @@ from typing import Annotated
 from simkit.cli.plot_sources import PlotRequest, draw_chart, split_sources_and_fields
 from simkit.cli.run_options import NONE_GIVEN, GivenOptions, scenario_spec, with_run_options
 from simkit.cli.terminal import completion, options
+from simkit.cli.terminal.json_report import report_errors
 from simkit.cli.terminal.options import argument
-from simkit.cli.terminal.output import report_errors_quietly
+from simkit.cli.terminal.output import without_interrupt_message
 
 
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 @with_run_options(
     *("file", "world", "run"),
     usual={"duration": "the scenario's, else 10"},
