@@ -155,7 +155,13 @@ def play(
         list[Path], argument("Bags: .mcap or .db3 files, or rosbag2 folders; several share one timeline.", "BAG...")
     ],
     topics: Annotated[
-        list[str], Option("--topics", help="Topic to play; repeatable. Default: all inputs of the world.")
+        list[str],
+        option(
+            "Topic to play; repeatable. Default: all inputs of the world.",
+            None,
+            "--topics",
+            complete=completion.source_topics,
+        ),
     ] = [],
     all_: Annotated[bool, Option("--all", "-a", help="Play all topics of the bags.")] = False,
     rate: Annotated[float, option("Playback speed factor.", "N", "--rate", "-r", min=1e-3)] = 1.0,
