@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from simkit.loaders.resources.xml_reader import Document
     from simkit.params import LARGEST
     from simkit.plugins.base import NEVER
+    from simkit.plugins.base import Plugin as Plugin  # for type checkers alone; users import it from `simkit`
     from simkit.plugins.endpoints import acts, listens, offers, publishes
     from simkit.plugins.find_entities import find_link, find_named_joint, find_named_link
     from simkit.plugins.joints.joint_axis import JointAxis

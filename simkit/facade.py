@@ -13,7 +13,6 @@ from simkit.errors import InputError
 from simkit.install_command import install_command
 
 if TYPE_CHECKING:
-    from simkit.plugins.base import Plugin as Plugin
     from simkit_identification.comparison.compare import compare as compare
     from simkit_identification.fitting.fit import fit as fit
     from simkit_launch.launch import launch as launch

@@ -8,8 +8,7 @@ from simkit.runtime.contact.collision_contacts import Contact, list_contacts
 from simkit.runtime.handles.find_sensor import checked_class, find_sensor
 
 if TYPE_CHECKING:
-    from simkit.extend import Sensor
-    from simkit.facade import Plugin
+    from simkit.extend import Plugin, Sensor
     from simkit.runtime.engine.engine import Engine
     from simkit.runtime.handles.joint import Joint
     from simkit.runtime.handles.light import Light

@@ -21,8 +21,7 @@ from simkit.runtime.world_source import ModelLoader, WorldSource
 from simkit.scene import SceneLink
 
 if TYPE_CHECKING:
-    from simkit.extend import Sensor
-    from simkit.facade import Plugin
+    from simkit.extend import Plugin, Sensor
     from simkit.runtime.communication.communication import Communication
     from simkit.runtime.engine.engine import Engine
     from simkit.runtime.engine.snapshot import Snapshots
