@@ -10,6 +10,7 @@ from simkit.errors import InputError
 from simkit.extend import Diagnostics, Where
 from simkit.input_file import read_failure, read_input_text
 from simkit.loaders import Resolver, find_document
+from simkit.number_text import counted
 from simkit.run_files import PackagePaths
 from simkit.writers.xml_text import document as xml_document
 from simkit_launch.command_line import run_executable, started_commands
@@ -60,7 +61,7 @@ def xacro_output(
     """
     files, arguments = split_xacro_words(words)
     if len(files) != 1:
-        message = f"`xacro {' '.join(words)}` is left out: it names {len(files)} files; xacro takes one"
+        message = f"`xacro {' '.join(words)}` is left out: it names {counted(len(files), 'file')}; xacro takes one"
         diagnostics.warning(LEFT_OUT, message, where)
         return None
     file = Path(files[0])

@@ -15,6 +15,7 @@ import numpy as np
 from simkit.errors import InputError
 from simkit.extend import Vector
 from simkit.input_file import read_input
+from simkit.number_text import counted
 
 MOST_ROWS: Final = 4_000_000
 _LIMIT: Final = 256 << 20  # [bytes] of a table
@@ -152,7 +153,11 @@ def read_table(path: Path) -> tuple[Vector, Vector]:
         reason = str(error).partition(";")[0]
         raise InputError("SK-SENSOR-281", f"scan pattern {path.name}: {reason}", help=_HELP) from None
     if not 0 < len(rows) <= MOST_ROWS or not np.isfinite(rows).all():
-        found = f"found {len(rows)} rows" if np.isfinite(rows).all() else "found numbers that are NaN or infinite"
+        found = (
+            f"found {counted(len(rows), 'row')}"
+            if np.isfinite(rows).all()
+            else "found numbers that are NaN or infinite"
+        )
         expected = f"expected 1 to {MOST_ROWS} rows of finite numbers"
         raise InputError("SK-SENSOR-281", f"scan pattern {path.name}: {found}; {expected}", help=_HELP)
     azimuths, heights = (rows[:, i] * scale for i, (_, scale) in enumerate(wanted))

@@ -12,6 +12,7 @@ from simkit.cli.terminal import options
 from simkit.cli.terminal.output import JsonObject, not_found_error, print_json, print_line, report_errors_quietly
 from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name
 from simkit.extend import argument
+from simkit.number_text import counted
 from simkit_terminal.cli.terminal import completion
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ def list_(
 
 
 def _count_text(items: Sequence[object], noun: str) -> str:
-    return f"{len(items)} {noun}{'' if len(items) == 1 else 's'}"
+    return counted(len(items), noun)
 
 
 @model.command()

@@ -14,6 +14,7 @@ from simkit.cli.terminal.topic_sources import TopicEndpoint, TopicEntry, open_so
 from simkit.errors import MessageError
 from simkit.extend import argument
 from simkit.msgs.topic_names import is_hidden
+from simkit.number_text import counted
 from simkit_terminal.cli.terminal import completion
 from simkit_terminal.cli.terminal.live_command import live_command
 from simkit_terminal.cli.terminal.message_arguments import is_same_type
@@ -58,7 +59,7 @@ def list_(
                 number = len(entry.publishers if end == "publisher" else entry.subscribers)
                 if number:
                     types = ", ".join(entry.types)
-                    print_name(f" * {entry.name} [{types}] {number} {end}{'s' if number > 1 else ''}")
+                    print_name(f" * {entry.name} [{types}] {counted(number, end)}")
             print_line()
     else:
         for entry in entries:

@@ -13,6 +13,7 @@ from simkit import Pose
 from simkit.errors import SimkitError
 from simkit.linear_algebra import norm
 from simkit.msgs import Message
+from simkit.number_text import counted
 from simkit.pose import IDENTITY
 from simkit_view.displays.display import Display, DisplayTools, draw_arrow, pose_of, unknown_frame
 from simkit_view.displays.drawing import Colour, Drawing, Floats
@@ -215,7 +216,7 @@ def _draw_triangles(
 ) -> None:
     points = _points(message)
     if len(points) % 3:
-        drawing.tell(f"a triangle list has {len(points)} points, which is not a multiple of 3")
+        drawing.tell(f"a triangle list has {counted(len(points), 'point')}, which is not a multiple of 3")
         return
     colours = _colours(message, colour, len(points))
     if 3 * len(message.colors) == len(message.points):

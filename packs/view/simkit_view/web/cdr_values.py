@@ -29,6 +29,7 @@ from simkit.msgs import type_store
 from simkit.msgs.definition_parser import ARRAY, BASE, NAME, FieldNode
 from simkit.msgs.message_text import NUMBER_CODES, field_nodes
 from simkit.msgs.message_types import FieldValue
+from simkit.number_text import counted
 
 _Reader = Callable[[bytes, int], tuple[dict[str, FieldValue], int]]
 _CODES: Final = {**NUMBER_CODES, "bool": "?", "byte": "b"}  # `byte` is signed, as in rosbags
@@ -57,7 +58,7 @@ def read_values(data: bytes, type_name: str, *, is_binary: bool = False) -> dict
     except (struct.error, UnicodeDecodeError, ValueError) as error:
         raise MessageError(f"{type_name}: the data are damaged: {error}") from None
     if not 0 <= len(data) - end <= _MOST_PADDING:
-        raise MessageError(f"{type_name}: found {len(data)} bytes; expected {end}")
+        raise MessageError(f"{type_name}: found {counted(len(data), 'byte')}; expected {end}")
     return values
 
 

@@ -26,6 +26,7 @@ from simkit.extend import (
     texts,
     without_effect,
 )
+from simkit.number_text import counted
 from simkit.plugins.find_entities import find_plugin_file
 from simkit.trusted_folders import TrustedFolders
 from simkit_navigation.behavior_trees import default_trees
@@ -377,7 +378,7 @@ class BtNavigator(NodeParameters):
         code, reason = task.tree.failure
         count = task.tree.recoveries
         if count:
-            tried = "1 recovery" if count == 1 else f"{count} recoveries"
+            tried = "1 recovery" if count == 1 else counted(count, "recovery", "recoveries")
             reason = f"{reason or 'the behaviour tree has failed'}; {tried} did not help"
         self._abort(task, reason or "the behaviour tree has failed", self._error_code(task.tree) or code)
 

@@ -27,7 +27,7 @@ from simkit.extend import (
 )
 from simkit.linear_algebra import matmul
 from simkit.matrix_decompositions import pinv
-from simkit.number_text import number_or_nan
+from simkit.number_text import counted, number_or_nan
 from simkit.plugins.joint_states import JOINT_STATE, joint_readings, joint_state_message
 from simkit.plugins.one_time_warnings import are_usable
 from simkit_water_and_air.plugins.classic.freefloating_fluid import FreefloatingFluid
@@ -166,7 +166,7 @@ class FreefloatingControl(ModelPlugin):
         values = message.effort if len(message.effort) else message.position
         numbers = [float(value) for value in values]
         if len(names) != len(numbers):
-            text = f"{what} with {len(names)} names and {len(numbers)} numbers is ignored"
+            text = f"{what} with {len(names)} names and {counted(len(numbers), 'number')} is ignored"
             self._once.left_out(f"length {what}", text)
             return {}
         if not are_usable(*numbers):
@@ -250,7 +250,9 @@ def _read_map(element: Params) -> Vector:
     words = element.text("map").split()
     numbers = np.array([number_or_nan(word) for word in words])
     if len(numbers) != 6 or not np.isfinite(numbers).all():
-        message = f"found <map> with {len(words)} values; expected 6 finite numbers: force and torque for each newton"
+        message = (
+            f"found <map> with {counted(len(words), 'value')}; expected 6 finite numbers: force and torque per newton"
+        )
         element.block("map").error("SK-PARAM-002", message)
         return np.zeros(6)
     return numbers

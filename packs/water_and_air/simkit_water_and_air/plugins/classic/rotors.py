@@ -22,6 +22,7 @@ from simkit.extend import (
     text,
     without_effect,
 )
+from simkit.number_text import counted
 from simkit.plugins.joint_states import JOINT_STATE, joint_readings, joint_state_message
 from simkit.plugins.joints.joint_commands import ACTUATORS
 from simkit_water_and_air.plugins.gz.multicopter_motor_model import MotorModelOptions, MulticopterMotorModel
@@ -73,7 +74,8 @@ class RotorsMotorModel(MulticopterMotorModel):
         if self.motor_number < len(speeds):
             self.command(float(speeds[self.motor_number]))
         else:
-            what = f"a message has {len(speeds)} angular velocities and none for motor {self.motor_number}"
+            velocities = counted(len(speeds), "angular velocity", "angular velocities")
+            what = f"a message has {velocities} and none for motor {self.motor_number}"
             self._once.left_out("short", f"{what}; the message is ignored")
 
 
