@@ -260,7 +260,6 @@ def vendor(
     options = {"resource_paths": resource_paths, "package_paths": package_paths, "base": base}
     before = describe(source, xacro_args=xacro_args, **options)
     diagnostics = Diagnostics() if diagnostics is None else diagnostics
-    diagnostics.extend(Diagnostic(**entry) for entry in cast(list[dict[str, Any]], before["diagnostics"]))
     resolver = Resolver([Path(path) for path in resource_paths], missing_meshes=True, package_paths=package_paths)
     document, expanded = find_document(source, resolver, diagnostics, xacro_args)
     diagnostics.raise_if_errors()
@@ -276,6 +275,8 @@ def vendor(
         differs = _difference(before, after) or _file_outside(after, stage)
         if differs:
             raise InputError("SK-CLI-019", f"the content of the folder would differ from {source}: {differs}")
+        found = [Diagnostic(**entry) for entry in cast(list[dict[str, Any]], before["diagnostics"])]
+        diagnostics.extend(d for d in found if d.severity != "error")  # errors: code that is not in a search path
         if target.exists():
             target.rmdir()
         stage.chmod(0o755)

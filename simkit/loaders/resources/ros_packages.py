@@ -169,7 +169,7 @@ class PackageIndex:
             yield self._offer(name, folder, reason)
 
     def _folders_of_that_name(self, name: str, around: tuple[Path, ...]) -> Iterator[Path]:
-        """Yield packages in a folder of this name, and such folders beside the file's package and in the user's folders."""
+        """Yield packages in a folder of this name; such folders beside the file's package and in those of the user."""
         for folder in self.packages(around):
             if folder.name == name:
                 yield self._offer(name, folder, f"no package is named {name}; {self._shown(folder)} is used")
