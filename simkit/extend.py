@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from simkit.diagnostics import Diagnostics, Where, did_you_mean
     from simkit.loaders.resources.loader import Loader, LoadRequest
     from simkit.loaders.resources.xml_reader import Document
+    from simkit.number_text import counted
     from simkit.params import LARGEST
     from simkit.plugins.base import NEVER
     from simkit.plugins.endpoints import acts, listens, offers, publishes
@@ -130,6 +131,7 @@ __all__ = [
     "blocks",
     "boolean",
     "choice",
+    "counted",
     "did_you_mean",
     "find_link",
     "find_named_joint",
@@ -160,6 +162,7 @@ _MODULES = {
     "simkit.cli.terminal.output": ("report_errors",),
     "simkit.compiler": ("Compiled", "SpecBuilder"),
     "simkit.diagnostics": ("Diagnostics", "Where", "did_you_mean"),
+    "simkit.number_text": ("counted",),
     "simkit.loaders.resources.loader": ("LoadRequest", "Loader"),
     "simkit.loaders.resources.xml_reader": ("Document",),
     "simkit.params": ("LARGEST",),

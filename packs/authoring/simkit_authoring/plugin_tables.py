@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from simkit.number_text import counted
+from simkit.extend import counted
 from simkit_authoring.plugin_facts import Facts, Parameter, Service, Topic
 
 

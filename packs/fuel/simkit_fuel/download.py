@@ -19,9 +19,9 @@ from urllib.parse import urlsplit
 from urllib.request import HTTPRedirectHandler, OpenerDirector, ProxyHandler, Request, build_opener
 
 from simkit import __version__
+from simkit.extend import counted
 from simkit.input_file import read_input_text
 from simkit.json_reader import parse_json
-from simkit.number_text import counted
 from simkit.progress import Task
 from simkit_fuel.timed_request import RequestLimits, timed_handlers
 

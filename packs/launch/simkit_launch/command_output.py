@@ -7,10 +7,9 @@ from pathlib import Path, PurePath
 from typing import Final
 
 from simkit.errors import InputError
-from simkit.extend import Diagnostics, Where
+from simkit.extend import Diagnostics, Where, counted
 from simkit.input_file import read_failure, read_input_text
 from simkit.loaders import Resolver, find_document
-from simkit.number_text import counted
 from simkit.run_files import PackagePaths
 from simkit.writers.xml_text import document as xml_document
 from simkit_launch.command_line import run_executable, started_commands

@@ -9,9 +9,8 @@ from itertools import pairwise
 from typing import Final
 
 from simkit import Params
-from simkit.extend import Diagnostics
+from simkit.extend import Diagnostics, counted
 from simkit.loaders.resources.xml_reader import parse_text
-from simkit.number_text import counted
 
 _MOVES: Final = frozenset(("revolute", "continuous", "prismatic"))
 

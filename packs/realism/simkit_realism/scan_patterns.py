@@ -13,9 +13,8 @@ from typing import Final
 import numpy as np
 
 from simkit.errors import InputError
-from simkit.extend import Vector
+from simkit.extend import Vector, counted
 from simkit.input_file import read_input
-from simkit.number_text import counted
 
 MOST_ROWS: Final = 4_000_000
 _LIMIT: Final = 256 << 20  # [bytes] of a table

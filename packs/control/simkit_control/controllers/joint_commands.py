@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, ClassVar, Final
 import numpy as np
 
 from simkit import Params, msgs
-from simkit.extend import Vector
-from simkit.number_text import counted
+from simkit.extend import Vector, counted
 from simkit.plugins.one_time_warnings import are_usable
 from simkit.plugins.ros_parameter_block import read_names
 from simkit_control.plugins.ros2_control.controller import Controller

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from simkit import Params
+from simkit.extend import counted
 from simkit.linear_algebra import matmul
 from simkit.matrix_decompositions import pinv
-from simkit.number_text import counted
 from simkit.plugins.drives.odometry import Motion
 from simkit.plugins.ros_parameter_block import read_names
 from simkit_control.plugins.ros2_control.reference_drive import ReferenceDrive, read_size

@@ -8,8 +8,7 @@ from typing import Annotated
 from simkit.cli.run_options import NONE_GIVEN
 from simkit.cli.terminal import options
 from simkit.cli.terminal.output import print_diagnostics, stdout_console
-from simkit.extend import Diagnostics, GivenOptions, add_to_report, argument, report_errors, with_run_options
-from simkit.number_text import counted
+from simkit.extend import Diagnostics, GivenOptions, add_to_report, argument, counted, report_errors, with_run_options
 
 LISTED_AFTER = "convert"
 

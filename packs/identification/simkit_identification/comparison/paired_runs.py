@@ -14,8 +14,8 @@ from typing import Any, Final
 import numpy as np
 
 from simkit.errors import InputError
+from simkit.extend import counted
 from simkit.input_file import read_failure, read_input_text
-from simkit.number_text import counted
 from simkit.recording import matches_topic
 from simkit_identification.comparison.row import Row
 from simkit_identification.comparison.rows import with_verdicts

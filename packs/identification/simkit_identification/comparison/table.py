@@ -12,9 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from simkit.errors import InputError
-from simkit.extend import did_you_mean
+from simkit.extend import counted, did_you_mean
 from simkit.install_command import install_command
-from simkit.number_text import counted
 from simkit_identification.comparison.page import PageContents, write_page
 from simkit_identification.comparison.row import DIFFERING, Row, cells_of, headings, html_table
 from simkit_identification.result_texts import finite_or_none

@@ -15,8 +15,7 @@ import numpy.typing as npt
 from simkit import RunSpec, progress
 from simkit.argument_checks import shown
 from simkit.errors import InputError
-from simkit.extend import Diagnostics
-from simkit.number_text import counted
+from simkit.extend import Diagnostics, counted
 from simkit.testing import open_scenario
 from simkit_identification.fitting.codes import (
     AT_BOUND,

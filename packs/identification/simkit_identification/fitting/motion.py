@@ -13,8 +13,8 @@ import numpy.typing as npt
 
 from simkit.elementary_functions import arctan2
 from simkit.errors import InputError
+from simkit.extend import counted
 from simkit.linear_algebra import dot, norm
-from simkit.number_text import counted
 from simkit.pose import Pose, quat_rotate
 from simkit.recording import open_bag_to_read
 from simkit_identification.fitting.codes import INVALID_MOTION

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit import Diagnostic, RunSpec
-from simkit.number_text import counted
+from simkit.extend import counted
 from simkit.scene.overrides import override_texts
 from simkit.writers.atomic_output import write_atomically
 from simkit_identification.fitting.fitted_values import ComparedTopic, FitCurve, FittedParameter, interval_text

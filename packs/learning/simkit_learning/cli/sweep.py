@@ -15,8 +15,7 @@ from simkit.cli.terminal import options
 from simkit.cli.terminal.json_report import add_to_report, report_errors_and_json
 from simkit.cli.terminal.output import print_status, stdout_console
 from simkit.errors import InputError
-from simkit.extend import argument, option
-from simkit.number_text import counted
+from simkit.extend import argument, counted, option
 
 if TYPE_CHECKING:
     from simkit_learning.sweeps.sweep import SweepOutcome

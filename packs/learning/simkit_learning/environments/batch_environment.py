@@ -12,7 +12,7 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space, create_empty_array
 
 from simkit.diagnostics import shorten
-from simkit.number_text import counted
+from simkit.extend import counted
 from simkit.runtime.array_rules import CannotBatchError
 from simkit.sensors.cameras.rendering.render_thread import usable_cores
 from simkit_learning.environments.array_bindings import (

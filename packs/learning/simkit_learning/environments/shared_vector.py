@@ -18,7 +18,7 @@ import numpy.typing as npt
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 from gymnasium.vector.utils import CloudpickleWrapper, batch_space, concatenate, create_empty_array, iterate
 
-from simkit.number_text import counted
+from simkit.extend import counted
 from simkit_learning.environments.message_arrays import Array
 from simkit_learning.environments.shared_simulation import SharedSimulation, TurnEnv
 from simkit_learning.environments.specification import EnvironmentSpec, Info, ResetOptions, invalid

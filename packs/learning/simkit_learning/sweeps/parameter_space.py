@@ -27,11 +27,10 @@ import numpy as np
 
 from simkit.argument_checks import shown
 from simkit.diagnostics import shorten
-from simkit.extend import did_you_mean
+from simkit.extend import counted, did_you_mean
 from simkit.float_sum import float_sum
 from simkit.linear_algebra import matmul
 from simkit.matrix_decompositions import cholesky
-from simkit.number_text import counted
 
 Names: TypeAlias = tuple[str, ...]
 """Names of the parameters of a space; several for a correlated space."""

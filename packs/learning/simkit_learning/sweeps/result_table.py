@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import TypeAlias, cast
 
 from simkit.errors import InputError
+from simkit.extend import counted
 from simkit.input_file import read_failure, read_input_text
 from simkit.install_command import install_command
 from simkit.msgs.data_frames import DataFrame
-from simkit.number_text import counted
 from simkit.scene.overrides import value_text
 from simkit.writers.atomic_output import AtomicOutput
 from simkit_learning.sweeps.parameter_space import Scalar, Values

@@ -14,8 +14,7 @@ from simkit.cli.terminal.options import validate_word
 from simkit.cli.terminal.output import print_json, print_line, print_note, report_errors_quietly
 from simkit.cli.terminal.topic_sources import open_source
 from simkit.errors import InputError
-from simkit.extend import argument, option
-from simkit.number_text import counted
+from simkit.extend import argument, counted, option
 from simkit_terminal.cli.terminal.live_command import Ros2Command
 from simkit_terminal.cli.terminal.named_endpoints import find_topic
 

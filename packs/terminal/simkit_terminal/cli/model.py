@@ -11,8 +11,7 @@ from typer import Option
 from simkit.cli.terminal import options
 from simkit.cli.terminal.output import JsonObject, not_found_error, print_json, print_line, report_errors_quietly
 from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name
-from simkit.extend import argument
-from simkit.number_text import counted
+from simkit.extend import argument, counted
 from simkit_terminal.cli.terminal import completion
 
 if TYPE_CHECKING:

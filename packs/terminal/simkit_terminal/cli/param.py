@@ -22,8 +22,7 @@ from simkit.cli.terminal.output import (
 )
 from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name
 from simkit.errors import InputError
-from simkit.extend import argument, option
-from simkit.number_text import counted
+from simkit.extend import argument, counted, option
 from simkit_terminal.cli.terminal import completion
 from simkit_terminal.cli.terminal.global_parameters import GlobalParameters, read_parameter_tree
 from simkit_terminal.cli.terminal.live_command import Ros2Command, live_command

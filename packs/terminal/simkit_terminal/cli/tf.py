@@ -23,8 +23,7 @@ from simkit.cli.terminal.output import (
 )
 from simkit.cli.terminal.topic_sources import open_source
 from simkit.errors import InputError, TransformError
-from simkit.extend import option
-from simkit.number_text import counted
+from simkit.extend import counted, option
 from simkit_terminal.cli.terminal import completion
 
 if TYPE_CHECKING:

@@ -12,9 +12,8 @@ from simkit.cli.terminal import options
 from simkit.cli.terminal.output import JsonObject, print_json, print_line, print_name
 from simkit.cli.terminal.topic_sources import TopicEndpoint, TopicEntry, open_source
 from simkit.errors import MessageError
-from simkit.extend import argument
+from simkit.extend import argument, counted
 from simkit.msgs.topic_names import is_hidden
-from simkit.number_text import counted
 from simkit_terminal.cli.terminal import completion
 from simkit_terminal.cli.terminal.live_command import live_command
 from simkit_terminal.cli.terminal.message_arguments import is_same_type

@@ -12,8 +12,7 @@ from simkit.cli.terminal import options
 from simkit.cli.terminal.json_report import add_diagnostics
 from simkit.cli.terminal.output import print_diagnostics, print_message, stdout_console
 from simkit.errors import InputError, SimkitError
-from simkit.extend import GivenOptions, add_to_report, option, report_errors, with_run_options
-from simkit.number_text import counted
+from simkit.extend import GivenOptions, add_to_report, counted, option, report_errors, with_run_options
 from simkit.writers.atomic_output import check_file
 
 

@@ -13,8 +13,7 @@ from typer import Option
 from simkit.cli.terminal import options
 from simkit.cli.terminal.output import JsonObject, print_json, printable, stdout_console
 from simkit.errors import InputError
-from simkit.extend import add_to_report, argument, option, report_errors
-from simkit.number_text import counted
+from simkit.extend import add_to_report, argument, counted, option, report_errors
 from simkit.writers.atomic_output import current_umask, remove_abandoned, unfinished_folder
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ import numpy as np
 
 from simkit import Pose
 from simkit.errors import SimkitError
+from simkit.extend import counted
 from simkit.msgs import Message
-from simkit.number_text import counted
 from simkit.pose import IDENTITY
 from simkit_view.displays.drawing import Arrays, Colour, Drawing, Floats
 from simkit_view.displays.frame_poses import Placement

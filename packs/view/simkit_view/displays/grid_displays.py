@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit import Pose
+from simkit.extend import counted
 from simkit.msgs import Message
-from simkit.number_text import counted
 from simkit_view.displays.display import DisplayTools, NewestMessage, pose_of
 from simkit_view.displays.drawing import Drawing
 from simkit_view.displays.frame_poses import Placement

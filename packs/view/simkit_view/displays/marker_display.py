@@ -11,9 +11,9 @@ import numpy as np
 
 from simkit import Pose
 from simkit.errors import SimkitError
+from simkit.extend import counted
 from simkit.linear_algebra import norm
 from simkit.msgs import Message
-from simkit.number_text import counted
 from simkit.pose import IDENTITY
 from simkit_view.displays.display import Display, DisplayTools, draw_arrow, pose_of, unknown_frame
 from simkit_view.displays.drawing import Colour, Drawing, Floats

@@ -11,10 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit import Pose
+from simkit.extend import counted
 from simkit.linear_algebra import det, dot, norm
 from simkit.matrix_decompositions import eigh
 from simkit.msgs import Message
-from simkit.number_text import counted
 from simkit.pose import IDENTITY
 from simkit_view.displays.display import (
     Display,

@@ -12,8 +12,8 @@ from simkit import Pose, msgs
 from simkit.bridges.live.request_fields import RequestRefused, checked_value, find_handler, read_field
 from simkit.bridges.live.requests import make_steps, set_pace, set_parameter
 from simkit.compiler.standing_models import TOLERANCE, standing_lift
+from simkit.extend import counted
 from simkit.msgs import absolute_name
-from simkit.number_text import counted
 from simkit_view.displays.interactive_marker_display import InteractiveMarkerDisplay
 from simkit_view.view.camera_pointing import point_camera
 from simkit_view.view.message_form import describe_form

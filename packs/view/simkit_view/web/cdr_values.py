@@ -25,11 +25,11 @@ import numpy as np
 
 from simkit import msgs
 from simkit.errors import MessageError
+from simkit.extend import counted
 from simkit.msgs import type_store
 from simkit.msgs.definition_parser import ARRAY, BASE, NAME, FieldNode
 from simkit.msgs.message_text import NUMBER_CODES, field_nodes
 from simkit.msgs.message_types import FieldValue
-from simkit.number_text import counted
 
 _Reader = Callable[[bytes, int], tuple[dict[str, FieldValue], int]]
 _CODES: Final = {**NUMBER_CODES, "bool": "?", "byte": "b"}  # `byte` is signed, as in rosbags

@@ -17,7 +17,7 @@ from simkit.bridges.bridge_program import begin, run_until_end, tell
 from simkit.bridges.live.protocol import LARGEST_IN, JsonObject, LiveClosed, LiveError
 from simkit.bridges.live.request_fields import CODE, client_text
 from simkit.bridges.simulation_link import DEPTH, Failed, SimulationLink, Then
-from simkit.number_text import counted
+from simkit.extend import counted
 from simkit_view.web.access import has_token, is_known_origin, is_token, quiet_logger, split_address
 from simkit_view.web.web_process import TOKEN_VARIABLE
 

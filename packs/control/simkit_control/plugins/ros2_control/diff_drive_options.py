@@ -8,8 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from simkit import Params
-from simkit.extend import SharedByCopies, Vector
-from simkit.number_text import counted
+from simkit.extend import SharedByCopies, Vector, counted
 from simkit.plugins.ros_parameter_block import read_numbers
 
 _INFINITY = math.inf

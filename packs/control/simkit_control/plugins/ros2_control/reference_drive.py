@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, ClassVar, cast
 import numpy as np
 
 from simkit import Params, Pose, msgs
+from simkit.extend import counted
 from simkit.float_sum import float_sum
-from simkit.number_text import counted
 from simkit.plugins.drives.odometry import COMMAND_TYPES, DeadReckoning, Motion
 from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, BodyTwist, odometry_message, transforms
 from simkit.plugins.one_time_warnings import are_usable

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit.extend import SharedByCopies, Vector
-from simkit.number_text import counted
+from simkit.extend import SharedByCopies, Vector, counted
 
 if TYPE_CHECKING:
     from simkit_control.plugins.ros2_control.controller import Controller

@@ -10,8 +10,7 @@ import numpy as np
 
 from simkit import Pose, msgs
 from simkit.errors import InputError
-from simkit.extend import Vector
-from simkit.number_text import counted
+from simkit.extend import Vector, counted
 from simkit.pose import IDENTITY
 from simkit_control.plugins.ros2_control.head_pointing import frame_pose
 from simkit_motion.plugins.move_group.error_codes import Code, PlanningFailed

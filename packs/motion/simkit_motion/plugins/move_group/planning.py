@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from simkit import msgs
-from simkit.extend import Vector, did_you_mean
+from simkit.extend import Vector, counted, did_you_mean
 from simkit.linear_algebra import matmul
-from simkit.number_text import counted
 from simkit_motion.plugins.move_group.error_codes import Code, PlanningFailed
 from simkit_motion.plugins.move_group.group_model import GroupModel, Obstacle
 from simkit_motion.plugins.move_group.inverse_kinematics import PoseGoal, seeds_of, solutions

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from simkit import Pose, msgs
-from simkit.extend import SharedByCopies, did_you_mean
+from simkit.extend import SharedByCopies, counted, did_you_mean
 from simkit.linear_algebra import norm
-from simkit.number_text import counted
 from simkit.pose import IDENTITY
 from simkit_motion.plugins.move_group.collision_shapes import shape_of_primitive, triangle_mesh, voxels
 from simkit_motion.plugins.move_group.error_codes import Code, PlanningFailed, check_packages

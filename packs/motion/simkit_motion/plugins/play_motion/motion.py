@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from simkit import msgs
-from simkit.extend import SharedByCopies, Vector, Where
-from simkit.number_text import counted
+from simkit.extend import SharedByCopies, Vector, Where, counted
 
 LARGEST_NUMBER: Final = 1e15
 """Largest time [s], position and velocity of a motion; the sums and quotients of larger ones would be infinite."""

@@ -15,8 +15,7 @@ from pathlib import Path
 from typing import Final
 
 from simkit import Diagnostic
-from simkit.extend import Diagnostics, Where, did_you_mean
-from simkit.number_text import counted
+from simkit.extend import Diagnostics, Where, counted, did_you_mean
 from simkit.plugins.ros_parameter_files import Entry, ParameterFile, read_parameter_file
 from simkit_motion.plugins.play_motion.motion import LARGEST_NUMBER, Motion, motion_fault, point_rows
 

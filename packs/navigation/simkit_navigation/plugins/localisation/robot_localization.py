@@ -12,8 +12,20 @@ import numpy as np
 
 from simkit import Params, Plugin, Pose, msgs
 from simkit.errors import ArgumentValueError, TransformError
-from simkit.extend import Options, OptionsOf, Vector, boolean, listens, number, offers, publishes, text, without_effect
-from simkit.number_text import counted, number_or_nan
+from simkit.extend import (
+    Options,
+    OptionsOf,
+    Vector,
+    boolean,
+    counted,
+    listens,
+    number,
+    offers,
+    publishes,
+    text,
+    without_effect,
+)
+from simkit.number_text import number_or_nan
 from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, BodyTwist, odometry_message, transforms
 from simkit.pose import quat_from_rpy, quat_multiply
 from simkit_navigation.plugins.localisation import extended_kalman_filter as ekf

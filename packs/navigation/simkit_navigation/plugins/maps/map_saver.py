@@ -14,9 +14,8 @@ import numpy.typing as npt
 
 from simkit import WorldPlugin
 from simkit.errors import SimkitError
-from simkit.extend import Options, OptionsOf, SharedByCopies, listens, number, offers, text
+from simkit.extend import Options, OptionsOf, SharedByCopies, counted, listens, number, offers, text
 from simkit.input_file import open_input
-from simkit.number_text import counted
 from simkit.save_path import SAVE_PATH_VARIABLE, allowed_folder
 from simkit_navigation.plugins.navigation.planar_pose import yaw_of
 

@@ -17,6 +17,7 @@ from simkit.extend import (
     Options,
     OptionsOf,
     SharedByCopies,
+    counted,
     did_you_mean,
     integer,
     number,
@@ -26,7 +27,6 @@ from simkit.extend import (
     texts,
     without_effect,
 )
-from simkit.number_text import counted
 from simkit.plugins.find_entities import find_plugin_file
 from simkit.trusted_folders import TrustedFolders
 from simkit_navigation.behavior_trees import default_trees

@@ -18,8 +18,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from simkit import Params, msgs
-from simkit.extend import Options, OptionsOf, block, boolean, did_you_mean
-from simkit.number_text import counted
+from simkit.extend import Options, OptionsOf, block, boolean, counted, did_you_mean
 from simkit.plugins.one_time_warnings import are_usable
 from simkit.plugins.ros_parameter_files import Entry, ParameterFile
 from simkit_control.plugins.ros2_control.control_plugin import ControlOptions, GazeboRosControl

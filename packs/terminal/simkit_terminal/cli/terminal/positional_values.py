@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from simkit.cli.terminal.output import JsonObject, JsonValue
 from simkit.errors import InputError, MessageError
-from simkit.number_text import counted
+from simkit.extend import counted
 from simkit.yaml_reader import NotYaml, read_yaml
 from simkit_terminal.cli.terminal.message_arguments import parse_fields
 

@@ -18,9 +18,8 @@ from simkit.cli.terminal import options
 from simkit.cli.terminal.output import JsonObject, print_json, print_line, print_note
 from simkit.cli.terminal.topic_sources import ReceivedMessage, Source, open_source
 from simkit.errors import InputError
-from simkit.extend import option
+from simkit.extend import counted, option
 from simkit.float_sum import float_sum
-from simkit.number_text import counted
 from simkit_terminal.cli.terminal.named_endpoints import find_topic
 from simkit_terminal.cli.terminal.topic_echo import MessageFilter, compile_filter
 

@@ -13,8 +13,7 @@ from typing import Final
 
 from simkit import Simulation
 from simkit.errors import InputError, PluginError, SimkitError
-from simkit.extend import SceneModel
-from simkit.number_text import counted
+from simkit.extend import SceneModel, counted
 from simkit.recording import Recorder
 from simkit.recording.bags.reader import open_bag_to_read
 from simkit.runtime.engine.snapshot import state_hash

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from simkit import Simulation
 from simkit.errors import MessageError
-from simkit.number_text import counted
+from simkit.extend import counted
 from simkit.runtime.engine.physics_step import STALE
 from simkit.testing.run_record.record import Array
 from simkit_verification.testing.bundles.journal_values import decode_array, encode_value

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from simkit import DeferredResponse, Pose
 from simkit.errors import InputError, MessageError, SimkitError
+from simkit.extend import counted
 from simkit.msgs.goal_status import GoalStatus
-from simkit.number_text import counted
 from simkit.run_spec import JsonMapping
 from simkit.runtime.communication.parameter import Parameter
 from simkit_verification.testing.bundles.direct_changes import apply_changes

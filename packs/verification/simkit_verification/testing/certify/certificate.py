@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-from simkit.number_text import counted
+from simkit.extend import counted
 from simkit.run_spec import JsonObject
 from simkit_verification.testing.certify.code_hints import CodeHint
 from simkit_verification.testing.certify.outcome import RunOutcome

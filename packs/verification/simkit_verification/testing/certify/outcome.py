@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.errors import SimkitError
-from simkit.number_text import counted
+from simkit.extend import counted
 from simkit.testing import newly_left_out
 
 STACK_FILE: Final = "stack"

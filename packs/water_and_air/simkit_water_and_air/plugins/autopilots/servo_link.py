@@ -6,7 +6,7 @@ import socket
 from contextlib import suppress
 from typing import TYPE_CHECKING, Final
 
-from simkit.number_text import counted
+from simkit.extend import counted
 from simkit_water_and_air.plugins.autopilots.autopilot_link import Address, AutopilotLink
 from simkit_water_and_air.plugins.autopilots.bounded_wait import WaitLimit
 from simkit_water_and_air.plugins.autopilots.servo_packet import LONGEST, ServoPacket, decode_servo_packet

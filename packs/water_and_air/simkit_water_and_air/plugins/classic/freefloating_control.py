@@ -17,6 +17,7 @@ from simkit.extend import (
     Options,
     OptionsOf,
     blocks,
+    counted,
     find_link,
     listens,
     number,
@@ -27,7 +28,7 @@ from simkit.extend import (
 )
 from simkit.linear_algebra import matmul
 from simkit.matrix_decompositions import pinv
-from simkit.number_text import counted, number_or_nan
+from simkit.number_text import number_or_nan
 from simkit.plugins.joint_states import JOINT_STATE, joint_readings, joint_state_message
 from simkit.plugins.one_time_warnings import are_usable
 from simkit_water_and_air.plugins.classic.freefloating_fluid import FreefloatingFluid

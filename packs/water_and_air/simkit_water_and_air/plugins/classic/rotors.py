@@ -15,6 +15,7 @@ from simkit.extend import (
     Options,
     OptionsOf,
     boolean,
+    counted,
     find_named_link,
     listens,
     number,
@@ -22,7 +23,6 @@ from simkit.extend import (
     text,
     without_effect,
 )
-from simkit.number_text import counted
 from simkit.plugins.joint_states import JOINT_STATE, joint_readings, joint_state_message
 from simkit.plugins.joints.joint_commands import ACTUATORS
 from simkit_water_and_air.plugins.gz.multicopter_motor_model import MotorModelOptions, MulticopterMotorModel

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit.extend import Vector
+from simkit.extend import Vector, counted
 from simkit.linear_algebra import matmul
-from simkit.number_text import counted, number_or_nan
+from simkit.number_text import number_or_nan
 from simkit_water_and_air.plugins.fluids.added_mass import SmoothedAcceleration, own_inertia
 
 if TYPE_CHECKING:

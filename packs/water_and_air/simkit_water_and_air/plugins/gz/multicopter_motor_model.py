@@ -23,6 +23,7 @@ from simkit.extend import (
     Options,
     OptionsOf,
     choice,
+    counted,
     find_named_joint,
     find_named_link,
     integer,
@@ -32,7 +33,6 @@ from simkit.extend import (
     without_effect,
 )
 from simkit.msgs import valid_topic
-from simkit.number_text import counted
 from simkit.plugins.joints.joint_commands import ACTUATORS
 from simkit.plugins.one_time_warnings import are_usable
 from simkit_water_and_air.plugins.fluids.link_forces import PushedLinks, moving_data

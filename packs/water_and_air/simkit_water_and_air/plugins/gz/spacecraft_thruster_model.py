@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from simkit import ModelPlugin, Params
-from simkit.extend import LARGEST, Options, OptionsOf, find_named_link, integer, listens, number, text
+from simkit.extend import LARGEST, Options, OptionsOf, counted, find_named_link, integer, listens, number, text
 from simkit.msgs import valid_topic
-from simkit.number_text import counted
 from simkit.plugins.joints.joint_commands import ACTUATORS
 from simkit_water_and_air.plugins.fluids.link_forces import PushedLinks, moving_data
 
