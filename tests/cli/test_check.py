@@ -168,7 +168,7 @@ def test_a_nan_of_a_static_model_leaves_the_other_inertias_to_be_corrected(here:
     )
     models = model.format("wall", "true", "nan") + model.format("m", "false", "1")
     (here / "m.sdf").write_text(f"<sdf version='1.9'><world name='w'>{models}</world></sdf>")
-    assert "1 impossible inertias" in run("m.sdf", "--fix-inertia").stdout
+    assert "1 impossible inertia\n" in run("m.sdf", "--fix-inertia").stdout
 
 
 def test_missing_inertia_values_of_sdf_are_inserted(here: Path) -> None:
