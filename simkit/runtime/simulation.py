@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     import mujoco
 
     from simkit.diagnostics import Diagnostic, Diagnostics
-    from simkit.facade import NodeProgram
+    from simkit.facade import Moment, NodeProgram
     from simkit.runtime.communication.name_remapping import NameRemapping
     from simkit.runtime.engine.entity_structure import WorldStructure
     from simkit.runtime.engine.scheduler import Scheduler
@@ -405,6 +405,22 @@ class Simulation(ScriptEntities, ScriptGraph, InProcess):
         if self._page is None:
             self._page = pack_module("sim.view").ScriptView(self, port)
         return self._page.address
+
+    def why(self, model: str | None = None, joint: str | None = None) -> Moment:
+        """Explain the present moment: contacts, joints, constraints and wheels, with what slides or has a limit.
+
+        `print(sim.why())` prints sentences. The attributes of the result have the numbers.
+
+        Args:
+            model: scoped name of a model; None for all models.
+            joint: scoped name of a joint, or its last name if only one joint has it; None for all joints.
+
+        Raises:
+            KeyError: no such model or joint; the message suggests the closest name.
+        """
+        self.engine.check_open()
+        found: Moment = pack_module("sim.why").explain_moment(self, model, joint)
+        return found
 
     def add_node(
         self,

@@ -96,7 +96,7 @@ def check_golden(
         )
     place = golden_folder(folder)
     golden = read_golden(place)
-    current_scenario = scenario or _current_scenario(place, golden, folders, allow_code, plugin_paths)
+    current_scenario = scenario or golden_scenario(place, golden, folders, allow_code, plugin_paths)
     current_scenario = permit_code(current_scenario, allow_code, plugin_paths)
     with _recorded_environment(golden.environment), _run_today(golden, current_scenario) as (run, elapsed):
         comparison = compare(golden, run)
@@ -145,14 +145,25 @@ def _append_world_changes(error: InputError, golden: RunRecord, scenario: RunSpe
     return InputError(error.code, f"{error}\n{text}", shows_code=False)
 
 
-def _current_scenario(
+def golden_scenario(
     place: Path,
     golden: RunRecord,
     folders: Sequence[FilePath],
     allow_code: bool,
     plugin_paths: Sequence[FilePath],
 ) -> RunSpec:
-    """Return the scenario to run. If the scenario has a file, read the file again, because it may have been changed."""
+    """Return the scenario to run. If the scenario has a file, read the file again, because it may have been changed.
+
+    Args:
+        place: Folder of the golden run.
+        golden: Golden run.
+        folders: Folders in which the golden run may name files, as in `check_golden`.
+        allow_code: Allow the code that the golden run and its scenario name.
+        plugin_paths: Allow the code in these folders only.
+
+    Raises:
+        InputError: See `check_golden`.
+    """
     stored = golden.scenario
     if stored.file is not None or not (stored.test or stored.plugins):
         refused_files(place, stored, folders).raise_if_errors()
