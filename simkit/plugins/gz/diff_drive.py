@@ -78,7 +78,7 @@ class DiffDrive(TwistDrive):
         self.open_topics(parent, params)
         self.listen(valid_topic(f"/model/{parent.name}/enable"), "std_msgs/msg/Bool", self._on_enable)
         joints = [name for side in self._joint_names for name in side]
-        truth = parent, self._true, joints, valid_topic(f"/model/{parent.name}/"), self._child
+        truth = parent, self._true, joints, f"{valid_topic(f'/model/{parent.name}')}/", self._child
         self._truth = GroundTruth(self, *truth) if self.options.publish_ground_truth else None
 
     # ------------------------------------------------------------------ commands

@@ -70,7 +70,7 @@ def _opened_at(run: str, time: float | None, given: GivenOptions, *, allow_code:
     """Repeat a run up to a time [s], and yield its simulation.
 
     Raises:
-        InputError: SK-CLI-064 the run ends before this time, or has options of its own.
+        InputError: SK-CLI-064 the run ends before this time, is a bundle and options are given, or is a bag.
     """
     from simkit.testing import open_scenario, run_scenario
     from simkit.testing.golden.store import is_golden
@@ -96,9 +96,13 @@ def _opened_at(run: str, time: float | None, given: GivenOptions, *, allow_code:
 
 
 def _spec(run: str, given: GivenOptions, *, allow_code: bool) -> RunSpec:
+    from simkit.cli.plot_sources import is_bag
     from simkit.testing.golden.check import golden_scenario
     from simkit.testing.golden.store import golden_folder, is_golden, read_golden
 
+    if "<" not in run and is_bag(Path(run)):
+        help_ = f"name the world, and play the bag: simkit why WORLD --play {run}"
+        raise InputError("SK-CLI-064", f"{run} is a bag, which has messages but not their world", help=help_)
     if "<" in run or not is_golden(run):
         return scenario_spec(run, given, allow_code=allow_code)
     place, loading = golden_folder(run), given.load_options()
