@@ -114,9 +114,9 @@ def load(
         render_thread: draw camera images on a second thread, with the same bits. Default: with two cores or more.
         on_error: policy for a plugin that raises: "stop" ends the run with a PluginError, "disable" continues without
             the plugin. With None, the file (`<simkit:on_error>`) or the plugin's class decides; the default is "stop".
-        spawn: models to add while the world is loaded: `"MODEL:x,y,yaw[:name]"` texts or `SpawnedModel` objects. MODEL
-            is a file or a bare name. Each stands on what is below it, unless a height is given: `"MODEL:x,y,z,yaw"`.
-            Unlike models of `Simulation.spawn`, these models are still present after a reset.
+        spawn: models to add while the world is loaded: `"MODEL:x,y,yaw[:name[:namespace]]"` texts or `SpawnedModel`
+            objects. MODEL is a file or a bare name. Each stands on what is below it, unless a height is given:
+            `"MODEL:x,y,z,yaw"`. Unlike models of `Simulation.spawn`, these models are still present after a reset.
         model_world: world of a bare model, in which the model stands on what is below it: "ground" for level ground and
             a sun, a file, or the bare name of a world. "none" is empty space.
         params_files: parameter files for the control plugins of all models, in the layout of ROS 1 or ROS 2.

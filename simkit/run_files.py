@@ -15,10 +15,11 @@ PackagePaths = Mapping[str, FilePath] | Sequence[FilePath]
 """Folders of ROS packages by name, or a list of workspaces and of texts `NAME=DIR`."""
 _NUMBER: Final = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _NUMBERS: Final = rf"\s*{_NUMBER}\s*(?:,\s*{_NUMBER}\s*)*"
-SPAWN_TEXT: Final = re.compile(rf"(?P<model>.+?):(?P<numbers>{_NUMBERS})(?::(?P<name>[^:/,]+))?")
-"""Text of a model to spawn: `MODEL:x,y,yaw[:name]`."""
-SPAWN_KEYS: Final = ("model", "place", "name")
-"""Keys of a model to spawn that is a mapping: its source, its pose as in `SpawnedModel.place`, and its name."""
+_NAMES: Final = r"(?::(?P<name>[^:/,]+)(?::(?P<namespace>[^:,]*))?)?"
+SPAWN_TEXT: Final = re.compile(rf"(?P<model>.+?):(?P<numbers>{_NUMBERS}){_NAMES}")
+"""Text of a model to spawn: `MODEL:x,y,yaw[:name[:namespace]]`."""
+SPAWN_KEYS: Final = ("model", "place", "name", "namespace")
+"""Keys of a model to spawn that is a mapping: the attributes of `SpawnedModel`; `model` is its source."""
 
 
 def split_package_paths(paths: PackagePaths | None) -> tuple[dict[str, Path], list[Path]]:
@@ -49,7 +50,7 @@ def model_and_file(named: FilePath | tuple[str, FilePath]) -> tuple[str, str]:
 
 
 def split_spawn(text: str) -> tuple[str, str]:
-    """Split `MODEL:x,y,yaw[:name]` into the model and the rest, which is empty for a model alone."""
+    """Split `MODEL:x,y,yaw[:name[:namespace]]` into the model and the rest, which is empty for a model alone."""
     match = SPAWN_TEXT.fullmatch(text.strip())
     model = text.strip() if match is None else match["model"]
     return model, text.strip()[len(model) :]

@@ -79,6 +79,7 @@ class SpawnRequest(Protocol):
         source: file or bare name.
         place: pose in the order x, y [m], yaw [rad], then further pose values; None for the pose in the file.
         name: name of the model in the world; None for the name in the file.
+        namespace: namespace of the model's topics; None for the names in the file.
     """
 
     @property
@@ -87,6 +88,8 @@ class SpawnRequest(Protocol):
     def place(self) -> tuple[float, ...] | None: ...
     @property
     def name(self) -> str | None: ...
+    @property
+    def namespace(self) -> str | None: ...
 
 
 @dataclass(frozen=True)
@@ -186,7 +189,7 @@ class RunSpec:
         Spawns(),
         CommandOption(
             "--spawn",
-            "MODEL:x,y,yaw[:name]",
+            "MODEL:x,y,yaw[:name[:namespace]]",
             "Spawn a model, by name or file; repeatable.",
             "world",
             completion="worlds",

@@ -270,7 +270,7 @@ class OneFile(ValueKind):
 
 
 class Spawns(Texts):
-    """Models to spawn: texts `MODEL:x,y,yaw[:name]`, mappings, or objects with the attribute `source`."""
+    """Models to spawn: texts `MODEL:x,y,yaw[:name[:namespace]]`, mappings, or objects with the attribute `source`."""
 
     has_files = True
 
@@ -278,12 +278,11 @@ class Spawns(Texts):
         return source.entries(key)
 
     def plain(self, value: Any) -> list[Any]:
-        return [
-            entry
-            if isinstance(entry, (str, Mapping))
-            else {"model": os.fspath(entry.source), "place": entry.place, "name": entry.name}
-            for entry in value
-        ]
+        return [entry if isinstance(entry, (str, Mapping)) else self._plain_entry(entry) for entry in value]
+
+    def _plain_entry(self, entry: Any) -> dict[str, Any]:
+        keys = {"model": os.fspath(entry.source), "place": entry.place, "name": entry.name}
+        return keys | ({"namespace": entry.namespace} if entry.namespace else {})
 
     def move(self, value: Any, name: str, change: ChangeFile) -> Any:
         moved_entries: list[Any] = []

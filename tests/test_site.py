@@ -150,6 +150,27 @@ def test_each_section_of_the_names_for_extensions_has_a_page_of_the_reference(re
 
 @pytest.mark.slow
 @pytest.mark.needs_packs
+def test_each_plugin_has_its_elements_in_the_reference_and_links_to_them(reference: types.ModuleType) -> None:
+    pages, anchors = reference.plugin_pages(), reference.plugin_anchors()
+    text = pages["reference/plugins/gazebo_sim.md"][1].partition("\n## gz-sim-diff-drive-system\n")[2]
+    assert "| `wheel_radius` | number | 0.2 | m | at least 1e-06 |" in text
+    assert "| · `wheel_variance` | number | 0 |" in text
+    for page, _, heading in (anchor.partition("#") for anchor in set(anchors.values())):
+        headings = re.findall(r"^## (.+)$", pages[page][1], re.MULTILINE)
+        assert heading in {reference.github_anchor(each, "-") for each in headings}
+    kobuki = "[`libgazebo_ros_kobuki.so`](../reference/plugins/robots_gazebo_classic.md#gazebo_ros_kobuki)"
+
+    def linked(text: str) -> str:
+        return reference.with_plugin_links(text, "docs/drives.md", anchors)
+
+    assert f"All elements and topics: {kobuki}\n" in linked("## Kobuki: `libgazebo_ros_kobuki.so`\n\ntext")
+    assert linked("`libgazebo_ros_kobuki.so` or `libx.so`\n") == f"{kobuki} or `libx.so`\n"
+    assert linked("[`libgazebo_ros_kobuki.so`](robots.md)") == "[`libgazebo_ros_kobuki.so`](robots.md)"
+    assert linked("```xml\n`libgazebo_ros_kobuki.so`\n```\n") == "```xml\n`libgazebo_ros_kobuki.so`\n```\n"
+
+
+@pytest.mark.slow
+@pytest.mark.needs_packs
 def test_each_published_message_has_its_fields_in_the_reference(reference: types.ModuleType) -> None:
     pages = reference.message_pages()
     scan = pages["reference/messages/sensor_msgs.md"][1].partition("\n## LaserScan\n")[2].partition("\n## ")[0]

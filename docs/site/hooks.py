@@ -6,7 +6,7 @@ import re
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from reference import generated_pages, with_options_link
+from reference import generated_pages, plugin_anchors, with_options_link, with_plugin_links
 from site_pages import (
     ROOT,
     generated_nav,
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from mkdocs.structure.pages import Page
 
 _pages = cache(generated_pages)
+_anchors = cache(plugin_anchors)
 _INLINE_CODE = re.compile(r"<code>[^<]*</code>")
 _OPTION = re.compile(r"(?<![\w-])--?[a-zA-Z][\w-]*")
 
@@ -30,6 +31,7 @@ _OPTION = re.compile(r"(?<![\w-])--?[a-zA-Z][\w-]*")
 def on_config(config: MkDocsConfig) -> MkDocsConfig:
     """Replace each entry of the navigation that names a folder by the generated pages in it."""
     _pages.cache_clear()
+    _anchors.cache_clear()
     titles = {path: title for path, (title, _) in _pages().items()}
     config.nav = _filled(config.nav, titles)
     config.mdx_configs["toc"]["slugify"] = github_anchor
@@ -66,11 +68,12 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
         page.meta["search"] = {"boost": 0.5}  # most queries are English
     if path == "docs/troubleshooting.md":
         page.meta["search"] = {"boost": 2}  # who searches for a symptom wants its remedy
-    if path.startswith(("reference/python/", "reference/messages/", "reference/diagnostics/")):
+    if path.startswith(("reference/python/", "reference/messages/", "reference/diagnostics/", "reference/plugins/")):
         page.meta["search"] = {"boost": 0.5}  # each of their 2000 names is a title
     if not path.startswith("reference/"):
         markdown = in_python_markdown(with_site_links(markdown, path, files.src_uris))
         markdown = with_options_link(markdown, path, _pages())
+        markdown = with_plugin_links(markdown, path, _anchors())
     return markdown
 
 

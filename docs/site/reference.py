@@ -1,4 +1,4 @@
-"""Pages of the reference that are made from the code: names of Python, commands, messages, diagnostic codes."""
+"""Pages of the reference that are made from the code: names of Python, commands, plugins, messages, codes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from collections.abc import Container, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from site_pages import ROOT, repository_pages
+from site_pages import ROOT, github_anchor, outside_fences, repository_pages
 
 _MOMENT = ("Moment", "TouchingPair", "JointLoad", "ConstraintError")
 
@@ -249,6 +249,99 @@ def _users_of_messages() -> dict[str, dict[str, set[str]]]:
     return found
 
 
+def plugin_pages() -> dict[str, tuple[str, str]]:
+    """Return title and text of a page for each group of plugins, with all parameters and topics, by its path."""
+    from simkit_authoring.catalogue import known_plugins
+
+    groups: dict[str, list[Any]] = {}
+    for entry in known_plugins():
+        if entry.origin == "simkit":
+            groups.setdefault(_plugin_group(entry.cls.__module__), []).append(entry)
+    introduction = (
+        "Elements, topics, services and actions of each plugin, as `simkit plugin info NAME` prints them. "
+        "`{model}`, `{robot}` and names like these in braces stand for the name of the model or the value of an "
+        "element. [All plugins](../../docs/catalogue.md) has one line for each.\n"
+    )
+    pages = {}
+    for title in sorted(groups):
+        sections = [line for entry in groups[title] for line in _plugin_lines(entry)]
+        pages[_path("plugins", title)] = (title, "\n".join([f"# Plugins: {title}\n", introduction, *sections]))
+    return pages
+
+
+def _plugin_group(module: str) -> str:
+    """Return the title of the page for the plugins in a module: the simulator, or the pack."""
+    package, *folders = module.split(".")
+    if package == "simkit":
+        return {"gz": "Gazebo Sim", "classic": "Gazebo Classic"}.get(folders[1], "simkit")
+    title = package.removeprefix("simkit_").replace("_", " ").capitalize()
+    families = {"uuv": ", uuv_simulator", "classic": ", Gazebo Classic", "gz": ", Gazebo Sim"}
+    return title + families.get(folders[1], "")
+
+
+def _plugin_heading(entry: Any) -> str:
+    """Return the shortest name of a plugin that a file can use."""
+    return str(entry.names[0] if entry.names else entry.cls.__name__)
+
+
+def _plugin_lines(entry: Any) -> Iterator[str]:
+    """Yield the lines of Markdown for a plugin."""
+    from simkit_authoring.catalogue import facts_of
+    from simkit_authoring.plugin_tables import tables_of
+
+    parents = " or a ".join(entry.parents).replace("any", "model, world, sensor or visual")
+    yield f"## {_plugin_heading(entry)}\n\n`{entry.cls.__name__}`, on a {parents}. {_plain(entry.summary)}\n"
+    names = [name for name in entry.names[1:] if "ignition" not in name and not name.startswith("lib")]
+    if names:
+        yield f"Other names: {', '.join(f'`{name}`' for name in names)}.\n"
+    heads = {"parameters": ("element", "type", "default", "unit", "")}
+    for title, rows in tables_of(facts_of(entry.cls)).items():
+        head = heads.get(title, (title, "type", ""))
+        yield f"| {' | '.join(head)} |\n|{'---|' * len(head)}"
+        for name, *cells in rows:
+            depth = "· " * ((len(name) - len(name.lstrip())) // 2)
+            yield f"| {depth}{_code(name.lstrip())} | {' | '.join(map(_plain, cells))} |"
+        yield ""
+
+
+def plugin_anchors() -> dict[str, str]:
+    """Return the page and the heading (`page#heading`) of each plugin by every name that a file can use."""
+    from simkit_authoring.catalogue import known_plugins
+
+    return {
+        name: f"{_path('plugins', _plugin_group(entry.cls.__module__))}#{github_anchor(_plugin_heading(entry), '-')}"
+        for entry in known_plugins()
+        if entry.origin == "simkit"
+        for name in entry.names
+    }
+
+
+def with_plugin_links(markdown: str, path: str, anchors: Mapping[str, str]) -> str:
+    """Return a page in which the first mention of each plugin leads to its elements and topics in the reference.
+
+    Below a heading that names plugins, a line has these links.
+    """
+    linked: set[str] = set()
+
+    def link(name: str) -> str:
+        linked.add(name)
+        return f"[`{name}`]({posixpath.relpath(anchors[name], posixpath.dirname(path))})"
+
+    def named(text: str) -> list[str]:
+        return [name for name in re.findall(r"`([^`]+)`", text) if name in anchors]
+
+    def in_paragraph(paragraph: str) -> str:
+        if paragraph.startswith("#"):
+            links = ", ".join(link(name) for name in named(paragraph))
+            return paragraph + (f"\n\nAll elements and topics: {links}\n" if links else "")
+        for name in named(paragraph):
+            if name not in linked and (found := re.search(rf"(?<!\[)`{re.escape(name)}`(?!\])", paragraph)):
+                paragraph = paragraph[: found.start()] + link(name) + paragraph[found.end() :]
+        return paragraph
+
+    return outside_fences(markdown, in_paragraph)
+
+
 def _listed(names: Iterable[str]) -> str:
     """Return names as a list in code; of more than eight, the first ones and their number."""
     ordered = sorted(names)
@@ -299,7 +392,7 @@ def _range_of(codes: list[str]) -> str:
 
 def generated_pages() -> Mapping[str, tuple[str, str]]:
     """Return title and text of all generated pages by their paths."""
-    return {**python_pages(), **command_pages(), **message_pages(), **diagnostic_pages()}
+    return {**python_pages(), **command_pages(), **plugin_pages(), **message_pages(), **diagnostic_pages()}
 
 
 def _path(folder: str, title: str) -> str:

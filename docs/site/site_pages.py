@@ -64,7 +64,7 @@ def with_site_links(text: str, page: str, on_site: Collection[str]) -> str:
             target = f"{REPOSITORY}{'tree' if (ROOT / path).is_dir() else 'blob'}/main/{path}"
         return f"{match[1]}{target}{hash_}{anchor}{match[3]}"
 
-    return _outside_fences(text, lambda paragraph: _outside_code(paragraph, lambda part: _LINK.sub(replaced, part)))
+    return outside_fences(text, lambda paragraph: _outside_code(paragraph, lambda part: _LINK.sub(replaced, part)))
 
 
 def in_python_markdown(text: str) -> str:
@@ -112,7 +112,7 @@ def _indented(line: str, columns: list[int]) -> str:
     return " " * 4 * len(columns) + rest
 
 
-def _outside_fences(text: str, change: Callable[[str], str]) -> str:
+def outside_fences(text: str, change: Callable[[str], str]) -> str:
     """Apply a function to each paragraph of Markdown that is not a block of code; a link may span lines."""
     return "".join(_changed_paragraphs(text, change))
 

@@ -92,7 +92,7 @@ def check_load_arguments(
     if renderer not in (None, *RENDERERS):
         raise wrong_value("renderer", "'auto', 'gl' or 'software'", renderer)
     _check_named_texts(remap, str, "remap", "texts OLD:=NEW")
-    check_list(spawn, (str, SpawnedModel, Mapping), "spawn", "texts MODEL:x,y,yaw[:name]")
+    check_list(spawn, (str, SpawnedModel, Mapping), "spawn", "texts MODEL:x,y,yaw[:name[:namespace]]")
     if not isinstance(params_files, _PATH) and not _is_model_and_file(params_files):
         check_list(params_files, (*_PATH, tuple), "params_files", "paths")
     check_kind(model_world, str, "model_world", "'ground', 'none', a path or a bare name")

@@ -1,4 +1,4 @@
-"""Additional models that are loaded into a world at start: `--spawn MODEL:x,y,yaw[:name]`."""
+"""Additional models that are loaded into a world at start: `--spawn MODEL:x,y,yaw[:name[:namespace]]`."""
 
 from __future__ import annotations
 
@@ -16,11 +16,12 @@ from simkit.pose import Pose
 from simkit.run_files import SPAWN_KEYS, SPAWN_TEXT
 from simkit.run_values import NamedValues
 from simkit.scene import Scene, SceneModel
+from simkit.scene.model_namespace import NAMESPACE, model_in_namespace
 
 __all__ = ["SpawnEntry", "SpawnedModel", "add_spawned_models", "client_models", "parse_spawn", "spawned_model"]
 
-_POSED: Final = re.compile(r":\s*[^:/]*,[^:/]*(:[^:/]*)?$")
-_FORM: Final = "MODEL:x,y,yaw[:name], as in tiago:1,0,1.57 or robot.urdf:0,2,0:second; or MODEL alone"
+_POSED: Final = re.compile(r":\s*[^:/]*,[^:/]*(:[^:/]*(:[^:]*)?)?$")
+_FORM: Final = "MODEL:x,y,yaw[:name[:namespace]], as in tiago:1,0,1.57 or robot.urdf:0,2,0:tb1:tb1; or MODEL alone"
 _FARTHEST: Final = 1e15  # [m, rad]; sums of larger numbers lose their precision or overflow
 _COUNTS: Final = {3: "x,y,yaw", 4: "x,y,z,yaw", 6: "x,y,z,roll,pitch,yaw"}
 
@@ -34,11 +35,13 @@ class SpawnedModel:
         place: x, y, yaw, for a model that stands on what is below it; or x, y, z, yaw; or x, y, z, roll, pitch, yaw
             [m, rad]. None keeps the pose of the file; without a pose in the file it means 0, 0, 0.
         name: replaces the name in the file; None keeps that name.
+        namespace: ROS namespace of the model's topics, such as `tb1`; None keeps the names of the file.
     """
 
     source: str | os.PathLike[str]
     place: tuple[float, ...] | None = None
     name: str | None = None
+    namespace: str | None = None
 
     def pose(self, file_pose: Pose) -> Pose | None:
         """Return the pose in the world, or None to keep the pose of the file.
@@ -66,7 +69,7 @@ SpawnEntry = str | SpawnedModel | Mapping[str, Any]
 
 
 def parse_spawn(text: str, diagnostics: Diagnostics) -> SpawnedModel | None:
-    """Parse a text such as `tiago:1,0,1.57:robot`; return None, with an error recorded, if the text is invalid."""
+    """Parse a text such as `tiago:1,0,1.57:robot:ns`; return None, with an error recorded, if the text is invalid."""
     match = SPAWN_TEXT.fullmatch(text.strip())
     if match is None:
         if not text.strip() or _POSED.search(text):
@@ -79,14 +82,14 @@ def parse_spawn(text: str, diagnostics: Diagnostics) -> SpawnedModel | None:
         forms = "; ".join(f"{count} ({form})" for count, form in _COUNTS.items())
         diagnostics.error("SK-SPAWN-001", message, hint=f"give {forms} numbers")
         return None
-    return SpawnedModel(match["model"], numbers, match["name"])
+    return SpawnedModel(match["model"], numbers, match["name"], match["namespace"])
 
 
 def spawned_model(item: SpawnEntry, diagnostics: Diagnostics) -> SpawnedModel | None:
     """Return the model of an entry of the field `spawn` of a run; None, with an error recorded, for an invalid one.
 
     Args:
-        item: text as for `--spawn`, object, or mapping with the keys `model`, `place` and `name`.
+        item: text as for `--spawn`, object, or mapping with the keys `SPAWN_KEYS`.
         diagnostics: receives every problem.
     """
     if isinstance(item, SpawnedModel):
@@ -101,7 +104,7 @@ def spawned_model(item: SpawnEntry, diagnostics: Diagnostics) -> SpawnedModel | 
         diagnostics.error("SK-SPAWN-001", f"spawn: a model {problem}", hint=hint)
         return None
     if place is None:
-        return SpawnedModel(model, None, item.get("name"))
+        return SpawnedModel(model, None, item.get("name"), item.get("namespace"))
     numbers = place if isinstance(place, Sequence) and not isinstance(place, str) else ()
     is_valid = all(isinstance(number, (int, float)) and not isinstance(number, bool) for number in numbers)
     if not is_valid or len(numbers) not in _COUNTS:
@@ -109,7 +112,7 @@ def spawned_model(item: SpawnEntry, diagnostics: Diagnostics) -> SpawnedModel | 
         message = f"spawn: found the place {place!r:.80} of {model!s:.80}"
         diagnostics.error("SK-SPAWN-001", message, hint=f"give {forms} numbers")
         return None
-    return SpawnedModel(model, tuple(map(float, numbers)), item.get("name"))
+    return SpawnedModel(model, tuple(map(float, numbers)), item.get("name"), item.get("namespace"))
 
 
 def add_spawned_models(
@@ -140,6 +143,11 @@ def add_spawned_models(
             text = f"--spawn: {spawn.source!s:.80} at {spawn.place}"
             diagnostics.error("SK-SPAWN-001", text, hint=f"give numbers between -{_FARTHEST:g} and {_FARTHEST:g}")
             continue
+        namespace = spawn.namespace
+        if namespace is not None and not (isinstance(namespace, str) and NAMESPACE.fullmatch(namespace)):
+            text = f"--spawn: {spawn.source!s:.80} has the namespace {namespace!r:.80}"
+            diagnostics.error("SK-SPAWN-001", text, hint="give words of letters, digits and _, as in tb1 or fleet/tb1")
+            continue
         problems = Diagnostics()
         file_pose = _file_pose(spawn.source, resolver, xacro_args)
         pose = spawn.pose(file_pose or Pose())
@@ -151,7 +159,7 @@ def add_spawned_models(
             text = f"--spawn: the world already has a model or actor named {model.name!r}"
             diagnostics.error("SK-SPAWN-002", text, model.where, "give it another name: MODEL:x,y,yaw:NAME")
             continue
-        models.append(model)
+        models.append(model if namespace is None else model_in_namespace(model, namespace))
         if len(spawn.place or ()) == 3 or (spawn.place is None and file_pose is None):
             standing.append(model.name)
     world = replace(world, models=tuple(models))

@@ -27,6 +27,7 @@ BOX = """<sdf version="1.9"><model name="box"><pose>0 0 0.25 0 0 1</pose><link n
         ("box:1,2,3,0.1,0.2,0.3", SpawnedModel("box", (1, 2, 3, 0.1, 0.2, 0.3))),
         (r"C:\robots\arm.urdf:0,0,0", SpawnedModel(r"C:\robots\arm.urdf", (0, 0, 0))),
         ("tiago", SpawnedModel("tiago")),
+        ("tiago:1,2,0:left:fleet/left", SpawnedModel("tiago", (1, 2, 0), "left", "fleet/left")),
     ],
 )
 def test_a_spawn_text_is_parsed_into_model_pose_and_name(text: str, expected: SpawnedModel) -> None:
@@ -101,3 +102,51 @@ def test_a_spawn_pose_beyond_the_largest_distance_is_an_error(number: float) -> 
     with pytest.raises(simkit.LoadError, match="SK-SPAWN-001") as raised:
         simkit.load("empty", spawn=[SpawnedModel("turtlebot3_burger", (0.0, number, 0.5), None)])
     assert [d.code for d in raised.value.diagnostics if d.severity == "error"] == ["SK-SPAWN-001"]
+
+
+def test_two_robots_of_one_file_have_topics_below_their_namespaces() -> None:
+    names = {"cmd_vel", "imu", "joint_states", "odom", "scan"}
+    spawn = ["turtlebot3_burger:0,0,0:tb1:tb1", "turtlebot3_burger:1,0,0:tb2:/fleet/tb2"]
+    with simkit.load("empty", spawn=spawn) as sim:
+        topics = set(sim.topics())
+        scan, odometry = sim.subscribe("/tb1/scan"), sim.subscribe("/tb1/odom")
+        other = sim.subscribe("/fleet/tb2/odom")
+        sim.publish("/tb1/cmd_vel", {"linear": {"x": 0.2}})
+        sim.run(1.0)
+        assert {f"/{namespace}/{name}" for namespace in ("tb1", "fleet/tb2") for name in names} <= topics
+        assert not {f"/{name}" for name in names} & topics
+        assert scan.latest is not None
+        assert odometry.latest.pose.pose.position.x > 0.1
+        assert abs(other.latest.pose.pose.position.x) < 0.01
+        assert "SK-SENSOR-027" not in {d.code for d in sim.diagnostics}
+
+
+NAMED = """<sdf version="1.9"><model name="m"><link name="l">
+<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial>
+<sensor name="imu" type="imu"><topic>/imu</topic></sensor></link>
+<plugin name="old" filename="libgazebo_ros_p3d.so"><bodyName>l</bodyName><topicName>truth</topicName></plugin>
+<plugin name="v" filename="gz-sim-velocity-control-system"><topic>cmd_vel</topic></plugin>
+<plugin name="p" filename="gz-sim-pose-publisher-system"/></model></sdf>"""
+
+
+def test_a_namespace_comes_before_topics_of_sensors_of_ros_1_and_of_gazebo_sim(tmp_path: Path) -> None:
+    (tmp_path / "m.sdf").write_text(NAMED)
+    with simkit.load("empty", spawn=[{"model": tmp_path / "m.sdf", "name": "a", "namespace": "ns"}]) as sim:
+        assert {"/ns/imu", "/ns/truth", "/ns/cmd_vel", "/model/a/pose"} <= set(sim.topics())
+        assert [d for d in sim.diagnostics if d.severity == "warning"] == []
+
+
+def test_a_clash_of_two_robots_topics_names_the_namespace_as_remedy() -> None:
+    with simkit.load("empty", spawn=["turtlebot3_burger:0,0,0:a", "turtlebot3_burger:1,0,0:b"]) as sim:
+        hints = [d.hint for d in sim.diagnostics if d.code == "SK-SENSOR-027"]
+    assert len(hints) == 2
+    assert all("--spawn MODEL:x,y,yaw:NAME:NAMESPACE" in hint for hint in hints)
+
+
+def test_invalid_namespaces_are_reported_together() -> None:
+    spawn = ["turtlebot3_burger:0,0,0:a:b c", "turtlebot3_burger:0,0,0:b:2", {"model": "tiago", "namespace": 3}]
+    with pytest.raises(LoadError) as caught:
+        simkit.load("empty", spawn=[*spawn, "turtlebot3_burger:0,0,0:c:"])
+    problems = [d for d in caught.value.diagnostics if d.severity == "error"]
+    assert [d.code for d in problems] == ["SK-SPAWN-001"] * 4
+    assert "'b c'" in problems[0].message and "tb1" in problems[0].hint

@@ -274,4 +274,6 @@ def _report_shared_topic(engine: Engine, sensor: AttachedSensor, topic: str, oth
     else:
         owner, item = ("camera", "name") if other == sensor.scoped else ("sensor", "<topic>")
         hint = f"give each {owner} its own {item}, or remove the {item} of each {owner}"
+        if other.split("::")[0] != sensor.scoped.split("::")[0]:
+            hint = f"give each robot a namespace, --spawn MODEL:x,y,yaw:NAME:NAMESPACE; or {hint}"
         engine.reports.warning("SK-SENSOR-027", message, where, hint)

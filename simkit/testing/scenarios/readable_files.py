@@ -103,7 +103,7 @@ class ReadableFiles:
         return self.refusal(path)
 
     def spawn_refusal(self, spawn: str, folder: Path) -> Refusal | None:
-        """Return the refusal of a text `MODEL:x,y,yaw[:name]`; see `refusal`."""
+        """Return the refusal of a text `MODEL:x,y,yaw[:name[:namespace]]`; see `refusal`."""
         return self.source_refusal(split_spawn(spawn)[0], folder)
 
     def refused(self, spec: RunSpec) -> Iterator[tuple[tuple[object, ...], Refusal]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -17,7 +18,7 @@ from simkit.extend import Diagnostics, GivenOptions, add_to_report, argument, op
 
 if TYPE_CHECKING:
     from simkit_authoring.catalogue import Entry
-    from simkit_authoring.plugin_facts import Facts, Parameter, Service, Topic
+    from simkit_authoring.plugin_facts import Facts, Service
 
 plugin = typer.Typer(help="List, describe and create plugins.", no_args_is_help=True)
 
@@ -73,6 +74,7 @@ def show_info(
 ) -> None:
     """Print the parameters, topics, services and actions of a plugin."""
     from simkit_authoring.catalogue import common_facts, facts_of, find_entry
+    from simkit_authoring.plugin_tables import tables_of
 
     entry = find_entry(name, given.values.get("plugin_paths", ()))
     facts = facts_of(entry.cls)
@@ -93,11 +95,8 @@ def show_info(
     stdout_console().print(f"  from {entry.source or entry.origin}")
     if others:
         stdout_console().print(f"  other names: {', '.join(others)}")
-    _print_table("parameters", [_parameter_row(p) for p in facts.parameters])
-    _print_table("publishes", [_topic_row(t) for t in facts.topics if t.published])
-    _print_table("subscribes to", [_topic_row(t) for t in facts.topics if not t.published])
-    _print_table("services", [_service_row(s) for s in facts.services if not s.is_action])
-    _print_table("actions", [_service_row(s) for s in facts.services if s.is_action])
+    for title, rows in tables_of(facts).items():
+        _print_table(title, rows)
 
 
 @plugin.command("new")
@@ -153,64 +152,13 @@ def _first_sentence(text: str) -> str:
     return head + "." if dot else text
 
 
-def _print_table(title: str, rows: list[tuple[str, ...]]) -> None:
-    if not rows:
-        return
+def _print_table(title: str, rows: Sequence[tuple[str, ...]]) -> None:
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     stdout_console().print(f"\n{title}")
     for row in rows:
         stdout_console().print(
             "  " + "  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip()
         )
-
-
-def _parameter_row(p: Parameter) -> tuple[str, ...]:
-    kind = f"{p.size} numbers" if p.kind == "vector" and p.size else {"vector": "numbers"}.get(p.kind, p.kind)
-    notes = [_range(p), "one of " + ", ".join(map(repr, p.choices)) if p.choices else ""]
-    notes += ["repeatable" if p.repeated else "", "live" if p.live else "", p.says]
-    depth = "  " * (len(p.path) - 1)
-    return depth + p.path[-1], kind or "(taken)", _default(p), p.unit, "; ".join(filter(None, notes))
-
-
-def _range(p: Parameter) -> str:
-    if p.minimum is not None and p.maximum is not None:
-        return f"{p.minimum:g} to {p.maximum:g}"
-    if p.minimum is not None:
-        return f"at least {p.minimum:g}"
-    return f"at most {p.maximum:g}" if p.maximum is not None else ""
-
-
-def _default(p: Parameter) -> str:
-    if p.required:
-        return "required"
-    if isinstance(p.default, bool):
-        shown = str(p.default).lower()
-    elif isinstance(p.default, tuple):
-        shown = " ".join(_number(v) for v in p.default)
-    elif isinstance(p.default, (int, float)):
-        shown = _number(p.default)
-    else:
-        shown = str(p.default or "")
-    if p.instead:
-        shown = f"<{'>, else <'.join(p.instead)}>" + (f", else {shown}" if shown else "")
-    return shown
-
-
-def _number(value: object) -> str:
-    return f"{value:g}" if isinstance(value, float) else str(value)
-
-
-def _topic_row(t: Topic) -> tuple[str, ...]:
-    notes = ["latched" if t.latched else "", "named by " + _in_brackets(t.elements) if t.elements else ""]
-    return t.name, " or ".join(t.types), "; ".join(filter(None, notes))
-
-
-def _service_row(s: Service) -> tuple[str, ...]:
-    return s.name, s.type, "named by " + _in_brackets(s.elements) if s.elements else ""
-
-
-def _in_brackets(names: tuple[str, ...]) -> str:
-    return ", ".join(f"<{name}>" for name in names)
 
 
 # ---------------------------------------------------------------------- as JSON

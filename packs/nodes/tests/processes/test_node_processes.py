@@ -327,6 +327,39 @@ def test_a_program_ends_with_the_simulation(world: RunningWorld, run_node: RunNo
         assert "Traceback" not in process.text
 
 
+@pytest.mark.parametrize("spin", ["rclpy.spin(node)", "executor.spin()"])
+def test_spin_raises_if_the_simulation_ends_during_a_callback(
+    world: RunningWorld, run_node: RunNode, spin: str
+) -> None:
+    program = run_node(
+        f"""
+        import time, rclpy
+        from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+
+        rclpy.init()
+        node = rclpy.create_node("busy")
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+
+        def work():
+            print("works", flush=True)
+            while rclpy.ok():
+                time.sleep(0.001)
+
+        node.create_timer(0.01, work)
+        try:
+            {spin}
+        except ExternalShutdownException:
+            print("has raised", flush=True)
+            raise
+        """
+    )
+    program.wait_for("works")
+    world.close()
+    assert program.exit_code() == 2
+    assert "has raised" in program.lines
+
+
 @pytest.mark.parametrize(
     "call",
     [

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from simkit_nodes.host import current_program
 from simkit_nodes.ros_modules.rclpy.context import Context
-from simkit_nodes.ros_modules.rclpy.executors import SingleThreadedExecutor
+from simkit_nodes.ros_modules.rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from simkit_nodes.ros_modules.rclpy.impl.logging_severity import LoggingSeverity
 from simkit_nodes.ros_modules.rclpy.impl.rcutils_logger import log_state
 from simkit_nodes.ros_modules.rclpy.parameter import Parameter
@@ -151,12 +151,17 @@ def spin(node: Node, executor: Executor | None = None) -> None:
     Args:
         node: node.
         executor: executor; None for the global one.
+
+    Raises:
+        ExternalShutdownException: the simulation has ended.
     """
     executor = get_global_executor() if executor is None else executor
     is_added = executor.add_node(node)
     try:
         while executor.context.is_valid:
             executor.spin_once()
+        if executor.context.is_ended_from_outside:
+            raise ExternalShutdownException
     finally:
         if is_added:
             executor.remove_node(node)

@@ -28,12 +28,13 @@ class Context:
 
     Attributes:
         arguments: arguments after `--ros-args`, and what the simulation changes for the program.
+        is_ended_from_outside: True if Ctrl-C or the end of the simulation, in another process, has ended the context.
     """
 
     def __init__(self) -> None:
         self.arguments = RosArguments()
         self._callbacks: list[Callable[[], Callable[[], object] | None]] = []
-        self._is_initialized = self._is_shut_down = self._is_run_over = False
+        self._is_initialized = self._is_shut_down = self._is_run_over = self.is_ended_from_outside = False
         self._domain_id = 0
         self._handle = Handle()
 
@@ -118,7 +119,7 @@ class Context:
         if current_host().graph.has_simulated_time:
             self._is_run_over = True
         elif self.is_valid:
-            self._is_shut_down = True
+            self._is_shut_down = self.is_ended_from_outside = True
             current_host().wake()
 
     def on_shutdown(self, callback: Callable[[], object]) -> None:

@@ -149,9 +149,15 @@ class Executor:
     # ------------------------------------------------------------------ spinning
 
     def spin(self) -> None:
-        """Call callbacks until the context or the executor is shut down."""
+        """Call callbacks until the context or the executor is shut down.
+
+        Raises:
+            ExternalShutdownException: the simulation has ended.
+        """
         while self._context.is_valid and not self._is_shutdown:
             self.spin_once()
+        if self._context.is_ended_from_outside:
+            raise ExternalShutdownException
 
     def _end_wait_with(self, future: Any) -> None:
         """Have a future end the wait of this executor; it may be one of `asyncio` or `concurrent.futures`."""

@@ -158,12 +158,17 @@ def _run_keys(run: RunSpec) -> JsonObject:
     for name, described in packed_fields().items():
         value = run.value_of(described)
         if name == "spawn":
-            keys[name] = [{"file": model.source, "place": model.place, "name": model.name} for model in value]
+            keys[name] = [_spawned_keys(model) for model in value]
         elif described.packed == "first":
             keys[packed_folder(name)] = value
         elif value != described.default:
             later[name] = described.kind.plain(value)
     return {**keys, "run": later} if later else keys
+
+
+def _spawned_keys(model: SpawnedModel) -> JsonObject:
+    keys: JsonObject = {"file": model.source, "place": model.place, "name": model.name}
+    return keys | ({"namespace": model.namespace} if model.namespace else {})
 
 
 def read_manifest(data: bytes, path: str) -> Manifest:
@@ -344,7 +349,8 @@ def _parse_spawned(reader: _ManifestReader) -> SpawnedModel:
         if not numbers or len(place) not in (3, 4, 6):
             raise _InvalidValue(f"place: found {place!r:.60}, expected 3, 4 or 6 numbers")
     numbers_of_place = None if place is None else tuple(map(float, place))
-    return SpawnedModel(reader.text("file"), numbers_of_place, reader.optional("name", reader.text))
+    name, namespace = (reader.optional(key, reader.text) for key in ("name", "namespace"))
+    return SpawnedModel(reader.text("file"), numbers_of_place, name, namespace)
 
 
 def _parse_pair(pair: object) -> tuple[str, str]:
