@@ -34,7 +34,7 @@ _HANDLES = {
             "simkit.scene.world.SceneWorld",
             "simkit.runtime.contact.collision_contacts.Contact",
             "simkit.runtime.contact.rim_slip.WheelSlip",
-            *(f"simkit.testing.moment.moment.{name}" for name in _MOMENT),
+            *(f"simkit_verification.testing.moment.moment.{name}" for name in _MOMENT),
         ),
     ),
     "Plugins": (

@@ -51,7 +51,7 @@ def why(
 
     The command repeats the run up to this time. With --quiet, it prints only what slides or has a limit.
     """
-    from simkit.testing.moment.sentences import NOTHING_FOUND
+    from simkit_verification.testing.moment.sentences import NOTHING_FOUND
 
     with _opened_at(run, time, given, allow_code=allow_code) as sim:
         try:

@@ -137,7 +137,7 @@ class Moment:
     @property
     def findings(self) -> list[str]:
         """Sentences about what slides, has reached a limit, or slips."""
-        from simkit.testing.moment.sentences import findings
+        from simkit_verification.testing.moment.sentences import findings
 
         return findings(self)
 
@@ -148,7 +148,7 @@ class Moment:
         return {**fields, "contacts": pairs, "findings": self.findings}
 
     def __str__(self) -> str:
-        from simkit.testing.moment.sentences import report
+        from simkit_verification.testing.moment.sentences import report
 
         return "\n".join(report(self))
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 from simkit.runtime.contact.rim_slip import LEAST_SPEED, WheelSlip
 
 if TYPE_CHECKING:
-    from simkit.testing.moment.moment import ConstraintError, JointLoad, Moment, TouchingPair
+    from simkit_verification.testing.moment.moment import ConstraintError, JointLoad, Moment, TouchingPair
 
 LEAST_RATIO: Final = 0.05
 """Least share of the speed that a wheel loses by slip for a finding; a tyre that pulls slips by a few percent."""

@@ -13,7 +13,14 @@ from simkit.float_sum import float_sum
 from simkit.linear_algebra import norm
 from simkit.runtime.contact.collision_contacts import collision_table, find_contacts, slip_velocities
 from simkit.runtime.handles.handle import UnknownName, look_up
-from simkit.testing.moment.moment import SATURATED, ConstraintError, JointLoad, Moment, Numbers, TouchingPair
+from simkit_verification.testing.moment.moment import (
+    SATURATED,
+    ConstraintError,
+    JointLoad,
+    Moment,
+    Numbers,
+    TouchingPair,
+)
 
 if TYPE_CHECKING:
     from simkit.pose import Vector
