@@ -12,7 +12,7 @@ from typing import Any
 
 from site_pages import ROOT, github_anchor, outside_fences, repository_pages
 
-_MOMENT = ("Moment", "TouchingPair", "JointLoad", "ConstraintError")
+_MOMENT = ("moment.Moment", *(f"moment_contents.{name}" for name in ("TouchingPair", "JointLoad", "ConstraintError")))
 
 _HANDLES = {
     "Simulation": ("A running simulation, which `simkit.load` returns.", ("simkit.Simulation",)),
@@ -34,7 +34,7 @@ _HANDLES = {
             "simkit.scene.world.SceneWorld",
             "simkit.runtime.contact.collision_contacts.Contact",
             "simkit.runtime.contact.rim_slip.WheelSlip",
-            *(f"simkit_verification.testing.moment.moment.{name}" for name in _MOMENT),
+            *(f"simkit_verification.testing.moment.{name}" for name in _MOMENT),
         ),
     ),
     "Plugins": (

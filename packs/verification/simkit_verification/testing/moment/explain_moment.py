@@ -13,11 +13,11 @@ from simkit.float_sum import float_sum
 from simkit.linear_algebra import norm
 from simkit.runtime.contact.collision_contacts import collision_table, find_contacts, slip_velocities
 from simkit.runtime.handles.handle import UnknownName, look_up
-from simkit_verification.testing.moment.moment import (
+from simkit_verification.testing.moment.moment import Moment
+from simkit_verification.testing.moment.moment_contents import (
     SATURATED,
     ConstraintError,
     JointLoad,
-    Moment,
     Numbers,
     TouchingPair,
 )

@@ -1,4 +1,4 @@
-"""Sentences about a `Moment`, with numbers and units."""
+"""Sentences about a moment, with numbers and units."""
 
 from __future__ import annotations
 
@@ -9,7 +9,12 @@ from typing import TYPE_CHECKING, Final
 from simkit.runtime.contact.rim_slip import LEAST_SPEED, WheelSlip
 
 if TYPE_CHECKING:
-    from simkit_verification.testing.moment.moment import ConstraintError, JointLoad, Moment, TouchingPair
+    from simkit_verification.testing.moment.moment_contents import (
+        ConstraintError,
+        JointLoad,
+        MomentContents,
+        TouchingPair,
+    )
 
 LEAST_RATIO: Final = 0.05
 """Least share of the speed that a wheel loses by slip for a finding; a tyre that pulls slips by a few percent."""
@@ -22,7 +27,7 @@ NOTHING_FOUND: Final = "Nothing slides or slips, and no joint has reached a limi
 _MOST_LISTED: Final = 40  # lines of one kind
 
 
-def findings(moment: Moment) -> list[str]:
+def findings(moment: MomentContents) -> list[str]:
     """Return a sentence for each wheel that slips, contact that slides, limit that is reached, and large error."""
     cut = _Names(moment.model)
     slips = [wheel for wheel in moment.wheels if abs(wheel.ratio) >= LEAST_RATIO and abs(wheel.slip) >= LEAST_SPEED]
@@ -48,11 +53,11 @@ def findings(moment: Moment) -> list[str]:
     ]
 
 
-def report(moment: Moment) -> list[str]:
+def report(moment: MomentContents) -> list[str]:
     """Return all contents as lines, the findings first."""
     cut = _Names(moment.model)
     of_model = f", model {moment.model}" if moment.model else ""
-    found = moment.findings or [NOTHING_FOUND]
+    found = findings(moment) or [NOTHING_FOUND]
     return [
         f"{moment.world} at t = {moment.time:g} s (step {moment.tick}){of_model}",
         *(f"  {text}" for text in found),
