@@ -25,14 +25,12 @@ if TYPE_CHECKING:
     from simkit_learning.gym import make_vec as make_vec
     from simkit_learning.sweeps.sweep import sweep as sweep
     from simkit_nodes.programs import NodeProgram as NodeProgram
-    from simkit_verification.testing.moment.moment import Moment as Moment
 
 MODULES: Final[dict[str, str]] = {
     "sim.add_node": "simkit_nodes.lock_step",
     "sim.run_until": "simkit.testing.conditions.opened_condition",
     "sim.set_ros_parameters": "simkit_nodes.lock_step",
     "sim.view": "simkit_view.view.script_view",
-    "sim.why": "simkit_verification.testing.moment.explain_moment",
     "simkit.compare": "simkit_identification.comparison.compare",
     "simkit.fit": "simkit_identification.fitting.fit",
     "simkit.gym": "simkit_learning.gym",

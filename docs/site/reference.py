@@ -34,7 +34,7 @@ _HANDLES = {
             "simkit.scene.world.SceneWorld",
             "simkit.runtime.contact.collision_contacts.Contact",
             "simkit.runtime.contact.rim_slip.WheelSlip",
-            *(f"simkit_verification.testing.moment.{name}" for name in _MOMENT),
+            *(f"simkit.runtime.moment.{name}" for name in _MOMENT),
         ),
     ),
     "Plugins": (

@@ -28,6 +28,8 @@ from simkit.runtime.engine.snapshot import Snapshot, Snapshots, Stateful
 from simkit.runtime.engine.step_tasks import StepTasks
 from simkit.runtime.handles.model import Model
 from simkit.runtime.handles.notebook_tables import world_html
+from simkit.runtime.moment.explain_moment import explain_moment
+from simkit.runtime.moment.moment import Moment
 from simkit.runtime.portable_snapshot import PortableSnapshot, pack_snapshot, unpack_snapshot
 from simkit.runtime.script_entities import ScriptEntities
 from simkit.runtime.world_contents import WorldContents
@@ -39,7 +41,7 @@ if TYPE_CHECKING:
     import mujoco
 
     from simkit.diagnostics import Diagnostic, Diagnostics
-    from simkit.facade import Moment, NodeProgram
+    from simkit.facade import NodeProgram
     from simkit.runtime.communication.name_remapping import NameRemapping
     from simkit.runtime.engine.entity_structure import WorldStructure
     from simkit.runtime.engine.scheduler import Scheduler
@@ -418,9 +420,7 @@ class Simulation(ScriptEntities, ScriptGraph, InProcess):
         Raises:
             KeyError: no such model or joint; the message suggests the closest name.
         """
-        self.engine.check_open()
-        found: Moment = pack_module("sim.why").explain_moment(self, model, joint)
-        return found
+        return explain_moment(self, model, joint)
 
     def add_node(
         self,

@@ -26,6 +26,7 @@ from simkit.testing.golden.compare.runs import compare
 from simkit.testing.golden.store import (
     MAIN_FILE,
     golden_folder,
+    is_golden,
     line_of_key,
     read_golden,
     read_history,
@@ -96,7 +97,7 @@ def check_golden(
         )
     place = golden_folder(folder)
     golden = read_golden(place)
-    current_scenario = scenario or golden_scenario(place, golden, folders, allow_code, plugin_paths)
+    current_scenario = scenario or _current_scenario(place, golden, folders, allow_code, plugin_paths)
     current_scenario = permit_code(current_scenario, allow_code, plugin_paths)
     with _recorded_environment(golden.environment), _run_today(golden, current_scenario) as (run, elapsed):
         comparison = compare(golden, run)
@@ -146,17 +147,16 @@ def _append_world_changes(error: InputError, golden: RunRecord, scenario: RunSpe
 
 
 def golden_scenario(
-    place: Path,
-    golden: RunRecord,
-    folders: Sequence[FilePath],
-    allow_code: bool,
-    plugin_paths: Sequence[FilePath],
-) -> RunSpec:
-    """Return the scenario to run. If the scenario has a file, read the file again, because it may have been changed.
+    folder: FilePath,
+    *,
+    folders: Sequence[FilePath] = (),
+    allow_code: bool = False,
+    plugin_paths: Sequence[FilePath] = (),
+) -> RunSpec | None:
+    """Return the scenario of a golden run, which a check would run; None if a path is not a golden run.
 
     Args:
-        place: Folder of the golden run.
-        golden: Golden run.
+        folder: Folder.
         folders: Folders in which the golden run may name files, as in `check_golden`.
         allow_code: Allow the code that the golden run and its scenario name.
         plugin_paths: Allow the code in these folders only.
@@ -164,6 +164,20 @@ def golden_scenario(
     Raises:
         InputError: See `check_golden`.
     """
+    if not is_golden(folder):
+        return None
+    place = golden_folder(folder)
+    return _current_scenario(place, read_golden(place), folders, allow_code, plugin_paths)
+
+
+def _current_scenario(
+    place: Path,
+    golden: RunRecord,
+    folders: Sequence[FilePath],
+    allow_code: bool,
+    plugin_paths: Sequence[FilePath],
+) -> RunSpec:
+    """Return the scenario to run. If the scenario has a file, read the file again, because it may have been changed."""
     stored = golden.scenario
     if stored.file is not None or not (stored.test or stored.plugins):
         refused_files(place, stored, folders).raise_if_errors()

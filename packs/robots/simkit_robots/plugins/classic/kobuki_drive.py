@@ -14,7 +14,6 @@ from simkit import Params
 from simkit.extend import boolean, listens, number, publishes, text
 from simkit.float_sum import float_sum
 from simkit.plugins.classic.diff_drive import CommonDiffDriveOptions, GazeboRosDiffDrive, Pair
-from simkit.plugins.drives.ground_truth import WHEEL_MOTION
 from simkit.plugins.drives.odometry import COMMAND_TYPES, DeadReckoning
 from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, BodyTwist, LatePose
 from simkit.plugins.find_entities import find_joint
@@ -87,7 +86,7 @@ class GazeboRosKobuki(KobukiSensors, GazeboRosDiffDrive):
         publishes("odom", ODOMETRY),
         publishes("/tf", TRANSFORMS),
         publishes("ground_truth/odom", ODOMETRY),
-        publishes("ground_truth/wheel_slip", WHEEL_MOTION),
+        publishes("ground_truth/wheel_slip", "simkit_msgs/msg/WheelMotion"),
         publishes("joint_states", JOINT_STATE),
         *KobukiSensors.sensor_endpoints,
     )

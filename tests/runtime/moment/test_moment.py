@@ -8,7 +8,7 @@ import math
 import pytest
 
 import simkit
-from simkit_verification.testing.moment.moment import Moment
+from simkit.runtime.moment.moment import Moment
 
 INERTIA = "<inertia><ixx>0.01</ixx><iyy>0.01</iyy><izz>0.01</izz></inertia>"
 ANGLE = math.radians(20.0)

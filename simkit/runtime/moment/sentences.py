@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 from simkit.runtime.contact.rim_slip import LEAST_SPEED, WheelSlip
 
 if TYPE_CHECKING:
-    from simkit_verification.testing.moment.moment_contents import (
+    from simkit.runtime.moment.moment_contents import (
         ConstraintError,
         JointLoad,
         MomentContents,
@@ -21,8 +21,6 @@ LEAST_RATIO: Final = 0.05
 
 LEAST_ERROR: Final = 1e-3
 """Least error of a constraint for a finding [m or rad]."""
-
-NOTHING_FOUND: Final = "Nothing slides or slips, and no joint has reached a limit."
 
 _MOST_LISTED: Final = 40  # lines of one kind
 
@@ -53,11 +51,13 @@ def findings(moment: MomentContents) -> list[str]:
     ]
 
 
-def report(moment: MomentContents) -> list[str]:
-    """Return all contents as lines, the findings first."""
+def report(moment: MomentContents, *, brief: bool) -> list[str]:
+    """Return all contents as lines, the findings first; with `brief` the findings alone."""
+    found = findings(moment) or ["Nothing slides or slips, and no joint has reached a limit."]
+    if brief:
+        return found
     cut = _Names(moment.model)
     of_model = f", model {moment.model}" if moment.model else ""
-    found = findings(moment) or [NOTHING_FOUND]
     return [
         f"{moment.world} at t = {moment.time:g} s (step {moment.tick}){of_model}",
         *(f"  {text}" for text in found),

@@ -13,8 +13,8 @@ from simkit.float_sum import float_sum
 from simkit.linear_algebra import norm
 from simkit.runtime.contact.collision_contacts import collision_table, find_contacts, slip_velocities
 from simkit.runtime.handles.handle import UnknownName, look_up
-from simkit_verification.testing.moment.moment import Moment
-from simkit_verification.testing.moment.moment_contents import (
+from simkit.runtime.moment.moment import Moment
+from simkit.runtime.moment.moment_contents import (
     SATURATED,
     ConstraintError,
     JointLoad,
@@ -24,7 +24,8 @@ from simkit_verification.testing.moment.moment_contents import (
 
 if TYPE_CHECKING:
     from simkit.pose import Vector
-    from simkit.runtime import Joint, Simulation
+    from simkit.runtime.handles.joint import Joint
+    from simkit.runtime.script_entities import ScriptEntities
 
 _EQUALITY: Final = int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
 _LIMIT: Final = int(mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT)
@@ -32,7 +33,7 @@ _OF_JOINT: Final = int(mujoco.mjtTrn.mjTRN_JOINT)
 _PYRAMID: Final = int(mujoco.mjtCone.mjCONE_PYRAMIDAL)
 
 
-def explain_moment(sim: Simulation, model: str | None = None, joint: str | None = None) -> Moment:
+def explain_moment(sim: ScriptEntities, model: str | None = None, joint: str | None = None) -> Moment:
     """Read contacts, joints, constraints and wheels at the present time.
 
     Args:
@@ -56,9 +57,9 @@ def explain_moment(sim: Simulation, model: str | None = None, joint: str | None 
     wheels = [wheel for wheel in sim.wheel_slips(scoped) if names is None or wheel.joint in names]
     constraints = _constraints(sim, scoped, names)
     return Moment(
-        sim.world.name,
-        sim.time,
-        sim.tick,
+        sim.engine.world.name,
+        sim.engine.time,
+        sim.engine.physics.tick,
         scoped or "",
         tuple(_pairs(sim, prefix)),
         tuple(_loads(sim, joints.values())),
@@ -77,7 +78,7 @@ def _find_joint(joints: dict[str, Joint], name: str) -> Joint:
 # ---------------------------------------------------------------------- contacts
 
 
-def _pairs(sim: Simulation, prefix: str) -> Iterable[TouchingPair]:
+def _pairs(sim: ScriptEntities, prefix: str) -> Iterable[TouchingPair]:
     """Return the pairs of collisions that touch, with one whose scoped name has a prefix, in the engine's order."""
     compiled, data = sim.engine.compiled, sim.engine.physics.awake_data()
     model, table = compiled.model, collision_table(compiled)
@@ -117,8 +118,8 @@ def _pairs(sim: Simulation, prefix: str) -> Iterable[TouchingPair]:
 # ---------------------------------------------------------------------- joints
 
 
-def _loads(sim: Simulation, joints: Iterable[Joint]) -> Iterable[JointLoad]:
-    model, data = sim.mj_model, sim.engine.physics.awake_data()
+def _loads(sim: ScriptEntities, joints: Iterable[Joint]) -> Iterable[JointLoad]:
+    model, data = sim.engine.mj_model, sim.engine.physics.awake_data()
     stops, needed = _stops(data), _steady_efforts(model, data)
     for handle in joints:
         if not handle.dof or handle.type == "floating":
@@ -197,8 +198,8 @@ def _effort_limits(model: mujoco.MjModel, data: mujoco.MjData, handle: Joint) ->
 # ---------------------------------------------------------------------- constraints
 
 
-def _constraints(sim: Simulation, model_name: str | None, joints: set[str] | None) -> Iterable[ConstraintError]:
-    model, data = sim.mj_model, sim.engine.physics.awake_data()
+def _constraints(sim: ScriptEntities, model_name: str | None, joints: set[str] | None) -> Iterable[ConstraintError]:
+    model, data = sim.engine.mj_model, sim.engine.physics.awake_data()
     scoped_of = {n: name for name, binding in sim.engine.names.joints.items() for n in binding.joint_ids}
     rows_of: dict[int, list[int]] = {}
     for row in np.flatnonzero(data.efc_type == _EQUALITY).tolist():

@@ -7,8 +7,8 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from simkit_verification.testing.moment.moment_contents import MomentContents
-from simkit_verification.testing.moment.sentences import findings, report
+from simkit.runtime.moment.moment_contents import MomentContents
+from simkit.runtime.moment.sentences import findings, report
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -26,8 +26,16 @@ class Moment(MomentContents):
         pairs = [{**_row(pair), "slides": pair.slides} for pair in self.contacts]
         return {**fields, "contacts": pairs, "findings": self.findings}
 
+    def report(self, *, brief: bool = False) -> list[str]:
+        """Return the explanation as lines of text.
+
+        Args:
+            brief: only the findings, or that there are none.
+        """
+        return report(self, brief=brief)
+
     def __str__(self) -> str:
-        return "\n".join(report(self))
+        return "\n".join(self.report())
 
     def __repr__(self) -> str:
         counts = {"contact": self.contacts, "joint": self.joints, "constraint": self.constraints, "wheel": self.wheels}
