@@ -420,7 +420,7 @@ class Simulation(ScriptEntities, ScriptGraph, InProcess):
         Raises:
             KeyError: no such model or joint; the message suggests the closest name.
         """
-        return explain_moment(self, model, joint)
+        return explain_moment(self.engine, self.contents.open_handles, model, joint)
 
     def add_node(
         self,

@@ -12,6 +12,7 @@ import numpy as np
 from simkit.float_sum import float_sum
 from simkit.linear_algebra import norm
 from simkit.runtime.contact.collision_contacts import collision_table, find_contacts, slip_velocities
+from simkit.runtime.contact.rim_slip import list_wheel_slips
 from simkit.runtime.handles.handle import UnknownName, look_up
 from simkit.runtime.moment.moment import Moment
 from simkit.runtime.moment.moment_contents import (
@@ -24,8 +25,9 @@ from simkit.runtime.moment.moment_contents import (
 
 if TYPE_CHECKING:
     from simkit.pose import Vector
+    from simkit.runtime.engine.engine import Engine
+    from simkit.runtime.handles.entity_handles import EntityHandles
     from simkit.runtime.handles.joint import Joint
-    from simkit.runtime.script_entities import ScriptEntities
 
 _EQUALITY: Final = int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
 _LIMIT: Final = int(mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT)
@@ -33,11 +35,12 @@ _OF_JOINT: Final = int(mujoco.mjtTrn.mjTRN_JOINT)
 _PYRAMID: Final = int(mujoco.mjtCone.mjCONE_PYRAMIDAL)
 
 
-def explain_moment(sim: ScriptEntities, model: str | None = None, joint: str | None = None) -> Moment:
+def explain_moment(engine: Engine, handles: EntityHandles, model: str | None, joint: str | None) -> Moment:
     """Read contacts, joints, constraints and wheels at the present time.
 
     Args:
-        sim: simulation.
+        engine: engine of the simulation.
+        handles: models and joints of the simulation.
         model: scoped name of a model; None for all models.
         joint: scoped name of a joint, or its last name if only one joint has it: only this joint, its constraints, its
             wheel and the contacts of its child link. None for all joints.
@@ -45,24 +48,23 @@ def explain_moment(sim: ScriptEntities, model: str | None = None, joint: str | N
     Raises:
         KeyError: no such model or joint; the message suggests the closest name.
     """
-    scoped = None if model is None else sim.model(model).scoped
+    scoped = None if model is None else handles.model(model).scoped
     prefix = "" if scoped is None else f"{scoped}::"
-    joints = {
-        name: handle for name, handle in sim.contents.open_handles.tables["joint"].items() if name.startswith(prefix)
-    }
+    joints = {name: handle for name, handle in handles.tables["joint"].items() if name.startswith(prefix)}
     names: set[str] | None = None
     if joint is not None:
         found = _find_joint(joints, joint)
         joints, prefix, names = {found.scoped: found}, f"{found.scene.child_link}::", {found.scoped}
-    wheels = [wheel for wheel in sim.wheel_slips(scoped) if names is None or wheel.joint in names]
-    constraints = _constraints(sim, scoped, names)
+    slips = list_wheel_slips(engine.compiled, engine.physics.awake_data(), scoped)
+    wheels = [wheel for wheel in slips if names is None or wheel.joint in names]
+    constraints = _constraints(engine, scoped, names)
     return Moment(
-        sim.engine.world.name,
-        sim.engine.time,
-        sim.engine.physics.tick,
+        engine.world.name,
+        engine.time,
+        engine.physics.tick,
         scoped or "",
-        tuple(_pairs(sim, prefix)),
-        tuple(_loads(sim, joints.values())),
+        tuple(_pairs(engine, prefix)),
+        tuple(_loads(engine, joints.values())),
         tuple(sorted(constraints, key=lambda constraint: -constraint.error)),
         tuple(wheels),
     )
@@ -78,9 +80,9 @@ def _find_joint(joints: dict[str, Joint], name: str) -> Joint:
 # ---------------------------------------------------------------------- contacts
 
 
-def _pairs(sim: ScriptEntities, prefix: str) -> Iterable[TouchingPair]:
+def _pairs(engine: Engine, prefix: str) -> Iterable[TouchingPair]:
     """Return the pairs of collisions that touch, with one whose scoped name has a prefix, in the engine's order."""
-    compiled, data = sim.engine.compiled, sim.engine.physics.awake_data()
+    compiled, data = engine.compiled, engine.physics.awake_data()
     model, table = compiled.model, collision_table(compiled)
     selected = table.mask([name for name in table.names if name.startswith(prefix)])
     contacts = find_contacts(model, data, selected)
@@ -118,8 +120,8 @@ def _pairs(sim: ScriptEntities, prefix: str) -> Iterable[TouchingPair]:
 # ---------------------------------------------------------------------- joints
 
 
-def _loads(sim: ScriptEntities, joints: Iterable[Joint]) -> Iterable[JointLoad]:
-    model, data = sim.engine.mj_model, sim.engine.physics.awake_data()
+def _loads(engine: Engine, joints: Iterable[Joint]) -> Iterable[JointLoad]:
+    model, data = engine.mj_model, engine.physics.awake_data()
     stops, needed = _stops(data), _steady_efforts(model, data)
     for handle in joints:
         if not handle.dof or handle.type == "floating":
@@ -128,7 +130,7 @@ def _loads(sim: ScriptEntities, joints: Iterable[Joint]) -> Iterable[JointLoad]:
         effort = _numbers(handle.effort)
         own = _numbers(handle.effort_limit)
         limits = tuple(min(pair) for pair in zip(limits, (*own, *own * len(limits)), strict=False))
-        joint_ids = sim.engine.names.joint(handle.scoped).joint_ids
+        joint_ids = engine.names.joint(handle.scoped).joint_ids
         stop, stop_effort = "", 0.0
         for number in joint_ids:
             if number in stops:
@@ -198,9 +200,9 @@ def _effort_limits(model: mujoco.MjModel, data: mujoco.MjData, handle: Joint) ->
 # ---------------------------------------------------------------------- constraints
 
 
-def _constraints(sim: ScriptEntities, model_name: str | None, joints: set[str] | None) -> Iterable[ConstraintError]:
-    model, data = sim.engine.mj_model, sim.engine.physics.awake_data()
-    scoped_of = {n: name for name, binding in sim.engine.names.joints.items() for n in binding.joint_ids}
+def _constraints(engine: Engine, model_name: str | None, joints: set[str] | None) -> Iterable[ConstraintError]:
+    model, data = engine.mj_model, engine.physics.awake_data()
+    scoped_of = {n: name for name, binding in engine.names.joints.items() for n in binding.joint_ids}
     rows_of: dict[int, list[int]] = {}
     for row in np.flatnonzero(data.efc_type == _EQUALITY).tolist():
         rows_of.setdefault(int(data.efc_id[row]), []).append(row)
