@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import os
 import signal
+import sys
 import tempfile
 from collections.abc import Iterator
 
@@ -18,6 +19,11 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # A shell that begins the tests in the background has interrupts ignored, and a process that a test begins would
     # take that over: then no interrupt ends it.
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+# Containers often set this variable. Then each process that a test begins compiles all of simkit, which doubles its
+# time, and each run rewrites the assertions of all tests again, which takes 15 s of 26 s of the collection.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -10,6 +10,7 @@ import ast
 import re
 import sys
 from collections import defaultdict
+from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -66,13 +67,21 @@ def read_rooms() -> dict[str, tuple[int, set[str]]]:
 def imported_rooms(source: str) -> list[str]:
     """Return the rooms that a file imports."""
     names: list[str] = []
-    for node in ast.walk(ast.parse(source)):
+    for node in statements(ast.parse(source)):
         if isinstance(node, ast.ImportFrom):
             names += [f"{node.module}.{alias.name}" for alias in node.names]
         elif isinstance(node, ast.Import):
             names += [alias.name for alias in node.names]
     split = [name.split(".") for name in names]
     return [parts[1] if parts[0] == "simkit" else parts[0] for parts in split if len(parts) > 1 or parts[0] in PACKS]
+
+
+def statements(node: ast.AST) -> Iterator[ast.AST]:
+    """Yield the statements in a node, without their expressions, which take two thirds of the time."""
+    for child in ast.iter_child_nodes(node):
+        if not isinstance(child, ast.expr):
+            yield child
+            yield from statements(child)
 
 
 def level_of(room: str, arrows: dict[str, set[str]]) -> int:

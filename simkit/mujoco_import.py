@@ -182,7 +182,9 @@ def _installation_error(problem: str, repair: str = REINSTALL) -> InstallationEr
 
 
 def _first_line(error: Exception) -> str:
-    return next(iter(str(error).strip().splitlines()), type(error).__name__)
+    """Return the first line of a message, without a sentence that introduces the next line."""
+    line = next(iter(str(error).strip().splitlines()), type(error).__name__)
+    return line.rpartition(". ")[0] if line.endswith(":") and ". " in line else line
 
 
 def ignore_warning(_text: str) -> None:

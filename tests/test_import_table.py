@@ -225,8 +225,10 @@ def imports(module: str) -> tuple[Import, ...]:
 
 def _imports(node: ast.AST, kind: Kind, package: str) -> Iterator[Import]:
     for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.expr):  # no import is in an expression; to visit them takes two thirds of the time
+            continue
         inner = kind
-        if isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda) and kind == "module":
+        if isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef) and kind == "module":
             inner = "function"
         if isinstance(child, ast.If) and "TYPE_CHECKING" in ast.unparse(child.test):
             inner = "typing"

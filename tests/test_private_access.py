@@ -33,9 +33,9 @@ ALLOWED = {
 
 def private_accesses(source: str) -> list[str]:
     """Return the accesses of a file to private attributes that it does not define."""
-    tree = ast.parse(source)
+    nodes = list(ast.walk(ast.parse(source)))
     defined: set[str] = set()
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in ("self", "cls"):
             defined.add(node.attr)
         elif isinstance(node, (ast.FunctionDef, ast.ClassDef)):
@@ -48,7 +48,7 @@ def private_accesses(source: str) -> list[str]:
             defined.add(node.value)
     return [
         ast.unparse(node)
-        for node in ast.walk(tree)
+        for node in nodes
         if isinstance(node, ast.Attribute)
         and node.attr.startswith("_")
         and not node.attr.startswith("__")

@@ -7,6 +7,7 @@ others for whole arrays. An unstable sort orders equal keys by the width of the 
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -125,6 +126,8 @@ def _names(tree: ast.AST) -> Iterator[tuple[int, str]]:
 
 
 def _problems(text: str) -> list[str]:
+    if not re.search(r"\bnp\.|argsort|argpartition|norm\b|einsum| @=? |linalg", text):  # half of the files: 3 s
+        return []
     return [f"{line}: {reason}" for line, reason in _names(ast.parse(text))]
 
 

@@ -106,6 +106,45 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> str:
     return done.stdout
 
 
+MANY = """
+import pytest
+import simkit
+
+CART = '''<sdf version="1.9"><world name="w"><model name="cart"><link name="l"/>
+<joint name="rail" type="prismatic"><parent>world</parent><child>l</child><axis><xyz>1 0 0</xyz></axis></joint>
+</model></world></sdf>'''
+
+
+class Push(simkit.ModelPlugin):
+    def load(self, parent, params):
+        self.force, self.steps = params.number("force", required=True), 0
+
+    def before_step(self):
+        self.steps += 1
+        self.sim.joint("cart::rail").set_effort(self.force)
+
+
+@pytest.mark.parametrize("force", range(200))
+def test_push(simkit_world, force):
+    push = Push(force=force)
+    sim = simkit_world(CART, plugins=[push])
+    sim.run(0.1)
+    assert push.steps == 100
+    # 1 kg is what SDF gives a link without an inertial
+    assert abs(sim.joint("cart::rail").velocity - 0.1 * force) < 1e-9
+"""
+
+
+@pytest.mark.slow
+def test_two_hundred_worlds_in_parallel_processes_share_no_state(tmp_path: Path) -> None:
+    (tmp_path / "test_many.py").write_text(MANY)
+    words = ["-p", "simkit.pytest_plugin", "-p", "xdist", "-p", "no:cacheprovider", "-n", "2", "-q", str(tmp_path)]
+    environment = {**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1", "PYTHONPATH": str(ROOT)}
+    command = [sys.executable, "-m", "pytest", "-c", os.devnull, "--rootdir", str(tmp_path), *words]
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert "200 passed" in done.stdout, done.stdout[-3000:]
+
+
 def outcome(report: str, test: str) -> list[str]:
     """What the summary says of a test: one word, or two where its end failed too."""
     return re.findall(rf"^([A-Z]+) \S*::{test}\b", report, re.MULTILINE)

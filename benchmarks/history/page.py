@@ -16,14 +16,12 @@ Entry = Mapping[str, Any]
 
 _HEAD = """## Against MuJoCo alone
 
-How fast simkit is, version by version, as the ratio to MuJoCo alone on the same compiled model. Both take turns in one
-process. A ratio of 1 is the speed of MuJoCo; less is faster. In a ratio of 2, half of the time is the physics, and half
-is what a simulator adds: plugins, sensors with their noise, and messages.
+Both take turns in one process, on the same compiled model. A ratio of 1 is the speed of MuJoCo; less is faster. The
+rest of a ratio above 1 is what a simulator adds: plugins, sensors with their noise, and messages.
 
 The robot of the first rows is a TurtleBot3 waffle in `turtlebot3_world`, with steps of 1 ms. "Main job" is its drive of
-36 s by `worlds/turtlebot3_world_drive.yaml`; recorded, it writes nine topics to a bag. [The other
-benchmarks](../benchmarks/README.md) measure parts in more detail. Their ratios differ from those of this page where
-their robot stands still, their time is divided otherwise, or other programs ran.
+36 s; recorded, it writes nine topics to a bag. [The other benchmarks](../benchmarks/README.md) measure parts in more
+detail.
 
 Each entry in [benchmarks/history/entries](../benchmarks/history/entries) names its commit, processor and versions:
 
@@ -52,9 +50,7 @@ def page_text(entries: Sequence[Entry]) -> str:
     """Return the text of the page."""
     figures = tomllib.loads((FOLDER / "figures.toml").read_text(encoding="utf-8"))
     costs = (FOLDER / "costs.md").read_text(encoding="utf-8")
-    return "\n".join(
-        ("# Speed\n", costs, _HEAD, last_entry(entries), history(entries), peers(figures), memory(figures))
-    )
+    return "\n".join(("# Speed\n", costs, _HEAD, last_entry(entries), history(), peers(figures), memory(figures)))
 
 
 def amount(name: str, value: float) -> str:
@@ -95,22 +91,14 @@ def last_entry(entries: Sequence[Entry]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def history(entries: Sequence[Entry]) -> str:
-    """Return the plot and the table of all entries."""
+def history() -> str:
+    """Return the plot of all entries."""
     lines = [
         "## By version\n",
         "![Ratio to MuJoCo alone of each measurement, over the commits](images/speed.svg)\n",
-        "Other programs ran during these measurements: two entries of one commit differ by up to 10 %. The check of",
-        "two commits is more exact, because it alternates between them. MuJoCo steps the model that the commit",
-        "compiles: where a commit makes other shapes of a mesh, as for `dense_scan`, MuJoCo's side changes.\n",
-        "| | " + " | ".join(f"`{entry['commit'][:8]}`" for entry in entries) + " |",
-        "|---|" + "---|" * len(entries),
-        "| date | " + " | ".join(entry["release"] or entry["date"][:10] for entry in entries) + " |",
+        "Two entries of one commit differ by up to 10 %, because other programs ran. The check of two commits is more",
+        "exact, because it alternates between them. The entries have the numbers.",
     ]
-    for name in CASES:
-        ratios = (entry["ratios"].get(name) for entry in entries)
-        lines.append(f"| `{name}` | " + " | ".join(f"{found['ratio']:.2f}" if found else "" for found in ratios) + " |")
-    lines.append("\nAn empty cell: the commit has no such function, or not under its present name.")
     return "\n".join(lines) + "\n"
 
 

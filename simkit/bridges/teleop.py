@@ -45,6 +45,7 @@ class TeleopTarget:
         linear, angular: lowest and highest forward speed [m/s] and yaw rate [rad/s]; infinite if unknown.
         linear_step, angular_step: change of speed [m/s] and yaw rate [rad/s] per key.
         sideways: True if the robot can drive sideways; the limits are those of the forward speed.
+        command_timeout: simulated time after a command at which the drive stops by itself [s]; infinite for never.
         key_commands: effect of each key, if the drive plugin has keys of its own, which replace those of `Teleop`.
         key_help: line that explains those keys.
     """
@@ -56,6 +57,7 @@ class TeleopTarget:
     linear_step: float = _COARSE
     angular_step: float = _TURN_STEP
     sideways: bool = False
+    command_timeout: float = math.inf
     key_commands: Mapping[str, KeyCommand] | None = None
     key_help: str = ""
 
@@ -86,7 +88,10 @@ def find_target(sim: Simulation, requested: str = "") -> TeleopTarget:
 
 
 def find_targets(sim: Simulation) -> list[TeleopTarget]:
-    """Return all robots that can be driven: one topic of each drive plugin, with `/cmd_vel` first."""
+    """Return all robots that can be driven: one topic of each drive plugin, with `/cmd_vel` first.
+
+    Programs that receive velocities are static models, and no robots: Nav2's `behavior_server` on `/cmd_vel_teleop`.
+    """
     topic_by_owner: dict[int, tuple[str, object]] = {}
     for topic, endpoint, types, role in sim.communication.bus.endpoints():
         if role == "takes" and endpoint.active and any(type_name in TWISTS for type_name in types):
@@ -94,6 +99,7 @@ def find_targets(sim: Simulation) -> list[TeleopTarget]:
             if topic == "/cmd_vel" != known[0]:
                 topic_by_owner[id(endpoint.owner)] = (topic, endpoint.owner)
     targets = [_describe_target(sim, topic, owner) for topic, owner in topic_by_owner.values()]
+    targets = [target for target in targets if not (target.model and sim.model(target.model).static)]
     return sorted(targets, key=lambda target: target.topic != "/cmd_vel")
 
 
@@ -128,6 +134,7 @@ def _describe_target(sim: Simulation, topic: str, owner: object) -> TeleopTarget
         _FINE if linear[1] <= _SLOW else _COARSE,
         _TURN_STEP,
         any(_HOLONOMIC_DRIVES.search(name) for name in names),
+        owner.command_timeout(topic) if hasattr(owner, "command_timeout") else math.inf,
         owner.key_commands(topic) if hasattr(owner, "key_commands") else None,
         getattr(owner, "key_help", ""),
     )

@@ -64,7 +64,7 @@ import simkit
 from simkit.mujoco_import import import_mujoco
 import_mujoco()
 from simkit.sensors.cameras.overview_image import render_view
-from simkit.sensors.cameras.renderer_choice import FALLBACK, describe_renderer
+from simkit.sensors.cameras.renderer_choice import FALLBACK, UNKNOWN_REQUEST, describe_renderer
 logging.disable()  # the note about the fallback is part of the result
 world = ("<sdf version='1.12'><world name='w'><model name='m'><static>true</static><link name='l'><visual name='v'>"
          "<geometry><sphere><radius>1</radius></sphere></geometry></visual></link></model></world></sdf>")
@@ -75,7 +75,8 @@ try:
             began = time.perf_counter()
             picture = render_view(sim, 320, 240)
             times.append(time.perf_counter() - began)
-        notes = [f"{d.code} {d.message}" for d in sim.diagnostics if d.code == FALLBACK]
+        notes = ["; ".join(filter(None, (f"{d.code} {d.message}", d.hint)))
+                 for d in sim.diagnostics if d.code in (FALLBACK, UNKNOWN_REQUEST)]
         print("OK", json.dumps([describe_renderer(sim), min(times), bool(picture.max() == picture.min()), notes]))
 except simkit.RenderError as error:
     print("NO", error)

@@ -92,7 +92,7 @@ def draw_chart(sources: Sequence[str], fields: Sequence[str], request: PlotReque
         curves += _with_styles(_series(source, fields, request), number, prefix, alone=len(sources) == 1)
     curves = [(series, style) for series, style in curves if _has_numbers(series)]
     if not curves:
-        raise InputError("SK-BAG-011", "nothing to plot: the fields have no samples")
+        raise InputError("SK-BAG-011", "nothing to plot: the fields have no finite numbers")
     if len(sources) > 1:
         curves.sort(key=lambda pair: pair[1].colour)
     if not request.title:
@@ -125,7 +125,7 @@ def _with_styles(series: list[Series], number: int, prefix: str, *, alone: bool)
 
 def _has_numbers(series: Series) -> bool:
     if not series.count:
-        print_note(f"note: {series.label}: no samples, left out")
+        print_note(f"note: {series.label}: no finite numbers, left out")
     return bool(series.count)
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 from simkit.cli.run_loop import Interrupts, RunLoop
 from simkit.cli.run_part import OpenRun, RunPart
-from simkit.cli.run_verdict import RunVerdict
+from simkit.cli.run_verdict import INTERRUPT, RunVerdict
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins
 from simkit.cli.terminal.json_report import add_diagnostics, add_to_report
 from simkit.cli.terminal.output import JsonObject, print_diagnostics, print_status, stderr_console, stdout_console
@@ -148,7 +148,7 @@ def _endless_text(spec: RunSpec) -> str:
 
 def _interrupt_text(interrupts: Interrupts, loop: RunLoop) -> str:
     """Return the reason for an early end of a run; empty if the run was not interrupted."""
-    return "an interrupt" if interrupts.exit_code else loop.early_end()
+    return INTERRUPT if interrupts.exit_code else loop.early_end()
 
 
 def _report_unsent_velocity(problem: str) -> None:

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from simkit.testing.conditions import CheckResult, Watch
 
 FAILED: Final = RegressionError.exit_code
+INTERRUPT: Final = "an interrupt"
+"""Reason for the end of a run by Ctrl-C or SIGTERM."""
 
 
 class RunVerdict:

@@ -32,6 +32,14 @@ _UNKNOWN_NAME: Final = re.compile(
     r"(\w+) (?:target )?'([^']*)' (?:not found|for actuator)|unknown \w+ (?:\w+ )*'([^']*)'"
 )
 
+_HINTS: Final = {
+    "free joint can only be used on top level": "move its body into <worldbody>, or give it other joints",
+    "larger than mjMINVAL": "give the body an <inertial>, or a geom with mass, or remove its joints",
+    "positive eigenvalues": "check the signs and units of the <inertial>",
+    "A + B >= C": "correct the <inertial>, or set <compiler balanceinertia='true'/>",
+}
+"""Remedies for messages of the engine, by a part of the message."""
+
 LengthRanges = dict[str, tuple[float, float]]
 
 _RANGE_SCRIPT: Final = """
@@ -205,7 +213,7 @@ def _collect_warnings() -> Iterator[list[str]]:
 def _report_refusal(text: str, file: MjcfText, diagnostics: Diagnostics) -> None:
     message, where = _locate_message(text, file)
     match = _UNKNOWN_NAME.search(message)
-    hint = ""
+    hint = next((hint for part, hint in _HINTS.items() if part in message), "")
     if match is not None:
         name = match[2] or match[3] or ""
         hint = did_you_mean(name, _element_names(file))

@@ -129,7 +129,7 @@ def add_idle_armature(
                 "SK-JOINT-016",
                 f"joint {joint} ({scene.type}) of link {link} moves no mass: the joint gets an armature of {armature}",
                 scene.where if scene.where.line else binding.scene.where,
-                "give the link an <inertial>, or fix it",
+                "give the link an <inertial>, or make the joint fixed",
             )
     if is_changed:
         mujoco.mj_setConst(model, data)

@@ -53,8 +53,11 @@ The dynamics of a robot of point masses then change by less than a millionth.
 LEAST_MASS: Final = 1e-9
 """Least mass [kg]; MuJoCo moves nothing lighter than 1e-15."""
 
+ENGINE_LEAST_MOMENT: Final = 1e-14
+"""Moment of inertia [kg·m²] up to which MuJoCo refuses a body."""
+
 LEAST_MOMENT: Final = 1e-12
-"""Least moment of inertia [kg·m²]; MuJoCo refuses moments below 1e-14."""
+"""Least moment of inertia [kg·m²] that simkit uses."""
 
 _NONE: Final[Six] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 _ROUNDING: Final = 1e-12
@@ -85,7 +88,8 @@ class InertiaRepair:
         if self.verdict == "unbalanced":
             return f"principal moments {moments} kg m2: A + B falls short of C by {100 * self.lack:.3g} % of C"
         if self.verdict in ("mended", "beyond"):
-            return f"principal moments {moments} kg m2: each must be positive"
+            least = "positive" if self.old[0] <= 0 else f"larger than {ENGINE_LEAST_MOMENT:g}"
+            return f"principal moments {moments} kg m2: each must be {least}"
         return ""
 
 
@@ -117,14 +121,14 @@ def repair_inertia(inertial: Inertial, slack: float = 2 * _ROUNDING) -> InertiaR
     """
     if not any(inertial.inertia[3:]):  # fast path: most tensors are diagonal and need no eigenvalues
         a, b, c = sorted(float(v) for v in inertial.inertia[:3])
-        if a > 1e-14 and c - b - a <= -_ROUNDING * c:
+        if a > ENGINE_LEAST_MOMENT and c - b - a <= -_ROUNDING * c:
             return InertiaRepair(inertial, "sound", (a, b, c), (a, b, c))
     values, axes = eigh(inertia_matrix(inertial.inertia))
     old = _as_vector(values)
     floor = max(LEAST_MOMENT, LEAST_RADIUS**2 * inertial.mass)
     lack = float(values[2] - values[1] - values[0])
     part = max(0.0, lack / float(values[2])) if values[2] > 0 else 0.0
-    if values[0] > 1e-14 and values[0] > -_ROUNDING * values[2]:
+    if values[0] > ENGINE_LEAST_MOMENT and values[0] > -_ROUNDING * values[2]:
         if lack <= -_ROUNDING * values[2]:
             return InertiaRepair(inertial, "sound", old, old)
         new = values + (lack + slack * values[2]) / 3.0 * np.array((1.0, 1.0, -1.0))
@@ -196,7 +200,7 @@ def _with_some_mass(members: list[SceneLink], diagnostics: Diagnostics) -> dict[
     """Return the inertias of links with an inertia but without mass; the first link gets the least mass."""
     foot = members[0]
     message = f"link {foot.scoped}: {foot.inertial.mass:g} kg is too light to move; {LEAST_MASS:g} kg are used"
-    diagnostics.warning("SK-PHYS-011", message, foot.where)
+    diagnostics.warning("SK-PHYS-011", message, foot.where, "give the link its mass")
     written = {m.scoped: _file_inertia(repair_inertia(m.inertial).inertial) for m in members}
     inertia = written[foot.scoped]
     written[foot.scoped] = BodyInertia(LEAST_MASS, inertia.com, inertia.inertia, inertia.exact)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -95,6 +96,7 @@ def find_inertia_fixes(source: Path, resource_paths: Sequence[FilePath] = ()) ->
 
     Raises:
         InputError: SK-LOAD-002 the file does not exist.
+        LoadError: a number cannot be read, or is NaN or infinite.
     """
     resolver = Resolver(list(resource_paths), missing_meshes=True)
     diagnostics = Diagnostics()
@@ -114,9 +116,13 @@ def find_inertia_fixes(source: Path, resource_paths: Sequence[FilePath] = ()) ->
         try:
             _, inertias = find_inertias(file)
         except (OSError, ValueError) as error:
+            diagnostics.raise_if_errors()  # they name the line of the number
             problems.append(f"{file}: {error}")
             continue
         for inertia in inertias:
+            if not all(map(math.isfinite, (inertia.mass, *inertia.moments))):
+                diagnostics.raise_if_errors()
+                continue  # of a static model, where it has no effect
             fix = _fix_inertia(file, inertia, by_place.get((file.resolve(), inertia.link)))
             fixes += [fix] if fix is not None else []
     return InertiaFixes(path, tuple(fixes), tuple(problems))

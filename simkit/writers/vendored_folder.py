@@ -9,10 +9,11 @@ import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from html import escape
 from pathlib import Path, PurePosixPath
+from typing import Any, cast
 from urllib.parse import unquote
 
 from simkit import progress
-from simkit.diagnostics import Diagnostics
+from simkit.diagnostics import Diagnostic, Diagnostics
 from simkit.errors import InputError
 from simkit.loaders import Document, Resolver, find_document
 from simkit.loaders.resources.bundled_models import turtlebot3_uri
@@ -232,6 +233,7 @@ def vendor(
     package_paths: PackagePaths | None = None,
     xacro_args: NamedValues | None = None,
     base: str = "auto",
+    diagnostics: Diagnostics | None = None,
 ) -> tuple[PurePosixPath, int]:
     """Write a self-contained folder and verify that it has the same content.
 
@@ -243,6 +245,7 @@ def vendor(
         package_paths: ROS package -> folder, or workspaces.
         xacro_args: arguments of a xacro file.
         base: base of a bare model: fixed, floating or auto.
+        diagnostics: receives the problems of the source, such as files that are missing here and in the folder.
 
     Returns:
         File to open, relative to the folder, and the number of files.
@@ -255,7 +258,7 @@ def vendor(
         raise InputError("SK-CLI-016", f"{target} is not an empty folder; give a new or empty folder")
     options = {"resource_paths": resource_paths, "package_paths": package_paths, "base": base}
     before = describe(source, xacro_args=xacro_args, **options)
-    diagnostics = Diagnostics()
+    diagnostics = Diagnostics() if diagnostics is None else diagnostics
     resolver = Resolver([Path(path) for path in resource_paths], missing_meshes=True, package_paths=package_paths)
     document, expanded = find_document(source, resolver, diagnostics, xacro_args)
     diagnostics.raise_if_errors()
@@ -271,6 +274,8 @@ def vendor(
         differs = _difference(before, after) or _file_outside(after, stage)
         if differs:
             raise InputError("SK-CLI-019", f"the content of the folder would differ from {source}: {differs}")
+        found = [Diagnostic(**entry) for entry in cast(list[dict[str, Any]], before["diagnostics"])]
+        diagnostics.extend(d for d in found if d.severity != "error")  # errors: code that is not in a search path
         if target.exists():
             target.rmdir()
         stage.chmod(0o755)

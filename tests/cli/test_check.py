@@ -121,6 +121,56 @@ def test_new_numbers_are_shown_and_written_and_nothing_else_is_changed(here: Pat
     assert not [d for d in simkit.check("new.urdf") if d.code.startswith("SK-INERTIA")]
 
 
+def inertial(mass: float, *moments: object) -> str:
+    numbers = " ".join(f'{k}="{v}"' for k, v in zip(("ixx", "iyy", "izz", "ixy"), moments, strict=False))
+    return f'<inertial><mass value="{mass}"/><inertia {numbers}/></inertial>'
+
+
+BROKEN = {  # of a link of 0.1 × 0.1 × 0.2 m: the report of its line, and its help
+    "zero": (inertial(1, 0, 0, 0), "SK-PHYS-011", "(0, 0, 0) kg m2: each must be positive", "--fix-inertia"),
+    "tiny": (inertial(1, 1e-18, 1e-18, 1e-18), "SK-PHYS-011", "must be larger than 1e-14; (0.001667, 0.00", "--fix"),
+    "negative": (inertial(1, -1, 1, 1), "SK-INERTIA-002", "(-1, 1, 1) kg m2: each must be positive", "--fix-inertia"),
+    "products": (inertial(1, 1, 1, 1, 2), "SK-INERTIA-002", "(-1, 1, 3) kg m2: each must be positive", "--fix"),
+    "triangle": (inertial(1, 0.01, 0.01, 0.05), "SK-INERTIA-001", "A + B falls short of C by 60 % of C", "--fix"),
+    "units": (inertial(1, 1e4, 1e4, 1e4), "SK-LINT-008", "666667 times too large", "check the units"),
+    "density": (inertial(5000, 10, 10, 10), "SK-LINT-009", "are 2.5e+06 kg/m3", "check the units"),
+    "no mass": (inertial(0, 0.01, 0.01, 0.01), "SK-PHYS-011", "0 kg is too light to move", "give the link its mass"),
+    "no number": (inertial(1, "nan", 1, 1), "SK-URDF-013", '<inertia ixx="nan">: expected a number', ""),
+    "nothing": ("", "SK-JOINT-016", "joint r::j (revolute) of link r::arm moves no mass", "give the link an <inertial>"),
+}
+
+
+@pytest.mark.parametrize("case", BROKEN)
+def test_a_broken_inertia_is_reported_with_line_numbers_and_help(case: str, here: Path) -> None:
+    text, code, words, remedy = BROKEN[case]
+    (here / "r.urdf").write_text(f"""<robot name="r">
+<link name="base">{inertial(5, 0.1, 0.1, 0.1)}</link>
+<link name="arm">{text}<collision><geometry><box size="0.1 0.1 0.2"/></geometry></collision></link>
+<joint name="j" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 1 0"/>
+<limit lower="-1" upper="1" effort="9" velocity="1"/></joint></robot>""")
+    report = next(d for d in simkit.check("r.urdf") if d.severity != "note")
+    assert (report.code, report.line) == (code, 4 if case == "nothing" else 3)
+    assert words in report.message and remedy in report.hint, report
+
+
+@pytest.mark.parametrize("number", ["nan", "inf", "abc"])
+def test_an_inertia_that_is_not_a_number_cannot_be_corrected(number: str, here: Path) -> None:
+    (here / "arm.urdf").write_text(URDF.replace("0.001", number))
+    result = run("arm.urdf", "--fix-inertia")
+    assert result.exit_code == 2
+    assert f'arm.urdf:8: error SK-URDF-013: <inertia ixx="{number}">: expected a number' in result.stderr
+
+
+def test_a_nan_of_a_static_model_leaves_the_other_inertias_to_be_corrected(here: Path) -> None:
+    model = (
+        "<model name='{0}'><static>{1}</static><link name='a'><inertial><mass>1</mass>"
+        "<inertia><ixx>{2}</ixx><iyy>1</iyy><izz>9</izz></inertia></inertial></link></model>"
+    )
+    models = model.format("wall", "true", "nan") + model.format("m", "false", "1")
+    (here / "m.sdf").write_text(f"<sdf version='1.9'><world name='w'>{models}</world></sdf>")
+    assert "1 impossible inertias" in run("m.sdf", "--fix-inertia").stdout
+
+
 def test_missing_inertia_values_of_sdf_are_inserted(here: Path) -> None:
     text = (
         "<sdf version='1.9'><model name='m'><link name='a'><inertial><mass>2</mass>"

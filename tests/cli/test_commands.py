@@ -181,7 +181,8 @@ def test_a_plugin_that_raises_shows_its_traceback_and_the_recording_up_to_there(
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are sent otherwise there")
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_an_interrupt_leaves_everything_readable(world: Path, number: signal.Signals, code: int) -> None:
-    with simkit_process("run", world, "--rtf", 1, "--record", "run.mcap", cwd=world.parent) as process:
+    words = ("--rtf", 1, "--duration", 1000, "--record", "run.mcap", "--junit", "run.xml")
+    with simkit_process("run", world, *words, cwd=world.parent) as process:
         deadline = time.monotonic() + 60
         recording = world.parent / "run.mcap"
         while not (recording.exists() and recording.stat().st_size > 2000) and time.monotonic() < deadline:
@@ -193,6 +194,7 @@ def test_an_interrupt_leaves_everything_readable(world: Path, number: signal.Sig
     assert "Traceback" not in err
     with AnyReader([recording]) as reader:
         assert reader.message_count > 100
+    assert '<error message="ended with an interrupt"' in (world.parent / "run.xml").read_text()
 
 
 def test_a_run_with_a_picture_by_opengl_is_refused_without_it(world: Path) -> None:

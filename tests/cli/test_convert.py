@@ -323,6 +323,16 @@ def test_an_mjcf_file_whose_path_is_not_text_is_refused(here: Path) -> None:
     assert sorted(here.rglob("*")) == before
 
 
+def test_a_vendored_world_without_one_of_its_models_says_so(here: Path) -> None:
+    (here / "w.sdf").write_text(
+        "<sdf version='1.9'><world name='w'><include><uri>model://sun</uri></include>\n"
+        "<include><uri>https://fuel.gazebosim.org/1.0/openrobotics/models/none</uri></include></world></sdf>"
+    )
+    result = run("vendor", "w.sdf", "box")
+    assert result.exit_code == 0
+    assert "w.sdf:2: warning SK-URI-002" in result.stderr and "simkit fetch w.sdf" in result.stderr
+
+
 def test_a_world_with_errors_leaves_nothing_behind(here: Path) -> None:
     (here / "w.sdf").write_text(
         "<sdf version='1.9'><world name='w'><include><uri>model://none</uri></include></world></sdf>"

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import simkit
-from simkit.bridges.teleop import Teleop, find_target
+from simkit.bridges.teleop import Teleop, find_target, find_targets
 from simkit.cli.run_parts.keyboard import RunKeys
 from simkit.cli.terminal.teleop_display import DriverLine
 from simkit.errors import InputError
@@ -315,6 +315,16 @@ def test_the_topic_is_the_only_one_or_the_one_that_is_named() -> None:
             find_target(sim, "/model/c/cmd_vel")
     with simkit.load(world()) as sim, pytest.raises(InputError, match="SK-CLI-051 .*the world has no velocity topic"):
         find_target(sim)
+
+
+def test_a_static_model_that_receives_velocities_is_a_program_and_no_robot() -> None:
+    class Program(simkit.ModelPlugin):
+        def load(self, parent: simkit.Model, params: simkit.Params) -> None:
+            self.listen("/cmd_vel_teleop", "geometry_msgs/msg/Twist", print)
+
+    program = '<model name="server"><static>true</static><link name="l"/></model>'
+    with simkit.load(world(sled(), program), plugins=[("server", Program())]) as sim:
+        assert [target.model for target in find_targets(sim)] == ["sled"]
 
 
 def test_two_topics_of_one_drive_are_one_robot_with_the_limits_of_its_controller() -> None:

@@ -7,6 +7,7 @@ one with two arms.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from functools import cache
 from importlib import metadata
 from pathlib import Path
@@ -68,6 +69,17 @@ def test_nothing_of_it_is_an_error_and_no_mesh_is_missing(robot: Any) -> None:
     assert not [d for d in sim.diagnostics if "not found" in d.message]
     if name != "tiago_dual":  # that one names `wheel_{side}_joint`, which no joint is called
         assert not [d for d in sim.diagnostics if d.code.startswith("SK-URDF") and d.severity == "warning"]
+
+
+def test_the_warnings_of_its_report_are_these(robot: Any) -> None:
+    """Transmissions of unknown types, no parameter file, a namespace without use, and hulls of concave meshes."""
+    name, sim = robot
+    unknown = {"tiago": 33, "tiago_dual": 66, "tiago_no_hand": 0}[name]
+    expected = {"SK-CONTROL-008": unknown, "SK-CONTROL-018": 1, "SK-PARAM-003": 1}
+    expected |= {"SK-MESH-004": 3 if name == "tiago_no_hand" else 4, "SK-URDF-021": 3 if name == "tiago_dual" else 0}
+    found = Counter(d.code for d in sim.diagnostics if d.severity == "warning")
+    assert found == Counter(expected)
+    assert all(d.file == str(ROBOTS[name]) and d.line for d in sim.diagnostics if d.severity == "warning")
 
 
 def test_its_mass_is_the_sum_of_the_file(robot: Any) -> None:

@@ -1,6 +1,6 @@
 // The theme's search reads - + : ^ ~ * as operators and joins words by "or". People type --cmd-vel, /cmd_vel, package://.
 // Of a word with parts, all parts are required. A plain word is shortened to its stem, and the whole word counts more.
-// Five words and more are a message: its rare words count in every text, not only in titles.
+// Five words, or three with seven parts, are a message: its rare words count in every text, not only in titles.
 const COMMON_WORDS = new Set(("a all an and are as at be by can do does for from have how i in is it me my no not of on or " +
   "so the there this to too was what when where why will with").split(" "));
 
@@ -8,7 +8,7 @@ function searchQuery(typed) {
   if (typed.includes('"')) return typed;
   const words = typed.toLowerCase().split(/\s+/).map((word) => word.split(/[^\p{L}\p{N}]+/u).filter(Boolean));
   const rare = words.filter((parts) => parts.length > 1 || (parts.length && !COMMON_WORDS.has(parts[0])));
-  if (rare.length > 4) return rare.flat().flatMap((word) => [`text:${word}^10`, `text:${stem(word)}`]).join(" ");
+  if (rare.length > 4 || (rare.length > 2 && rare.flat().length > 6)) return rare.flat().flatMap((word) => [`text:${word}^10`, `text:${stem(word)}`]).join(" ");
   return (rare.length ? rare : words).flatMap((parts) => {
     const last = parts[parts.length - 1];
     if (parts.length < 2) return parts.flatMap((word) => [`${word}^10`, `${stem(word)}*`]);

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from simkit.cli.run_part import RunPart
-from simkit.cli.run_verdict import RunVerdict
+from simkit.cli.run_verdict import INTERRUPT, RunVerdict
 from simkit.cli.terminal.options import option
 from simkit.run_spec import RunSpec
 
@@ -50,7 +50,9 @@ def _cases(verdict: RunVerdict, error: BaseException | None) -> list[JunitCase]:
     text = verdict.wall_timeout_text() if verdict.reason == "wall_timeout" else ""
     failed = (text, text) if text else None
     raised = None
-    if error is not None and not text:
+    if verdict.reason == INTERRUPT:
+        raised = (f"ended with {INTERRUPT}",) * 2
+    elif error is not None and not text:
         lines = str(error).splitlines() or [type(error).__name__]
         raised = (lines[0], "\n".join(lines))
     cases = [JunitCase("run", group, seconds, failure=failed, error=raised)]

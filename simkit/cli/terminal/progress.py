@@ -98,7 +98,8 @@ class Progress:
         factor = self._factor()
         end = f" of {self._duration:g}" if self._duration is not None else ""
         state = ("   paused", "bold yellow") if self._sim.paused else f"   {factor:.2f} × real time"
-        head = Text.assemble((f"t = {self._sim.time:.2f}{end} s", "bold"), state)
+        digits = 3 if self._sim.paused else 2  # a single step is often 1 ms
+        head = Text.assemble((f"t = {self._sim.time:.{digits}f}{end} s", "bold"), state)
         status = [Text(line, overflow="fold") for line in self._status_lines]
         if self._lines is not None:
             return Group(head, *status, *(Text(line, no_wrap=True, overflow="ellipsis") for line in self._lines()))

@@ -8,10 +8,11 @@ from typing import Final
 
 import mujoco
 
+from simkit.compiler.actuator_gains import unstable_gains
 from simkit.compiler.first_state import first_mass_matrix, first_state, inverse_inertia
 from simkit.compiler.name_map import JointBinding
 from simkit.compiler.spec_builder import Compiled
-from simkit.diagnostics import Diagnostics, Where
+from simkit.diagnostics import NOWHERE, Diagnostics, Where
 from simkit.params import Params
 from simkit.scene import SceneWorld
 
@@ -49,6 +50,7 @@ def check_joints(world: SceneWorld, compiled: Compiled, diagnostics: Diagnostics
         _check_range(joint, diagnostics)
         _check_spring(joint, inertias, step, diagnostics)
     _check_servos(compiled, inertias, step, diagnostics)
+    _check_actuators(compiled, diagnostics)
     for model in world.models:
         for nested in model.all_models():
             for plugin in nested.plugins:
@@ -110,6 +112,13 @@ def _check_servos(compiled: Compiled, inertias: _JointInertia, step: float, diag
                     f"step of {step * 1e3:g} ms on an inertia of {inertia:.3g}; {most:.3g} is used"
                 )
                 diagnostics.warning("SK-LINT-003", message, joint.scene.where, "use a smaller gain or a smaller step")
+
+
+def _check_actuators(compiled: Compiled, diagnostics: Diagnostics) -> None:
+    """Report actuators of MJCF that diverge; those of plugins have stable gains."""
+    places = {dof: joint.scene.where for joint in compiled.names.joints.values() for dof in joint.dofs}
+    for gain in unstable_gains(compiled.model):
+        diagnostics.warning("SK-LINT-003", gain.message, places.get(gain.dof, NOWHERE), gain.hint)
 
 
 def controller_gains(params: Params, name: str, where: Where) -> Iterator[JointGains]:

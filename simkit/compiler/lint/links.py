@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from simkit.compiler.first_state import first_state
 from simkit.compiler.name_map import LinkBinding
+from simkit.compiler.refused_inertias import LEAST_MASS
 from simkit.compiler.spec_builder import Compiled
 from simkit.diagnostics import Diagnostics
 from simkit.float_sum import float_sum
@@ -76,7 +77,7 @@ def _check_inertia(
     foot = min(links, key=lambda link: link.body)
     mass, centre, tensor = _total_inertia(model, state, [link.body for link in links])
     corners = _corners(model, state, (g for link in links for g in (*link.geoms, *link.visuals)))
-    if corners is None or mass <= 0:
+    if corners is None or mass <= LEAST_MASS:  # a missing mass is reported as such
         return
     farthest = max(float(np.linalg.norm(corners - centre, axis=1).max()), LEAST_EXTENT)
     gyration = float(np.sqrt(max(eigvalsh(tensor)[2], 0.0) / mass))

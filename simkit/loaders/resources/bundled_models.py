@@ -94,7 +94,8 @@ def turtlebot3_uri(uri: str, where: Where, diagnostics: Diagnostics) -> str | No
         return uri
     name = os.environ.get("TURTLEBOT3_MODEL", "").strip()
     if not name:
-        diagnostics.note("SK-URI-008", f"TURTLEBOT3_MODEL is not set; the robot is a {_DEFAULT}", where)
+        message = f"TURTLEBOT3_MODEL is not set; the robot is a {_DEFAULT}"
+        diagnostics.note("SK-URI-008", message, where, f"set TURTLEBOT3_MODEL to {', '.join(MODELS)}")
         name = _DEFAULT
     if name not in MODELS:
         message = f"TURTLEBOT3_MODEL={name}: unknown robot; known are {', '.join(MODELS)}"

@@ -128,6 +128,11 @@ class PackageIndex:
                 return True
         return False
 
+    def roots(self, around: Iterable[Path]) -> list[Path]:
+        """Return the folders below which all packages are searched, without folders that are in another one."""
+        places = list(self._all_places(tuple(dict.fromkeys(around))))
+        return [place for place in places if not any(other in place.parents for other in places)]
+
     def unfinished(self) -> list[Path]:
         """Return the folders whose search ended at a limit."""
         return [place for place, area in self._areas.items() if not area.is_complete]
@@ -164,7 +169,7 @@ class PackageIndex:
             yield self._offer(name, folder, reason)
 
     def _folders_of_that_name(self, name: str, around: tuple[Path, ...]) -> Iterator[Path]:
-        """Yield the packages whose folder has this name, and such a folder beside the package of the file."""
+        """Yield packages in a folder of this name; such folders beside the file's package and in those of the user."""
         for folder in self.packages(around):
             if folder.name == name:
                 yield self._offer(name, folder, f"no package is named {name}; {self._shown(folder)} is used")
@@ -173,7 +178,7 @@ class PackageIndex:
             home = enclosing_package(folder)
             if home is not None and not is_private(join_below(home.parent, name)):
                 yield self._offer(name, join_below(home.parent, name))
-        for path in self.paths:
+        for path in (*self.workspaces, *self.paths):
             yield self._offer(name, join_below(path, name))
 
     def _similar(self, name: str, around: tuple[Path, ...]) -> Iterator[Path]:

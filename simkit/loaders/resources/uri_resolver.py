@@ -202,7 +202,7 @@ class Resolver(UriCandidates):
         above = self._hint_above(uri, relative_to)
         folder, tried = self.find_package(name, relative_to) if scheme == "package" else (None, [])
         if scheme == "package" and folder is None:
-            message = f"{uri}: the package {name!r} is not found{self.format_searched_packages(tried)}"
+            message = f"{uri}: the package {name!r} is not found{self.format_searched_packages(tried, relative_to)}"
             hint = above or f"give its folder, --package-path {name}=DIR, or its workspace, --package-path DIR"
             return "SK-URI-009", message, f"{near} or {hint}" if near and not above else hint
         message = f"{uri} is not found{format_searched(places)}"
@@ -224,10 +224,13 @@ class Resolver(UriCandidates):
         """Record the error that a file exists, but that a symbolic link leads to it out of the folders of the user."""
         diagnostics.error("SK-URI-003", f"{uri}: {self.trusted.refusal(path)}", where, self.trusted.help(path))
 
-    def format_searched_packages(self, places: list[Path]) -> str:
+    def format_searched_packages(self, places: list[Path], relative_to: Path | None) -> str:
         """Format the searched paths for a message about a package, and the searches that stopped at a limit."""
         unfinished = ", ".join(str(place) for place in self.packages.unfinished())
-        return format_searched(places) + (f"; the search below {unfinished} ended at its limit" if unfinished else "")
+        roots = [f"below {root}" for root in self.packages.roots(self._around(relative_to))]
+        return format_searched([*roots, *places]) + (
+            f"; the search below {unfinished} ended at its limit" if unfinished else ""
+        )
 
     def _is_elsewhere(self, uri: str, file: Path, relative_to: Path | None) -> bool:
         """Check whether a file was found in another folder than its URI names, for a reason that is not yet noted."""

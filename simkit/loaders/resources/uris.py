@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import stat
+from collections.abc import Sequence
 from itertools import islice
 from pathlib import Path
 from urllib.parse import unquote
@@ -84,7 +85,7 @@ def is_existing(path: Path) -> bool:
         return False
 
 
-def format_searched(places: list[Path] | None) -> str:
+def format_searched(places: Sequence[Path | str] | None) -> str:
     """Format the searched paths for a message."""
     if not places:
         return ""

@@ -96,6 +96,7 @@ def _inertial(name: str, link: Params) -> Inertial:
     kilograms = attribute_number(mass, "value", owner=f"link {name!r}")
     if kilograms < 0:
         mass.error("SK-URDF-016", f"link {name!r} has mass {kilograms:g} kg; it cannot be negative")
+        kilograms = 1.0
     if kilograms > HEAVIEST:
         report_bad_value(mass, "value", f"at most {HEAVIEST:g} kg")
         kilograms = 1.0

@@ -105,7 +105,7 @@ class FileAccess:
             self._packages[name] = f"package://{name}" if package_place is None else str(package_place)
             if package_place is None:
                 message = f"$(find {name}): the package is not found; package://{name} is used"
-                searched = self.resolver.format_searched_packages(tried)
+                searched = self.resolver.format_searched_packages(tried, folder)
                 hint = f"give its folder, --package-path {name}=DIR, or its workspace, --package-path DIR"
                 self.diagnostics.note("SK-XACRO-007", message + searched, self._where(), hint)
         return self._packages[name]

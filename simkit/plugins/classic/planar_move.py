@@ -146,6 +146,10 @@ class GazeboRosPlanarMove(KinematicPlugin):
         self.listen(options.command_topic, COMMAND_TYPES, self._on_command)
         self._outputs = DriveOutputs(self, options, (), lambda: self._reading()[0])
 
+    def command_timeout(self, _: str) -> float:
+        """Return the time for which a command stays active [s]."""
+        return self.options.timeout
+
     # ------------------------------------------------------------------ commands
 
     def _on_command(self, message: Twist | TwistStamped) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
+from operator import lt
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,6 +28,9 @@ class RecordError(SimkitError):
 
 class Recorder:
     """Recorder of published messages to a bag; a context manager around the run.
+
+    The log time of a message is the simulated time. After a reset, or a restored earlier snapshot, log times continue
+    from the last one, because readers sort by them and would mix the messages of both times; stamps begin again.
 
     Args:
         sim: simulation to record; every recorded sensor measures because of the recording.
@@ -61,6 +65,7 @@ class Recorder:
         self._bag: McapBag | None = open_bag(self.path, overwrite=overwrite)
         # while an image is rendered, later messages wait as bytes, so that all messages stay in order
         self._queue = MessageQueue(self._write, serialises=True)
+        self._newest_ns = self._shift_ns = 0  # newest log time, and log time minus simulated time
         self._first_tick = self._end_tick = 0  # ticks of the present second, from the first message of the second on
         self._taps = TopicTaps(sim, self._receiver_of, self._queue.deliver_ready)
         self._taps.open()
@@ -156,7 +161,7 @@ class Recorder:
 
     def _write(self, topics: list[str], ticks: list[int], contents: list[tuple[str, bytes]]) -> None:
         """Write serialised messages, each a tuple of type and CDR."""
-        bag, times = self._bag, self._sim.engine.clock.times_ns(ticks)
+        bag, times = self._bag, self._log_times(self._sim.engine.clock.times_ns(ticks))
         if bag is None:
             return
         types, data = zip(*contents, strict=True)
@@ -175,6 +180,19 @@ class Recorder:
                 bag.write_raw(channel, content, time_ns)
         except OSError as error:
             self._stop(error)
+
+    def _log_times(self, times: list[int]) -> list[int]:
+        """Return the log times [ns] of messages in the order of their publication."""
+        if self._shift_ns or times[0] < self._newest_ns or any(map(lt, times[1:], times)):
+            shifted = []
+            newest, shift = self._newest_ns, self._shift_ns
+            for time_ns in times:
+                shift = max(shift, newest - time_ns)
+                newest = time_ns + shift
+                shifted.append(newest)
+            times, self._shift_ns = shifted, shift
+        self._newest_ns = times[-1]
+        return times
 
     def _stop(self, error: OSError) -> None:
         """Store an error instead of raising it, because the publisher that calls the recorder did not cause it."""

@@ -277,7 +277,8 @@ def check_target(path: Path, *, overwrite: bool = False) -> None:
         InputError: SK-BAG-001 the path exists; SK-BAG-002 the path is not writable.
     """
     if _path_exists(path) and not overwrite:
-        raise InputError("SK-BAG-001", f"{path} already exists", help="replace it with --force")
+        remedy = "replace it with --force, in Python with overwrite=True"
+        raise InputError("SK-BAG-001", f"{path} already exists", help=remedy)
     if path.is_dir() and is_single_file(path):
         raise InputError("SK-BAG-002", f"cannot write {path}: it is a folder")
     if is_single_file(path) and not path.absolute().parent.is_dir():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final, NamedTuple
@@ -10,6 +11,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.compiler.actuator_gains import unstable_gains
 from simkit.compiler.engine_options import has_engine_contacts
 from simkit.errors import SimulationDiverged
 from simkit.linear_algebra import squared_length
@@ -25,6 +27,7 @@ from simkit.runtime.engine.sleep import RestState, Sleep
 BAD_POSITION: Final = int(mujoco.mjtWarning.mjWARN_BADQPOS)
 BAD_VELOCITY: Final = int(mujoco.mjtWarning.mjWARN_BADQVEL)
 BAD_ACCELERATION: Final = int(mujoco.mjtWarning.mjWARN_BADQACC)
+_ENGINE_TEXT: Final = re.compile(r"in Q(?:VEL|ACC) at DOF (\d+)\..* Time = ([\d.]+)\.$")
 _BAD: Final = (BAD_POSITION, BAD_VELOCITY, BAD_ACCELERATION)
 
 
@@ -64,16 +67,33 @@ def divergence(model: mujoco.MjModel, data: mujoco.MjData, clock: Clock, tick: i
     """
     counts = data.warning.number
     first = max(0, tick - max(int(counts[w]) for w in _BAD))
-    dof = next((int(i) for a in (data.qvel, data.qacc) for i in np.flatnonzero(~(np.abs(a) < 1e10))), None)
+    text = ENGINE_WARNINGS.take_first()
+    dof = _first_dof(text, clock.time(first), model.nv)
+    if dof is None:  # the values of a later step: by then, NaN may have spread to other joints
+        dof = next((int(i) for a in (data.qvel, data.qacc) for i in np.flatnonzero(~(np.abs(a) < 1e10))), None)
     if dof is None:
         info = next(int(data.warning[w].lastinfo) for w in _BAD if counts[w])
         dof = min(info, model.nv - 1)
     joint = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_JOINT, int(model.dof_jntid[dof])) or f"dof {dof}"
+    gains = [gain for gain in unstable_gains(model) if model.dof_treeid[gain.dof] == model.dof_treeid[dof]]
+    gains.sort(key=lambda gain: gain.dof != dof)
     hint = (
-        f"a gain, a force or a stiffness is too large for the step of {clock.timestep:g} s; "
-        "try a smaller max_step_size, a smaller gain or command, or a larger inertia"
+        f"{gains[0].message}; {gains[0].hint}"
+        if gains
+        else (
+            f"a gain, a force or a stiffness is too large for the step of {clock.timestep:g} s; "
+            "try a smaller max_step_size, a smaller gain or command, or a larger inertia"
+        )
     )
-    return SimulationDiverged(joint.split("#")[0], clock.time(first), hint, ENGINE_WARNINGS.take_first())
+    return SimulationDiverged(joint.split("#")[0], clock.time(first), hint, text)
+
+
+def _first_dof(text: str, time: float, count: int) -> int | None:
+    """Return the degree of freedom that MuJoCo's warning names first; None for a warning of another time."""
+    match = _ENGINE_TEXT.search(text)
+    if match is None or match[2] != f"{time:.4f}" or int(match[1]) >= count:
+        return None
+    return int(match[1])
 
 
 FRESH, CONTROL, VELOCITY, STALE = range(4)

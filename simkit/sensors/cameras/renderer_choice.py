@@ -23,6 +23,8 @@ GL: Final = "gl"
 SOFTWARE: Final = "software"
 FALLBACK: Final = "SK-RENDER-015"
 """Code of the note that OpenGL cannot be opened and the software renderer draws."""
+UNKNOWN_REQUEST: Final = "SK-RENDER-016"
+"""Code of the warning that `MUJOCO_GL` has an unknown value and the software renderer draws."""
 
 
 class ImageBuffers(Protocol):
@@ -132,6 +134,9 @@ def chosen_renderer(sim: Simulation) -> str:
     requested, kinds = sim.world.renderer, _drawing_of(sim).kinds
     if requested not in kinds:
         kinds[requested] = _open_gl_or_software(sim) if requested == "auto" else requested
+        if kinds[requested] == SOFTWARE and (unknown := gl_context.unknown_request()):
+            message = f"{unknown}; the software renderer draws"
+            sim.engine.reports.warning(UNKNOWN_REQUEST, message, hint=gl_context.help_for_request())
     return kinds[requested]
 
 
@@ -140,6 +145,8 @@ def _open_gl_or_software(sim: Simulation) -> str:
     try:
         gl_context.ensure_open()
     except RenderError as error:
+        if gl_context.unknown_request():
+            return SOFTWARE
         reason = error.message.replace(gl_context.HINT, gl_context.WAYS_TO_GET_GL)
         message = f"images are drawn by the software renderer: {reason}"
         sim.engine.reports.note(FALLBACK, message)

@@ -55,6 +55,38 @@ def test_a_damping_gain_is_judged_by_the_inertia_that_the_joint_feels() -> None:
     assert ["<d_gain> 0.3" in d.message and "at most 0.2" in d.hint for d in found] == [True]
 
 
+@pytest.mark.parametrize(
+    ("integrator", "actuator", "most"),
+    [
+        ("Euler", "velocity kv='0.19'", None),
+        ("Euler", "velocity kv='0.21'", "0.2"),
+        ("implicitfast", "velocity kv='0.21'", None),
+        ("Euler", "position kp='390'", None),
+        ("implicitfast", "position kp='410'", "400"),
+        ("Euler", "position kp='110' kv='0.15'", "0.145"),
+        ("implicitfast", "position kp='110' kv='0.15'", None),
+    ],
+)
+def test_actuators_of_mjcf_are_judged_by_the_integrator_and_diverge_if_they_are_reported(
+    integrator: str, actuator: str, most: str | None
+) -> None:
+    """d·dt/I = 2 is the edge of the integrator Euler, p·dt²/I = 4 that of both: I = 1e-4, step 1 ms."""
+    text = (
+        f"<mujoco><option timestep='0.001' integrator='{integrator}'/><worldbody><body><joint name='j' axis='0 0 1'/>"
+        "<inertial pos='0 0 0' mass='1' diaginertia='1e-4 1e-4 1e-4'/></body></worldbody>"
+        f"<actuator><{actuator} name='a' joint='j'/></actuator></mujoco>"
+    )
+    limits = [d.hint.split(",")[0] for d in simkit.check(text) if d.code == "SK-LINT-003"]
+    assert limits == ([] if most is None else [f"use at most {most}"])
+    with simkit.load(text) as sim:
+        sim.mj_data.ctrl[:] = 1.0
+        if most is None:
+            sim.run(5.0)
+            return
+        with pytest.raises(simkit.SimulationDiverged, match=f"use at most {most},"):
+            sim.run(5.0)
+
+
 def test_a_spring_is_judged_by_the_inertia_that_it_swings() -> None:
     """k·dt²/I = 1 at k = 100 for I = 1e-4 and 1 ms."""
     spring = "<dynamics><spring_stiffness>{0}</spring_stiffness></dynamics>"

@@ -92,6 +92,11 @@ def test_the_name_in_package_xml_counts_before_the_name_of_the_folder(package, u
     assert used(ROBOT, MESH.format("sensors"))[0] == "ws/src/vendor/x"
 
 
+def test_a_folder_of_the_name_without_package_xml_is_found_in_a_workspace_of_the_user(used, write, tmp_path):
+    write("ws/sensors/meshes/m.stl", "ws/sensors")
+    assert used("robots/r.urdf", MESH.format("sensors"), [tmp_path / "ws"])[0] == "ws/sensors"
+
+
 @pytest.mark.parametrize(
     "folder, name, asked",
     [

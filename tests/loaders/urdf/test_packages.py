@@ -110,6 +110,14 @@ def test_a_missing_package_is_reported_once_with_all_searched_folders_and_the_op
     assert "--package-path nope=DIR" in problem.hint
 
 
+def test_a_missing_package_names_the_workspace_whose_packages_were_searched(load, write):
+    package(write, "ws/src/repository/arm")
+    package(write, "ws/src/other/hand")
+    file = write("ws/src/repository/arm/urdf/r.urdf", with_mesh("package://nope/m.stl"))
+    (problem,) = with_code(load(file)[1], "SK-URI-009")
+    assert f"searched below {file.parents[4]}, " in problem.message
+
+
 @pytest.mark.parametrize("part", ["visual", "collision"])
 def test_a_robot_loads_without_a_missing_mesh_and_with_a_warning(load, write, part):
     mesh = f'<{part}><geometry><mesh filename="gone.stl"/></geometry></{part}>'

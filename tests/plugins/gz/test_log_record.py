@@ -85,7 +85,7 @@ def test_a_log_replaces_an_older_one_and_continues_after_a_reset() -> None:
             sim.run(0.2)
             sim.reset()
             sim.run(0.1)
-    assert [time for time, _ in read()["/world/w/changed_state"]] == [0, 100_000_000, 100_000_000, 200_000_000]
+    assert [time for time, _ in read()["/world/w/changed_state"]] == [0, 100_000_000, 200_000_000, 200_000_000]
 
 
 def test_recording_changes_no_bit_and_two_logs_are_the_same() -> None:

@@ -80,6 +80,28 @@ def test_a_recording_has_the_messages_that_subscribers_receive(tmp_path: Path) -
     assert recorded == [msgs.serialize(m) for m in live.messages]
 
 
+@pytest.mark.parametrize("seconds", [0.4, 1.6])
+def test_log_times_continue_after_a_reset_and_stamps_begin_again(tmp_path: Path, seconds: float) -> None:
+    path = tmp_path / "run.mcap"
+    with simkit.load(WORLD) as sim, Recorder(sim, path, topics=["/imu", "/clock"]):
+        sim.run(seconds)
+        sim.reset()
+        sim.run(0.2)
+        middle = sim.snapshot()
+        sim.run(0.2)
+        sim.restore(middle)
+        sim.run(0.1)
+    with path.open("rb") as stream:
+        found = make_reader(stream, decoder_factories=[DecoderFactory()]).iter_decoded_messages(topics=["/imu"])
+        messages = [(m.log_time, msgs.stamp_ns(ros.header.stamp)) for _, _, m, ros in found]
+    logged, stamps = zip(*messages, strict=True)
+    samples = round(100 * seconds) + 1  # the first one is at the first step
+    assert stamps == (*stamps[:samples], *stamps[:41], *stamps[21:31])
+    assert logged[:samples] == stamps[:samples]
+    # the first message of /clock after the reset and after the restore, 1 and 10 ms later, has the last log time
+    assert logged[-1] == round((seconds + 0.5) * 1e9) - 11_000_000
+
+
 def test_chunks_span_at_most_a_simulated_second(tmp_path: Path) -> None:
     path = record(tmp_path / "run.mcap", seconds=3.5)
     with path.open("rb") as file:

@@ -43,6 +43,19 @@ def test_every_kind_sees_a_box_and_its_reflectance(kind: str) -> None:
     assert (scan.time_increment, scan.scan_time) == (0.0, 0.01)
 
 
+@pytest.mark.parametrize("kind", ["lidar", "gpu_lidar"])
+def test_walls_of_touching_boxes_are_exact_and_no_ray_slips_through_a_seam(kind: str) -> None:
+    """The rays at 0°, 45°, 90°, … meet seams and corners of the walls at x, y = ±2 m."""
+    walls = "".join(
+        box(f"x{x}{i}", f"{x} {i + 0.5} 1 0 0 0", "1 1 1") + box(f"y{x}{i}", f"{i + 0.5} {x} 1 0 0 0", "1 1 1")
+        for x in (-2.5, 2.5)
+        for i in range(-3, 3)
+    )
+    scan = scan_of(world(sensor(kind, block(361, -math.pi, math.pi)), others=walls))
+    angles = np.linspace(-math.pi, math.pi, 361)
+    np.testing.assert_allclose(scan.ranges, 2.0 / np.maximum(np.abs(np.cos(angles)), np.abs(np.sin(angles))), atol=1e-6)
+
+
 def test_physics_rays_see_collisions_and_rendered_ones_visuals() -> None:
     ghosts = box("solid", "2.5 0 1 0 0 0", "1 1 1", visual=False) + box(
         "picture", "0 3.5 1 0 0 0", "1 1 1", collision=False

@@ -135,10 +135,18 @@ class DiffDriveController(Controller):
         Returns:
             Lowest and highest linear velocity [m/s], and lowest and highest angular velocity [rad/s].
         """
-        if topic not in (self.plugin.ros.topic(self.topic(name)) for name in ("~/cmd_vel", "~/cmd_vel_unstamped")):
+        if not self._takes(topic):
             return None
         linear, angular = self._options.linear, self._options.angular
         return (linear.least, linear.most), (angular.least, angular.most)
+
+    def command_timeout(self, topic: str) -> float | None:
+        """Return the time after which a command on a topic expires [s]; None for topics without commands."""
+        return self._options.timeout_ns / _NS if self._takes(topic) else None
+
+    def _takes(self, topic: str) -> bool:
+        """Check whether the controller receives commands on a topic."""
+        return topic in (self.plugin.ros.topic(self.topic(name)) for name in ("~/cmd_vel", "~/cmd_vel_unstamped"))
 
     def command_interfaces(self) -> Sequence[str]:
         return [f"{name}/velocity" for name in (*self._options.left, *self._options.right)]

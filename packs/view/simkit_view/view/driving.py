@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
-from simkit.bridges.teleop import Teleop, TeleopTarget, find_targets
+from simkit.bridges.teleop import KEY_TIMEOUT, Teleop, TeleopTarget, find_targets
 from simkit.run_spec import JsonObject
 from simkit_view.view.packet import make_packet
 
@@ -42,6 +42,7 @@ class Driving:
         self._sim, self._sent, self._revision = sim, b"", -1
         self._tick = sim.tick
         self._taps: dict[str, Subscription] = {}
+        self._timeouts: dict[str, float] = {}  # of the drives [s]
         self._newest: dict[str, tuple[float, Speeds]] = {}
         self._drivers: dict[str, tuple[Teleop, object]] = {}
         self._publishers: dict[str, Publisher] = {}
@@ -77,7 +78,8 @@ class Driving:
     def packet(self, options: Sequence[object]) -> bytes | None:
         """Return the present command of each driven topic: of a page that drives, else the newest one of anybody.
 
-        A command has its speeds, its time [s] (null while a page drives), and true if it is the stop of the timeout.
+        A command has its speeds, its time [s] (null while a page drives), and what was missing when a timeout stopped
+        the robot (else an empty text): a key of the page, or a newer command for the drive.
         """
         self._watch()
         self._forget_before_reset()
@@ -86,9 +88,12 @@ class Driving:
             driver = self._drivers[topic][0] if topic in self._drivers else None
             since, speeds = self._newest.get(topic, (0.0, _NO_SPEEDS))
             if driver is not None and driver.next_tick is not None:
-                rows[topic] = [driver.speeds, None, False]
+                rows[topic] = [driver.speeds, None, ""]
+            elif speeds != _NO_SPEEDS and self._sim.time - since > self._timeouts[topic]:
+                rows[topic] = [_NO_SPEEDS, since, f"no command for {self._timeouts[topic]:g} s"]
             elif since <= self._sim.time:
-                rows[topic] = [speeds, since, driver is not None and driver.is_expired and speeds == _NO_SPEEDS]
+                is_stopped = driver is not None and driver.is_expired and speeds == _NO_SPEEDS
+                rows[topic] = [speeds, since, f"no key for {KEY_TIMEOUT:g} s" if is_stopped else ""]
         packet = make_packet({"kind": "driving", "commands": rows}, {})
         if packet == self._sent:
             return None
@@ -107,10 +112,10 @@ class Driving:
         bus = self._sim.communication.bus
         if bus.revision == self._revision:
             return
-        topics = [target.topic for target in find_targets(self._sim)]
-        for topic in [topic for topic in self._taps if topic not in topics]:
+        self._timeouts = {target.topic: target.command_timeout for target in find_targets(self._sim)}
+        for topic in [topic for topic in self._taps if topic not in self._timeouts]:
             self._taps.pop(topic).close()
-        for topic in topics:
+        for topic in self._timeouts:
             if topic not in self._taps:
                 self._taps[topic] = bus.tap(topic, partial(self._take, topic))
         self._revision = bus.revision

@@ -362,6 +362,7 @@ def test_one_file_opens_without_simkit_and_seeks(browser: Any, tmp_path: Path) -
     assert page.evaluate("simkitView.world.bodies[simkitView.bodyOf.get('rover')].elements[12]") == pytest.approx(1.5)
     page.locator("#play").click()
     page.locator("#rtf", has_text="paused").wait_for(timeout=TIMEOUT)  # at the end
+    page.locator("#frames").filter(has_not_text="/s").wait_for(state="attached", timeout=TIMEOUT)  # nothing moves
     assert [url for url in requests if not url.startswith(("file:", "data:", "blob:"))] == []
     page.close()
 

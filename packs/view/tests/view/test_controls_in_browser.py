@@ -57,6 +57,15 @@ def test_the_command_of_another_program_is_shown_with_its_age(session: Callable[
     found.until("document.getElementById('speeds').textContent === '0.00 m/s  0.00 m/s left  0.00 rad/s'")
 
 
+def test_a_drive_that_drops_a_command_after_its_timeout_is_shown_as_stopped(session: Callable[..., Session]) -> None:
+    found = session("turtlebot2_empty")
+    speeds = found.page.locator("#speeds")
+    speeds.filter(has_text="0.00 m/s").wait_for(timeout=TIMEOUT)
+    found.do(lambda: found.sim.publish("/mobile_base/commands/velocity", {"linear": {"x": 0.02}}))
+    found.until("document.getElementById('speeds').textContent.includes('stopped: no command for 0.6 s')")
+    assert speeds.inner_text().startswith("0.00 m/s")
+
+
 def test_a_goal_without_a_navigator_says_what_is_missing(session: Callable[..., Session]) -> None:
     found = session()
     found.until("app.stage.draws > 1 && document.getElementById('drive').hidden === false")
@@ -113,6 +122,45 @@ def test_the_chosen_robot_stays_chosen_when_a_model_is_spawned(session: Callable
     found.until("app.models.has('lift')")
     found.page.evaluate("window.simkitView.ask('targets')")  # the answer to the page's own request came before
     found.until("document.getElementById('target').value === 'second'")
+
+
+# ---------------------------------------------------------------------- bar and choices
+
+
+@pytest.mark.parametrize("width", [910, 1000, 1100, 1200, 1300])
+def test_no_text_of_the_bar_is_cut_on_a_narrow_desk(session: Callable[..., Session], width: int) -> None:
+    found = session(YARD.replace('"yard"', '"simple_office_with_people"'), size=(width, 700), paused=True)
+    found.until("document.getElementById('frames').textContent.includes('frames/s')")
+    cut = "[...document.querySelectorAll('#toolbar *')].filter(e => e.scrollWidth > e.clientWidth + 1 && e.clientWidth)"
+    assert found.get(f"{cut}.map(e => e.id)") == []
+    assert found.get("document.getElementById('toolbar').scrollWidth") == width
+
+
+def test_the_first_view_fits_the_window_until_somebody_moves_the_camera(session: Callable[..., Session]) -> None:
+    found = session(paused=True, size=PHONE)
+    found.until("app.stage.draws > 1")
+    found.page.set_viewport_size({"width": 390, "height": 600})
+    distance = "app.stage.camera.position.distanceTo(app.stage.controls.target)"
+    found.until("Math.abs(app.stage.camera.aspect - 390 / app.stage.canvas.clientHeight) < 0.01")
+    fitted = found.get(distance)
+    found.get("app.views.first()")
+    assert found.get(distance) == pytest.approx(fitted, rel=1e-6)
+    found.get("app.stage.camera.position.multiplyScalar(2)")
+    moved = found.get(distance)
+    found.page.set_viewport_size({"width": 800, "height": 600})
+    found.until("app.stage.camera.aspect > 1.2")
+    assert found.get(distance) == pytest.approx(moved, rel=1e-3)
+
+
+def test_the_quality_of_the_drawing_is_kept_over_a_reload_unless_the_address_has_another(
+    session: Callable[..., Session],
+) -> None:
+    found = session()
+    found.page.locator("#quality").select_option("fast")
+    found.page.reload()
+    found.until("app.stage.quality === 'fast' && document.getElementById('quality').value === 'fast'")
+    found.page.goto(f"{found.view.address}&quality=full")
+    found.until("app.stage.quality === 'full'")
 
 
 # ---------------------------------------------------------------------- connection

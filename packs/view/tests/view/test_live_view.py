@@ -198,22 +198,22 @@ def test_the_present_command_is_sent_until_it_is_stopped(stage: Stage) -> None:
     page.want(driving={})
     page.ask("drive", topic="/cmd_vel", ahead=0.3, turn=0.2)
     commands = lambda: page.packets["driving"][0]["commands"]  # noqa: E731 - short
-    page.until(lambda: commands() == {"/cmd_vel": [[0.3, 0.0, 0.2], None, False]})
+    page.until(lambda: commands() == {"/cmd_vel": [[0.3, 0.0, 0.2], None, ""]})
     page.ask("key", topic="/cmd_vel", key="s")
-    page.until(lambda: commands() == {"/cmd_vel": [[0.0, 0.0, 0.0], None, False]})
+    page.until(lambda: commands() == {"/cmd_vel": [[0.0, 0.0, 0.0], None, ""]})
 
 
 def test_the_command_of_another_program_is_sent_with_its_time(stage: Stage) -> None:
     page = stage.page()
     page.want(driving={})
-    page.until(lambda: page.packets["driving"][0]["commands"] == {"/cmd_vel": [[0.0, 0.0, 0.0], 0.0, False]})
+    page.until(lambda: page.packets["driving"][0]["commands"] == {"/cmd_vel": [[0.0, 0.0, 0.0], 0.0, ""]})
     stage.sim.run(0.5)
     stage.sim.publish("/cmd_vel", {"linear": {"x": 0.25}})
     stage.sim.run(0.1)
     page.until(lambda: page.packets["driving"][0]["commands"]["/cmd_vel"][0] == [0.25, 0.0, 0.0])
     assert page.packets["driving"][0]["commands"]["/cmd_vel"][1] == pytest.approx(0.5, abs=0.003)
     stage.sim.reset()
-    page.until(lambda: page.packets["driving"][0]["commands"] == {"/cmd_vel": [[0.0, 0.0, 0.0], 0.0, False]})
+    page.until(lambda: page.packets["driving"][0]["commands"] == {"/cmd_vel": [[0.0, 0.0, 0.0], 0.0, ""]})
     stage.sim.run(0.7)  # the time of the command comes again
     page.until(lambda: page.packets["state"][0]["time"] > 0.6)
     assert page.packets["driving"][0]["commands"]["/cmd_vel"][0] == [0.0, 0.0, 0.0]

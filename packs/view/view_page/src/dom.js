@@ -36,3 +36,12 @@ export function checkbox(id, text, checked, change) {
   const box = element('input', { type: 'checkbox', id, checked, onchange: () => change(box.checked) });
   return element('label', { class: 'check' }, box, text);
 }
+
+/** Stores a choice of the user in a cookie, which holds on every port: each run has its own. */
+export function keepChoice(name, value) {
+  try { document.cookie = `simkit-${name}=${value}; max-age=31536000; samesite=strict; path=/`; } catch { /* a page in a notebook may have no cookies */ }
+}
+
+export function keptChoice(name) {
+  try { return document.cookie.match(new RegExp(`(?:^|; )simkit-${name}=(\\w+)`))?.[1]; } catch { return undefined; /* as above */ }
+}

@@ -2,7 +2,7 @@
 import * as T from 'three';
 import { Connection } from './connection.js';
 import { Displays } from './displays.js';
-import { element, narrow } from './dom.js';
+import { element, keptChoice, narrow } from './dom.js';
 import { Layers } from './layers.js';
 import { PANELS } from './panels/index.js';
 import { Player, loadRecording } from './player.js';
@@ -172,7 +172,7 @@ app.groundAt = ({ clientX, clientY }) => {
 
 try {
   app.on('link', showLink);
-  app.stage = new Stage(document.getElementById('canvas'), new URLSearchParams(location.search).get('quality') ?? 'auto');
+  app.stage = new Stage(document.getElementById('canvas'), new URLSearchParams(location.search).get('quality') ?? keptChoice('quality') ?? 'auto');
   app.world = new World(app.stage);
   app.connection = new Connection(packet => { if (!app.player || packet.recorded) receive(packet); }, showNotice, isUp => app.emit('link', isUp));
   app.layers = new Layers(app);

@@ -63,6 +63,7 @@ export class Stage {
     this.gl.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
+    if (this.fitted?.at.distanceTo(this.camera.position) < 1e-6) this.fit(...this.fitted.arguments); // nobody has moved the camera
     this.move();
   }
 
@@ -270,6 +271,7 @@ export class Stage {
     this.controls.target.copy(centre);
     this.camera.position.copy(centre).addScaledVector(ahead, -distance);
     this.controls.update();
+    this.fitted = { at: this.camera.position.clone(), arguments: [box, direction, fill] };
     this.invalidate();
   }
 

@@ -14,7 +14,7 @@ export function makeToolbar(app, bar) {
     ...SPEEDS.map(([text]) => element('option', {}, text === 'no limit' ? text : `${text} ×`)));
   const view = element('select', { id: 'viewpoint', title: 'Viewpoint', onchange: () => chooseView(app, view) });
   const time = element('span', { id: 'time' }), rtf = element('span', { id: 'rtf' });
-  const link = element('span', { id: 'link', class: 'off' }, '● connecting'), frames = element('span', { id: 'frames' });
+  const link = element('span', { id: 'link', class: 'off' }, '● connecting'), drawn = element('span'), more = element('span', { class: 'more' }), frames = element('span', { id: 'frames' }, drawn, more);
   const world = element('strong', { id: 'world' }), seed = element('span', { id: 'seed', class: 'dim', title: 'Seed of all random streams' });
   bar.append(world, seed, element('span', { class: 'group' }, play, step, count, reset), speed, time, rtf,
     element('span', { class: 'space' }), view, button('tour-start', '?', 'Tour of the page', () => app.tour.start()), frames, link);
@@ -47,7 +47,10 @@ export function makeToolbar(app, bar) {
   let draws = 0, states = 0, bytes = 0;
   setInterval(() => {
     if (document.hidden || !app.connection) return;
-    frames.textContent = `${app.stage.draws - draws} frames/s · ${app.stats.states - states} states/s · ${((app.connection.bytes - bytes) / 1024).toFixed(0)} KB/s${app.stage.isSoftware ? ' · software' : ''}`;
+    const count = app.stage.draws - draws;
+    drawn.textContent = count || !app.player ? `${count} frames/s` : ''; // a recording that stands draws nothing
+    more.textContent = (app.player ? '' : ` · ${app.stats.states - states} states/s · ${((app.connection.bytes - bytes) / 1024).toFixed(0)} KB/s`) + (app.stage.isSoftware ? ' · software' : '');
+    frames.title = frames.textContent;
     [draws, states, bytes] = [app.stage.draws, app.stats.states, app.connection.bytes];
   }, 1000);
   addEventListener('keydown', event => {

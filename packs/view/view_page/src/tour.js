@@ -1,5 +1,5 @@
 // Tour of the page: up to six steps, each with the outline of a part of the page. It begins by itself at the first visit.
-import { element, narrow } from './dom.js';
+import { element, keepChoice, keptChoice, narrow } from './dom.js';
 
 /** Steps: selectors of the part, of which the first that is shown counts, heading and text. */
 const STEPS = [
@@ -10,7 +10,6 @@ const STEPS = [
   ['#drive, #joints', 'Move the robot', 'Drive with the pad or with the keys w a s d x. Sliders move the joints while the world is paused.'],
   ['#dock-tabs', 'Data', 'Plot any field of any topic, read the log, call services, send goals, set parameters, and draw the graph of nodes.'],
 ];
-const COOKIE = 'simkit-tour=off'; // local storage belongs to one port, and each run has another port
 
 export function makeTour(app) {
   const title = element('h3'), text = element('p'), number = element('span', { class: 'dim' });
@@ -62,7 +61,7 @@ export function makeTour(app) {
   const end = () => {
     leave();
     box.hidden = true;
-    document.cookie = `${COOKIE}; max-age=31536000; samesite=strict; path=/`;
+    keepChoice('tour', 'off');
   };
 
   addEventListener('keydown', event => { if (event.key === 'Escape' && !box.hidden) end(); });
@@ -72,6 +71,6 @@ export function makeTour(app) {
   app.on('state', () => { // the panels know then what they can show
     const isOwn = isFirst && !app.player && window.top === window;
     isFirst = false;
-    if (isOwn && !document.cookie.includes(COOKIE)) app.ask('targets').finally(start);
+    if (isOwn && keptChoice('tour') !== 'off') app.ask('targets').finally(start);
   });
 }

@@ -181,8 +181,8 @@ def _candidates() -> tuple[str, ...]:
     platform = os.environ.get("PYOPENGL_PLATFORM", "").strip().lower()
     if requested in _OFF:
         raise RenderError(f"OpenGL is switched off by MUJOCO_GL={requested}; run `unset MUJOCO_GL`")
-    if requested not in (*_LIBRARIES, *_ON):
-        raise RenderError(f"MUJOCO_GL={requested}: unknown renderer; expected one of {', '.join(_LIBRARIES)}")
+    if unknown := unknown_request():
+        raise RenderError(f"{unknown}; {help_for_request()}")
     if requested in _LIBRARIES:
         return (_LIBRARIES[requested],)
     if sys.platform == "darwin":
@@ -190,6 +190,19 @@ def _candidates() -> tuple[str, ...]:
     if sys.platform == "win32":
         return ("glfw",)
     return (platform,) if platform in ("egl", "osmesa") else ("egl", "osmesa")
+
+
+def unknown_request() -> str:
+    """Return the problem that `MUJOCO_GL` has a value that nobody knows; empty if the value is known."""
+    requested = os.environ.get("MUJOCO_GL", "").strip().lower()
+    is_known = requested in (*_LIBRARIES, *_ON, *_OFF)
+    return "" if is_known else f"MUJOCO_GL={requested}: unknown renderer; expected {', '.join(_LIBRARIES)} or disable"
+
+
+def help_for_request() -> str:
+    """Return the remedy for an unknown value of `MUJOCO_GL`, with the values that work on this machine."""
+    working = [name for name in ("egl", "osmesa", "glfw") if not _PROBES[name]()]
+    return f"unset MUJOCO_GL; here {' and '.join(working) or 'none of them'} can draw"
 
 
 def _egl_problem() -> str:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from shlex import quote
-from typing import TYPE_CHECKING, ClassVar, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from simkit import ModelPlugin, Params
 from simkit.extend import Options, OptionsOf, boolean, did_you_mean, text, texts
@@ -169,9 +170,18 @@ class ControlPlugin(ModelPlugin):
             Lowest and highest linear velocity, and lowest and highest angular velocity; None if no controller of the
             topic has speed bounds.
         """
-        loaded = self.manager.controllers.values()
-        getters = (getattr(entry.controller, "speed_bounds", None) for entry in loaded)
-        return next((bounds for get in getters if get is not None and (bounds := get(topic)) is not None), None)
+        bounds: tuple[tuple[float, float], tuple[float, float]] | None = self._ask_controllers("speed_bounds", topic)
+        return bounds
+
+    def command_timeout(self, topic: str) -> float:
+        """Return the time after which the controller that subscribes to a topic drops a command [s]; else infinity."""
+        seconds = self._ask_controllers("command_timeout", topic)
+        return math.inf if seconds is None else float(seconds)
+
+    def _ask_controllers(self, method: str, topic: str) -> Any:
+        """Call a method of each controller that has it, with a topic, and return the first result that is not None."""
+        getters = (getattr(entry.controller, method, None) for entry in self.manager.controllers.values())
+        return next((result for get in getters if get is not None and (result := get(topic)) is not None), None)
 
     def prevails(self, joint: HardwareJoint, other: ActuatorRef, *, is_later: bool) -> bool:
         """Check whether this plugin moves a joint in Gazebo although another plugin drives the joint too.

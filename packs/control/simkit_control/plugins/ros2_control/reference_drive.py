@@ -90,6 +90,11 @@ class ReferenceDrive(Controller):
         """Name of the odometry frame, name of the base frame, and pose of the base in the odometry frame."""
         return *self._frames, self._reckoning.pose
 
+    def command_timeout(self, topic: str) -> float | None:
+        """Return the time after which a reference on a topic expires [s]; None for other topics."""
+        topics = (self.plugin.ros.topic(self.topic(name)) for name in (self.topics[0], f"{self.topics[0]}_unstamped"))
+        return self._timeout_ns / 1e9 if topic in topics else None
+
     def activate(self) -> None:
         self._reference, self._is_active = None, True
 

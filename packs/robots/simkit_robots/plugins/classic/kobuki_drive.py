@@ -114,6 +114,10 @@ class GazeboRosKobuki(KobukiSensors, GazeboRosDiffDrive):
         self.listen(options.topic("commands/reset_odometry"), _EMPTY, self._on_reset_odometry)
         self.open_sensors(parent, options)
 
+    def command_timeout(self, _: str) -> float:
+        """Return the time for which a command stays active [s]."""
+        return self.options.timeout
+
     # ------------------------------------------------------------------ commands
 
     def before_step(self) -> None:

@@ -22,10 +22,10 @@ export function makeDrivePanel(app) {
   /** Shows the present command, which also comes from a navigator, another page, or the end of a time-out. */
   const showCommand = () => {
     if (!target()) return;
-    const [[ahead, left, turn], since, isExpired] = commands[target().topic] ?? [[0, 0, 0], null, false];
+    const [[ahead, left, turn], since, missing] = commands[target().topic] ?? [[0, 0, 0], null, ''];
     const parts = [`${ahead.toFixed(2)} m/s`, ...(target().sideways ? [`${left.toFixed(2)} m/s left`] : []), `${turn.toFixed(2)} rad/s`];
     const age = since === null || !(ahead || left || turn) ? 0 : (app.state?.time ?? since) - since;
-    speeds.textContent = parts.join('  ') + (isExpired ? ', stopped: no key for 10 s' : age > 1 ? `, sent ${age.toFixed(0)} s ago` : '');
+    speeds.textContent = parts.join('  ') + (missing ? `, stopped: ${missing}` : age > 1 ? `, sent ${age.toFixed(0)} s ago` : '');
     speeds.title = `Command on ${target().topic}`;
   };
   const want = () => app.connection.want('driving', box.open && !box.hidden ? {} : null);
