@@ -361,7 +361,10 @@ def _code(text: str) -> str:
 def _plain(text: str) -> str:
     """Return a text for a terminal as Markdown that shows it unchanged."""
     parts = re.split(r"(`[^`]+`)", text)
-    return "".join(part if part.startswith("`") else re.sub(r"([\\*_<>|\[\]])", r"\\\1", part) for part in parts)
+    return "".join(
+        part if part.startswith("`") else re.sub(r"([\\*_>|\[\]])", r"\\\1", part).replace("<", "&lt;")
+        for part in parts
+    )
 
 
 def diagnostic_pages() -> dict[str, tuple[str, str]]:

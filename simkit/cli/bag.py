@@ -17,7 +17,7 @@ from simkit.cli.plot_sources import PlotRequest, draw_chart, is_bag, split_sourc
 from simkit.cli.run_loop import Interrupts
 from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
 from simkit.cli.terminal import completion, options
-from simkit.cli.terminal.json_report import add_to_report
+from simkit.cli.terminal.json_report import add_to_report, report_errors
 from simkit.cli.terminal.options import argument, option, validate_word
 from simkit.cli.terminal.output import (
     absolute_name,
@@ -26,8 +26,7 @@ from simkit.cli.terminal.output import (
     print_line,
     print_name,
     print_note,
-    report_errors,
-    report_errors_quietly,
+    without_interrupt_message,
 )
 from simkit.cli.terminal.topic_sources import SimClock, connect_to_simulation
 from simkit.errors import InputError
@@ -39,7 +38,8 @@ if TYPE_CHECKING:
 _LOSSES_LISTED = 20
 
 
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def plot(
     arguments: Annotated[
         list[str],
@@ -66,7 +66,8 @@ def plot(
     draw_chart(sources, fields, PlotRequest(output, against, start, end, title), json_=json_)
 
 
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def export(
     recording: options.Recording,
     output: Annotated[
@@ -106,7 +107,8 @@ def export(
     print_line(f"{target}: {sum(e.count for e in exports)} messages of {len(exports)} topics")
 
 
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 @with_run_options("file", "world", usual={"model_world": "empty space"})
 def video(
     recording: options.Recording,
@@ -146,13 +148,20 @@ def video(
     return interrupts.exit_code
 
 
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def play(
     recordings: Annotated[
         list[Path], argument("Bags: .mcap or .db3 files, or rosbag2 folders; several share one timeline.", "BAG...")
     ],
     topics: Annotated[
-        list[str], Option("--topics", help="Topic to play; repeatable. Default: all inputs of the world.")
+        list[str],
+        option(
+            "Topic to play; repeatable. Default: all inputs of the world.",
+            None,
+            "--topics",
+            complete=completion.source_topics,
+        ),
     ] = [],
     all_: Annotated[bool, Option("--all", "-a", help="Play all topics of the bags.")] = False,
     rate: Annotated[float, option("Playback speed factor.", "N", "--rate", "-r", min=1e-3)] = 1.0,
@@ -242,7 +251,8 @@ bag = typer.Typer(help="Record, describe, play, film, export and recover bags.",
 
 
 @bag.command()
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def info(
     recording: options.Recording,
     topic_name: Annotated[bool, Option("--topic-name", "-t", help="Print only the names of the topics.")] = False,

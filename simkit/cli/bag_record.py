@@ -11,8 +11,9 @@ from typer import Option
 
 from simkit.cli.run_loop import Interrupts
 from simkit.cli.terminal import completion, options
+from simkit.cli.terminal.json_report import report_errors
 from simkit.cli.terminal.options import argument, compile_pattern, option
-from simkit.cli.terminal.output import absolute_name, print_json, print_note, report_errors_quietly
+from simkit.cli.terminal.output import absolute_name, print_json, print_note, without_interrupt_message
 from simkit.cli.terminal.topic_sources import LiveSource, connect_to_simulation
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
@@ -28,7 +29,8 @@ _RECEIVE_TIMEOUT = 0.2  # [s] of wall time between two checks for Ctrl-C
 _DISCOVERY_PERIOD = 1.0  # [s] of wall time between two searches for new topics
 
 
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def record(
     topics: Annotated[list[str] | None, argument("Topics to record.", "[TOPIC]...", completion.topics)] = None,
     all_: Annotated[bool, Option("--all", "-a", help="Record all topics, including new ones.")] = False,

@@ -13,8 +13,9 @@ from typer import Option
 from simkit.cli.run_options import NONE_GIVEN, GivenOptions, parse_seconds, with_run_options
 from simkit.cli.second_reader.against_option import Against, compare_readers
 from simkit.cli.terminal import options
+from simkit.cli.terminal.json_report import report_errors
 from simkit.cli.terminal.options import option
-from simkit.cli.terminal.output import print_diagnostics, print_json, report_errors, stdout_console
+from simkit.cli.terminal.output import print_diagnostics, print_json, stdout_console
 from simkit.diagnostics import Diagnostic, Diagnostics, Where
 from simkit.errors import InputError
 from simkit.run_files import FilePath

@@ -9,9 +9,9 @@ from typer import Option
 
 from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
 from simkit.cli.terminal import options
-from simkit.cli.terminal.json_report import add_diagnostics, add_to_report
+from simkit.cli.terminal.json_report import add_diagnostics, add_to_report, report_errors
 from simkit.cli.terminal.options import option
-from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
+from simkit.cli.terminal.output import print_diagnostics, print_status, stdout_console
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError
 from simkit.run_spec import SourceOptions

@@ -6,8 +6,9 @@ from dataclasses import asdict
 from typing import Annotated
 
 from simkit.cli.terminal import options
+from simkit.cli.terminal.json_report import report_errors
 from simkit.cli.terminal.options import argument
-from simkit.cli.terminal.output import print_json, report_errors, stdout_console
+from simkit.cli.terminal.output import print_json, stdout_console
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from typer import Option
 
-from simkit.cli.run_options import NONE_GIVEN, GivenOptions, read_run, scenario_spec, with_run_options
+from simkit.cli.run_options import NONE_GIVEN, GivenOptions, scenario_spec, with_run_options
 from simkit.cli.terminal import options
 from simkit.cli.terminal.json_report import add_diagnostics, add_to_report, error_diagnostics, report_errors_and_json
 from simkit.cli.terminal.options import argument, option
@@ -217,6 +217,8 @@ def record(
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
 ) -> None:
     """Run a scenario and store the result as a golden run."""
+    from simkit.testing.scenarios.scenario_file import read_run
+
     loading = given.load_options()
     source = read_run(world, folders=loading.get("resource_paths", ()))
     spec = scenario_spec(source, given, allow_code=allow_code)

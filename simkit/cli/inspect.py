@@ -11,14 +11,8 @@ from typer import Option
 
 from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
 from simkit.cli.terminal import options
-from simkit.cli.terminal.output import (
-    JsonObject,
-    print_diagnostics,
-    print_json,
-    printable,
-    report_errors,
-    stdout_console,
-)
+from simkit.cli.terminal.json_report import report_errors
+from simkit.cli.terminal.output import JsonObject, print_diagnostics, print_json, printable, stdout_console
 from simkit.diagnostics import Diagnostic, did_you_mean
 from simkit.errors import InputError
 from simkit.run_spec import SourceOptions

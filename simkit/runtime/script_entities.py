@@ -9,7 +9,7 @@ from simkit.runtime.contact.rim_slip import WheelSlip, list_wheel_slips
 from simkit.runtime.handles.find_sensor import checked_class, find_sensor
 
 if TYPE_CHECKING:
-    from simkit.extend import Sensor
+    from simkit.extend import Plugin, Sensor
     from simkit.runtime.engine.engine import Engine
     from simkit.runtime.handles.joint import Joint
     from simkit.runtime.handles.light import Light
@@ -97,7 +97,7 @@ class ScriptEntities:
         return None if model is None else self.model(cast("str", getattr(model, "scoped", model))).scoped
 
     @property
-    def plugins(self) -> dict[str, Any]:
-        """Plugins of the file by scoped name."""
+    def plugins(self) -> dict[str, Plugin]:
+        """Plugins by scoped name, `robot::drive`; those of the world by their own name."""
         self.engine.check_open()
         return self.contents.plugins

@@ -134,9 +134,9 @@ BROKEN = {  # of a link of 0.1 × 0.1 × 0.2 m: the report of its line, and its 
     "triangle": (inertial(1, 0.01, 0.01, 0.05), "SK-INERTIA-001", "A + B falls short of C by 60 % of C", "--fix"),
     "units": (inertial(1, 1e4, 1e4, 1e4), "SK-LINT-008", "666667 times too large", "check the units"),
     "density": (inertial(5000, 10, 10, 10), "SK-LINT-009", "are 2.5e+06 kg/m3", "check the units"),
-    "no mass": (inertial(0, 0.01, 0.01, 0.01), "SK-PHYS-011", "0 kg is too light to move", "give the link its mass"),
+    "no mass": (inertial(0, 0.01, 0.01, 0.01), "SK-PHYS-011", "0 kg is too light to move", "give the link"),
     "no number": (inertial(1, "nan", 1, 1), "SK-URDF-013", '<inertia ixx="nan">: expected a number', ""),
-    "nothing": ("", "SK-JOINT-016", "joint r::j (revolute) of link r::arm moves no mass", "give the link an <inertial>"),
+    "nothing": ("", "SK-JOINT-016", "joint r::j (revolute) of link r::arm moves no mass", "an <inertial>"),
 }
 
 

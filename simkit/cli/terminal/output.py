@@ -223,33 +223,6 @@ def print_error(error: SimkitError) -> None:
     stderr_console().print(f"error: {printable(message)}", style="red")
 
 
-def report_errors(command: Callable[P, int | None]) -> Callable[P, None]:
-    """Convert the errors of a command to messages and exit codes, without a traceback for errors of the user.
-
-    With the parameter `json_`, standard output has JSON alone: values of `print_json`, or else one object with the
-    values of `add_to_report`, the diagnostics of an error and the exit code. Other output goes to standard error.
-    """
-    in_words = errors_in_words(command)
-
-    @functools.wraps(command)
-    def run(*args: P.args, **kwargs: P.kwargs) -> None:
-        if kwargs.get("json_") and _json_runner is not None:
-            _json_runner(command, *args, **kwargs)
-        else:
-            in_words(*args, **kwargs)
-
-    return run
-
-
-_json_runner: Callable[..., None] | None = None
-
-
-def set_json_runner(runner: Callable[..., None]) -> None:
-    """Set the function that runs a command with `--json`: `json_report`, which itself needs this module."""
-    global _json_runner
-    _json_runner = runner
-
-
 def errors_in_words(command: Callable[P, int | None]) -> Callable[P, None]:
     """Convert the errors of a command to messages and exit codes."""
 
@@ -412,8 +385,8 @@ def _json_value(value: object) -> object:
     return [_json_value(v) for v in value] if isinstance(value, (list, tuple)) else value
 
 
-def report_errors_quietly(command: Callable[P, int | None]) -> Callable[P, None]:
-    """Wrap a command like `report_errors`; Ctrl-C ends it without a message, with exit code 130."""
+def without_interrupt_message(command: Callable[P, int | None]) -> Callable[P, int]:
+    """Wrap a command so that Ctrl-C ends it without a message, with exit code 130."""
 
     @functools.wraps(command)
     def run(*args: P.args, **kwargs: P.kwargs) -> int:
@@ -422,7 +395,7 @@ def report_errors_quietly(command: Callable[P, int | None]) -> Callable[P, None]
         except KeyboardInterrupt as stopped:
             return interrupt_exit_code(stopped)
 
-    return report_errors(run)
+    return run
 
 
 def not_found_error(

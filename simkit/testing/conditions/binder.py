@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final
 
@@ -32,6 +32,7 @@ from simkit.testing.conditions.math_functions import (
     ROW_OPERATORS,
     VECTOR_OPERATORS,
 )
+from simkit.testing.conditions.parser import parse
 from simkit.testing.conditions.value_types import JOINT, NUMBER, NUMBERS, TEXT, TRUTH, VECTOR, ValueType, is_vector_like
 from simkit.testing.conditions.world_functions import WORLD_FUNCTIONS
 
@@ -74,6 +75,25 @@ def bind(expression: syntax.Expression, view: WorldView) -> BoundNode:
         AbsentTopic: The view waits for a topic of the expression.
     """
     return Binder(expression.source, view).part(expression.root)
+
+
+def bind_value(source: str, view: WorldView, kinds: Sequence[ValueType], what: str) -> BoundNode:
+    """Bind the text of an expression that must have one of several types.
+
+    Args:
+        source: Text of the expression.
+        view: World.
+        kinds: Allowed types.
+        what: Name of the value for the error, such as "the metric".
+
+    Raises:
+        InputError: The expression has a syntax error, an unknown name, or another type.
+    """
+    part = bind(parse(source), view)
+    if part.kind not in kinds:
+        message = f"{what} is {part.kind}, but must be {', or '.join(map(str, kinds))}"
+        raise syntax.expression_error("SK-COND-004", message, source, part.node.span, number_hint(part.kind))
+    return part
 
 
 def bind_rows(expression: syntax.Expression, view: WorldView) -> BoundNode:

@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 
+from simkit.loaders.resources.bundled_models import find_bundled_model
 from simkit.run_spec import RunSpec
 from simkit.testing.golden.cause import explain
 from simkit.testing.golden.compare.difference import Explanation
@@ -112,6 +113,37 @@ def test_one_change_is_named_and_proven(explained: Explained, old: str, new: str
     assert [c.proven for c in found.causes] == [True], found.lines
     assert re.search(r"w\.sdf:\d+\)$", found.lines[0])
     assert found.lines[1].endswith("with this change undone, the run gives the golden outputs")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("<radius>0.033<", "<radius>0.03333<", "radius 0.033 → 0.03333 m (+1 %) in 2 places"),
+        ("<stddev>1.7e-2<", "<stddev>3.4e-2<", "imu: imu.linear_acceleration.x.noise.stddev 0.017 → 0.034"),
+        ("<horizontal_fov>1.02974<", "<horizontal_fov>1.04719<", "camera: camera.horizontal_fov 1.02974 → 1.04719 rad"),
+        ("<max>3.5<", "<max>3.0<", "sensor turtlebot3::base_scan::lds: lidar.range.max 3.5 → 3 m"),
+    ],
+    ids=["wheel", "IMU", "camera", "lidar"],
+)
+def test_a_changed_turtlebot3_is_named_and_proven(tmp_path: Path, old: str, new: str, words: str) -> None:
+    bundled = find_bundled_model("turtlebot3_waffle")
+    assert bundled is not None
+    model = tmp_path / "turtlebot3_waffle" / "model.sdf"
+    shutil.copytree(bundled if bundled.is_dir() else bundled.parent, model.parent)
+    text = """<sdf version="1.9"><world name="w"><include><uri>model://ground_plane</uri></include>
+      <include><uri>model://turtlebot3_waffle</uri><name>turtlebot3</name></include>
+      <model name="wall"><static>true</static><pose>3.2 0 1 0 0 0</pose><link name="l">
+        <collision name="c"><geometry><box><size>0.1 4 2</size></box></geometry></collision></link></model>
+    </world></sdf>"""
+    topics = ("/scan", "/imu", "/odom", "/camera/camera_info")
+    robot = scenario(tmp_path, text, topics=topics, options={"resource_paths": [str(tmp_path)]})
+    golden = recorded(robot)
+    model.write_text(model.read_text(encoding="utf-8").replace(old, new), encoding="utf-8")
+    run = recorded(robot)
+    explanation = explain(golden, run, compare(golden, run), budget_s=60)
+    assert words in " ".join(explanation.lines).replace("  ", " "), explanation.lines
+    assert [c.proven for c in explanation.causes] == [True], explanation.lines
 
 
 def test_a_link_that_moves_with_its_sensors_and_joint_is_one_change(explained: Explained) -> None:

@@ -11,10 +11,10 @@ import typer
 
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.options import validate_word
-from simkit.cli.terminal.output import print_json, print_line, print_note, report_errors_quietly
+from simkit.cli.terminal.output import print_json, print_line, print_note, without_interrupt_message
 from simkit.cli.terminal.topic_sources import open_source
 from simkit.errors import InputError
-from simkit.extend import argument, option
+from simkit.extend import argument, option, report_errors
 from simkit_terminal.cli.terminal.live_command import Ros2Command
 from simkit_terminal.cli.terminal.named_endpoints import find_topic
 
@@ -27,7 +27,8 @@ _DEPTH: Final = 1000  # queued messages for a slow terminal
 _LABELS: Final = {number: name.upper() for name, number in LEVELS.items()}
 
 
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def log(
     simulation: Annotated[
         str | None, argument("Name of the running simulation, if several run.", "[SIM]", completion.simulations)

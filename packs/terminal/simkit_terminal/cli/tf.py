@@ -19,11 +19,11 @@ from simkit.cli.terminal.output import (
     print_line,
     print_name,
     printable,
-    report_errors_quietly,
+    without_interrupt_message,
 )
 from simkit.cli.terminal.topic_sources import open_source
 from simkit.errors import InputError, TransformError
-from simkit.extend import option
+from simkit.extend import option, report_errors
 from simkit_terminal.cli.terminal import completion
 
 if TYPE_CHECKING:
@@ -40,7 +40,8 @@ Topics = Annotated[
 
 
 @tf.command()
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def tree(
     topic: Topics = [],
     duration: Annotated[float, option("Wall time for collecting transforms.", "S", "--time", min=0)] = _COLLECTION_TIME,
@@ -69,7 +70,8 @@ def tree(
 
 
 @tf.command("frames")
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def draw_frames(
     output: Annotated[Path, option("Chart to write: OUT.pdf or OUT.svg.", "OUT", "--output", "-o")] = Path(
         "frames.pdf"
@@ -99,7 +101,8 @@ def draw_frames(
 
 
 @tf.command()
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def echo(
     source_frame: Annotated[str, Argument(metavar="SOURCE", show_default=False, autocompletion=completion.frames)],
     target_frame: Annotated[str, Argument(metavar="TARGET", show_default=False, autocompletion=completion.frames)],
