@@ -75,7 +75,7 @@ def load(
     seed: int = 0,
     resource_paths: Sequence[Source] = (),
     plugin_paths: Sequence[Source] = (),
-    plugins: Sequence[Any] = (),
+    plugins: Sequence[object] = (),
     base: str = "auto",
     xacro_args: NamedValues | None = None,
     strict: bool = False,

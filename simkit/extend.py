@@ -18,15 +18,16 @@ from simkit.lazy_names import lazy_attributes
 if TYPE_CHECKING:
     from simkit.cli.run_options import GivenOptions, with_run_options
     from simkit.cli.run_part import OpenRun, RunPart
-    from simkit.cli.terminal.json_report import add_to_report
+    from simkit.cli.terminal.json_report import add_to_report, report_errors
     from simkit.cli.terminal.options import argument, option
-    from simkit.cli.terminal.output import report_errors
     from simkit.compiler import Compiled, SpecBuilder
     from simkit.diagnostics import Diagnostics, Where, did_you_mean
     from simkit.loaders.resources.loader import Loader, LoadRequest
     from simkit.loaders.resources.xml_reader import Document
+    from simkit.number_text import counted
     from simkit.params import LARGEST
     from simkit.plugins.base import NEVER
+    from simkit.plugins.base import Plugin as Plugin  # for type checkers alone; users import it from `simkit`
     from simkit.plugins.endpoints import acts, listens, offers, publishes
     from simkit.plugins.find_entities import find_link, find_named_joint, find_named_link
     from simkit.plugins.joints.joint_axis import JointAxis
@@ -130,6 +131,7 @@ __all__ = [
     "blocks",
     "boolean",
     "choice",
+    "counted",
     "did_you_mean",
     "find_link",
     "find_named_joint",
@@ -155,11 +157,11 @@ __all__ = [
 _MODULES = {
     "simkit.cli.run_options": ("GivenOptions", "with_run_options"),
     "simkit.cli.run_part": ("OpenRun", "RunPart"),
-    "simkit.cli.terminal.json_report": ("add_to_report",),
+    "simkit.cli.terminal.json_report": ("add_to_report", "report_errors"),
     "simkit.cli.terminal.options": ("argument", "option"),
-    "simkit.cli.terminal.output": ("report_errors",),
     "simkit.compiler": ("Compiled", "SpecBuilder"),
     "simkit.diagnostics": ("Diagnostics", "Where", "did_you_mean"),
+    "simkit.number_text": ("counted",),
     "simkit.loaders.resources.loader": ("LoadRequest", "Loader"),
     "simkit.loaders.resources.xml_reader": ("Document",),
     "simkit.params": ("LARGEST",),

@@ -270,12 +270,19 @@ class RunSpec:
     ros_parameters: Mapping[str, Any] = run_field(dict, PlainValues())
     plugins: tuple[object, ...] = ()
     topics: tuple[str, ...] = run_field(
-        (), Texts(), CommandOption("--topic", "PATTERN", "Record or compare only topics of this pattern; repeatable.")
+        (),
+        Texts(),
+        CommandOption(
+            "--topic",
+            "PATTERN",
+            "Record or compare only topics of this pattern; repeatable.",
+            completion="source_topics",
+        ),
     )
     skip: tuple[str, ...] = run_field(
         (),
         Texts(),
-        CommandOption("--skip", "PATTERN", "Leave out topics of this pattern; repeatable."),
+        CommandOption("--skip", "PATTERN", "Leave out topics of this pattern; repeatable.", completion="source_topics"),
         packed="changed",
         is_appended=True,
     )

@@ -43,6 +43,20 @@ class Echo(simkit.WorldPlugin):
         self.act("/count", msgs.Fibonacci_Goal, count)
 
 
+class Push(simkit.ModelPlugin):
+    """Plugin of a model."""
+
+    def load(self, parent: simkit.Model, params: simkit.Params) -> None:
+        assert_type(parent.links, dict[str, simkit.Link])
+
+
+def plugins(sim: simkit.Simulation) -> None:
+    assert_type(sim.plugins, dict[str, simkit.Plugin])
+    push = sim.plugins["bot::Push"]
+    if isinstance(push, Push):
+        print(push.ros.topic("push"))
+
+
 def topics(sim: simkit.Simulation) -> None:
     assert_type(sim.subscribe("/scan"), simkit.Subscription[Any])
     scans = sim.subscribe("/scan", type=msgs.LaserScan, callback=lambda scan: print(scan.ranges))
@@ -119,6 +133,9 @@ MISTAKES = {
     "sim.send_goal('/count', msgs.Fibonacci_Goal(3), lambda feedback: print(feedback.sequenc))": "sequenc",
     "client.call('/lamp', msgs.SetBool_Request(True)).succes": "succes",
     "sim.sensor('lds').ranges": "ranges",
+    "sim.plugins['drive'].sped": "sped",
+    "Push().load(sim, simkit.Params())": "Model",
+    "simkit.load('world', plugins=Push())": "plugins",
 }
 
 

@@ -17,7 +17,7 @@ from simkit.cli.plot_sources import PlotRequest, draw_chart, is_bag, split_sourc
 from simkit.cli.run_loop import Interrupts
 from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
 from simkit.cli.terminal import completion, options
-from simkit.cli.terminal.json_report import add_to_report
+from simkit.cli.terminal.json_report import add_to_report, report_errors
 from simkit.cli.terminal.options import argument, option, validate_word
 from simkit.cli.terminal.output import (
     absolute_name,
@@ -26,11 +26,11 @@ from simkit.cli.terminal.output import (
     print_line,
     print_name,
     print_note,
-    report_errors,
-    report_errors_quietly,
+    without_interrupt_message,
 )
 from simkit.cli.terminal.topic_sources import SimClock, connect_to_simulation
 from simkit.errors import InputError
+from simkit.number_text import counted
 
 if TYPE_CHECKING:
     from simkit.live import Client, LivePublisher
@@ -39,7 +39,8 @@ if TYPE_CHECKING:
 _LOSSES_LISTED = 20
 
 
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def plot(
     arguments: Annotated[
         list[str],
@@ -66,7 +67,8 @@ def plot(
     draw_chart(sources, fields, PlotRequest(output, against, start, end, title), json_=json_)
 
 
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def export(
     recording: options.Recording,
     output: Annotated[
@@ -103,10 +105,12 @@ def export(
     for e in exports:
         for note in e.notes:
             print_note(f"note: {e.topic}: {note}")
-    print_line(f"{target}: {sum(e.count for e in exports)} messages of {len(exports)} topics")
+    messages = counted(sum(e.count for e in exports), "message")
+    print_line(f"{target}: {messages} of {counted(len(exports), 'topic')}")
 
 
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 @with_run_options("file", "world", usual={"model_world": "empty space"})
 def video(
     recording: options.Recording,
@@ -142,17 +146,24 @@ def video(
     if json_:
         print_json({"output": str(output), "frames": count, "models": sorted(moved)})
     else:
-        print_line(f"{output}: {count} frames, {float(film.frame_rate):g} per second")
+        print_line(f"{output}: {counted(count, 'frame')}, {float(film.frame_rate):g} per second")
     return interrupts.exit_code
 
 
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def play(
     recordings: Annotated[
         list[Path], argument("Bags: .mcap or .db3 files, or rosbag2 folders; several share one timeline.", "BAG...")
     ],
     topics: Annotated[
-        list[str], Option("--topics", help="Topic to play; repeatable. Default: all inputs of the world.")
+        list[str],
+        option(
+            "Topic to play; repeatable. Default: all inputs of the world.",
+            None,
+            "--topics",
+            complete=completion.source_topics,
+        ),
     ] = [],
     all_: Annotated[bool, Option("--all", "-a", help="Play all topics of the bags.")] = False,
     rate: Annotated[float, option("Playback speed factor.", "N", "--rate", "-r", min=1e-3)] = 1.0,
@@ -242,7 +253,8 @@ bag = typer.Typer(help="Record, describe, play, film, export and recover bags.",
 
 
 @bag.command()
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def info(
     recording: options.Recording,
     topic_name: Annotated[bool, Option("--topic-name", "-t", help="Print only the names of the topics.")] = False,
@@ -298,8 +310,9 @@ def recover(
     for line in recovery.loss_lines()[:_LOSSES_LISTED]:
         print_note(f"note: {line}")
     if len(recovery.losses) > _LOSSES_LISTED:
-        print_note(f"note: {len(recovery.losses) - _LOSSES_LISTED} more damaged parts")
+        print_note(f"note: {counted(len(recovery.losses) - _LOSSES_LISTED, 'more damaged part')}")
     span = (recovery.end - recovery.start) * 1e-9
     print_line(
-        f"{target}: {recovery.messages} messages on {recovery.topics} topics over {span:.3f} s ({recovery.state})"
+        f"{target}: {counted(recovery.messages, 'message')} on {counted(recovery.topics, 'topic')} "
+        f"over {span:.3f} s ({recovery.state})"
     )

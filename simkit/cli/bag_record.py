@@ -11,12 +11,14 @@ from typer import Option
 
 from simkit.cli.run_loop import Interrupts
 from simkit.cli.terminal import completion, options
+from simkit.cli.terminal.json_report import report_errors
 from simkit.cli.terminal.options import argument, compile_pattern, option
-from simkit.cli.terminal.output import absolute_name, print_json, print_note, report_errors_quietly
+from simkit.cli.terminal.output import absolute_name, print_json, print_note, without_interrupt_message
 from simkit.cli.terminal.topic_sources import LiveSource, connect_to_simulation
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 from simkit.msgs.topic_names import is_hidden
+from simkit.number_text import counted
 
 if TYPE_CHECKING:
     from simkit.cli.terminal.topic_sources import LiveFeed, ReceivedMessage, TopicEntry
@@ -28,7 +30,8 @@ _RECEIVE_TIMEOUT = 0.2  # [s] of wall time between two checks for Ctrl-C
 _DISCOVERY_PERIOD = 1.0  # [s] of wall time between two searches for new topics
 
 
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def record(
     topics: Annotated[list[str] | None, argument("Topics to record.", "[TOPIC]...", completion.topics)] = None,
     all_: Annotated[bool, Option("--all", "-a", help="Record all topics, including new ones.")] = False,
@@ -80,10 +83,10 @@ def record(
     if json_:
         print_json(summary)
     else:
-        print_note(f"{target}: {bag.span.count} messages on {len(bag.channels)} topics")
+        print_note(f"{target}: {counted(bag.span.count, 'message')} on {counted(len(bag.channels), 'topic')}")
         if lost:
             counts = ", ".join(f"{count} of {topic}" for topic, count in lost.items())
-            text = f"note: {sum(lost.values())} messages were dropped ({counts})"
+            text = f"note: {counted(sum(lost.values()), 'message')} dropped ({counts})"
             print_note(f"{text}; `simkit run --record` drops none")
     return stop.exit_code
 

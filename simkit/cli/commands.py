@@ -306,7 +306,7 @@ COMMANDS = {
     "doctor": "Check the installation and print a remedy for each problem.",
     "golden": "Record and compare golden runs (reference sensor outputs).",
     "bag": "Record, describe, play, film, export and recover bags.",
-    "plot": "Plot fields of bags, worlds and scenarios over time.",
+    "plot": "Plot fields of topics, and expressions as in conditions, over time.",
     "graph": "Draw the nodes and topics, or the frames, of a world or a running simulation.",
     "map": "Write the true occupancy map of a world as PGM and YAML.",
 }

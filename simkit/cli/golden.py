@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from typer import Option
 
-from simkit.cli.run_options import NONE_GIVEN, GivenOptions, read_run, scenario_spec, with_run_options
+from simkit.cli.run_options import NONE_GIVEN, GivenOptions, scenario_spec, with_run_options
 from simkit.cli.terminal import options
 from simkit.cli.terminal.json_report import add_diagnostics, add_to_report, error_diagnostics, report_errors_and_json
 from simkit.cli.terminal.options import argument, option
@@ -27,6 +27,7 @@ from simkit.cli.terminal.output import (
     stdout_console,
 )
 from simkit.errors import InputError, RegressionError
+from simkit.number_text import counted
 from simkit.run_spec import run_fields
 from simkit.testing.golden.parallel_check import CheckResult
 from simkit.testing.scenarios.code_permission import without_permissions
@@ -120,7 +121,7 @@ def _print_results(results: Sequence[CheckResult], *, blessed: bool, quiet: bool
             print_error(result.error)
         elif verdict is not None and _was_blessed(verdict, blessed):
             count = len(verdict.comparison.differences)
-            what = f"with {count} difference{'s' if count > 1 else ''}:" if count else "with the bits of this machine"
+            what = f"with {counted(count, 'difference')}:" if count else "with the bits of this machine"
             stdout_console().print(f"{verdict.name}: updated, {what}")
             for difference in verdict.comparison.differences[:5]:
                 stdout_console().print(f"  {difference.words}")
@@ -217,6 +218,8 @@ def record(
     json_: options.Json = False,  # noqa: ARG001 (`report_errors_and_json` reads it)
 ) -> None:
     """Run a scenario and store the result as a golden run."""
+    from simkit.testing.scenarios.scenario_file import read_run
+
     loading = given.load_options()
     source = read_run(world, folders=loading.get("resource_paths", ()))
     spec = scenario_spec(source, given, allow_code=allow_code)
@@ -230,7 +233,9 @@ def record(
     _print_needed_folders(out_)
     messages = sum(len(stream.times_ns) for stream in recorded.streams.values())
     size = sum(path.stat().st_size for path in out_.iterdir())
-    stdout_console().print(f"{out_}: {len(recorded.streams)} topics, {messages} messages, {size / 1000:.1f} kB")
+    stdout_console().print(
+        f"{out_}: {counted(len(recorded.streams), 'topic')}, {counted(messages, 'message')}, {size / 1000:.1f} kB"
+    )
     add_to_report(
         folder=str(out_),
         topics=len(recorded.streams),

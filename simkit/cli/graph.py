@@ -12,6 +12,7 @@ from typer import Option
 from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.frame_tree import receive_transforms
+from simkit.cli.terminal.json_report import report_errors
 from simkit.cli.terminal.options import argument, option
 from simkit.cli.terminal.output import (
     JsonObject,
@@ -20,9 +21,10 @@ from simkit.cli.terminal.output import (
     print_line,
     print_note,
     printable,
-    report_errors_quietly,
+    without_interrupt_message,
 )
 from simkit.cli.terminal.topic_sources import open_source
+from simkit.number_text import counted
 from simkit.run_fields import LoadArguments
 
 if TYPE_CHECKING:
@@ -32,7 +34,8 @@ _FRAMES_AFTER = 0.2  # [s] of simulated time in which a world sends its transfor
 _COLLECTION_TIME = 1.0  # [s] of wall time for the transforms of a running simulation
 
 
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 @with_run_options("file", "world", usual={"model_world": "empty space"})
 def graph(
     source: Annotated[str, argument("World, model, or name of a running simulation.", "WORLD|SIM", completion.worlds)],
@@ -64,9 +67,7 @@ def graph(
     if json_:
         print_json({"output": str(output), **{f"{kind}s": count for kind, count in kinds.items()}, "edges": len(edges)})
     else:
-        print_line(
-            f"{output}: " + ", ".join(f"{count} {kind}{'' if count == 1 else 's'}" for kind, count in kinds.items())
-        )
+        print_line(f"{output}: " + ", ".join(counted(count, kind) for kind, count in kinds.items()))
 
 
 def _of_simulation(name: str, *, tf: bool) -> tuple[Mapping[str, JsonObject], TransformTree]:

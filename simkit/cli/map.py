@@ -10,14 +10,9 @@ from typer import Option
 
 from simkit.cli.run_options import NONE_GIVEN, GivenOptions, with_run_options
 from simkit.cli.terminal import completion, options
+from simkit.cli.terminal.json_report import report_errors
 from simkit.cli.terminal.options import argument, option
-from simkit.cli.terminal.output import (
-    print_diagnostics,
-    print_json,
-    print_line,
-    print_note,
-    report_errors_quietly,
-)
+from simkit.cli.terminal.output import print_diagnostics, print_json, print_line, print_note, without_interrupt_message
 from simkit.writers.atomic_output import check_writable, write_atomically
 
 if TYPE_CHECKING:
@@ -30,7 +25,8 @@ Place = tuple[float, float]
 _SUFFIXES = (".pgm", ".yaml")
 
 
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 @with_run_options("file", "world", usual={"model_world": "empty space"})
 def map(
     world: Annotated[str, argument("World or model.", "WORLD", completion.worlds)],

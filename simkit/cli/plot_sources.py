@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from simkit.cli.run_options import GivenOptions, scenario_spec
 from simkit.cli.terminal.output import print_diagnostics, print_json, print_line, print_note
 from simkit.errors import InputError
+from simkit.number_text import counted
 from simkit.run_spec import RunSpec
 from simkit.writers.atomic_output import check_writable, write_atomically
 
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from simkit.recording.charts.chart import Chart, Style
     from simkit.recording.charts.fields import Curve
     from simkit.recording.charts.series import Series
+    from simkit.testing.conditions.value_series import ValueSeries
 
 
 _BAGS: Final = (".mcap", ".db3")
@@ -63,23 +66,30 @@ def is_bag(path: Path) -> bool:
 def split_sources_and_fields(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
     """Split arguments into sources and fields.
 
-    The first argument is a source. Each further argument is a source if it exists or looks like one.
+    The first argument is a source. Each further argument is a source if it exists or looks like one. A field is the
+    path of a number in the messages of a topic, or an expression with a function, as in a condition.
     """
     sources: list[str] = list(arguments[:1])
     fields: list[str] = []
     for argument in arguments[1:]:
         path = Path(argument)
         known = path.suffix.lower() in (*_BAGS, *_SCENARIOS, *_WORLDS)
-        is_name = "/" not in argument and "." not in argument
+        is_name = not is_expression(argument) and "/" not in argument and "." not in argument
         (sources if known or is_name or path.exists() else fields).append(argument)
     return sources, fields
+
+
+def is_expression(field: str) -> bool:
+    """Check whether a field is an expression, such as `distance('a', 'b')`; no name of a topic has a bracket."""
+    return "(" in field
 
 
 def draw_chart(sources: Sequence[str], fields: Sequence[str], request: PlotRequest, *, json_: bool) -> None:
     """Draw fields of sources to a file.
 
     Raises:
-        InputError: SK-BAG-010 to 012, SK-CLI-016, SK-CLI-030, SK-CLI-033, SK-CLI-035; errors of loading a world.
+        InputError: SK-BAG-010 to 012, SK-CLI-016, SK-CLI-030, SK-CLI-033, SK-CLI-035; errors of loading a world, and of
+            the expressions.
     """
     from simkit.recording.charts.chart import check_suffix, render_chart
 
@@ -152,7 +162,7 @@ def _summary(output: Path, series: list[Series], *, json_: bool) -> None:
         unit = f" {row['unit']}" if row["unit"] else ""
         numbers = "  ".join(f"{key} {row[key]:.6g}" for key in ("min", "max", "mean", "last"))
         print_line(f"{row['label']:<{width}}  {row['count']:>7}  {numbers}{unit}")
-    print_line(f"{output}: {len(rows)} curve{'s' if len(rows) > 1 else ''}")
+    print_line(f"{output}: {counted(len(rows), 'curve')}")
 
 
 # ---------------------------------------------------------------------- numbers of a source
@@ -171,7 +181,7 @@ def _series(source: str, fields: Sequence[str], request: PlotRequest) -> list[Se
         return series_list
     base = series_list[-counts[-1] :]
     if len(base) != 1:
-        raise InputError("SK-BAG-010", f"--against {request.against}: has {len(base)} numbers; expected 1")
+        raise InputError("SK-BAG-010", f"--against {request.against}: has {counted(len(base), 'number')}; expected 1")
     return series_over(series_list[: -counts[-1]], base[0])
 
 
@@ -193,6 +203,15 @@ def _curves(
     return [curve for curves in groups for curve in curves], [len(curves) for curves in groups]
 
 
+def _refuse_expressions(expressions: Sequence[str], source: str, topics: Mapping[str, str]) -> None:
+    """Raise an error for expressions of a bag, which has messages but no world."""
+    listed = ", ".join(list(topics)[:_TOPICS_LISTED]) or "none"
+    text = f"{', '.join(expressions)}: an expression needs a running world, and {source} is a bag; its topics: {listed}"
+    raise InputError(
+        "SK-BAG-010", text, help="plot a field such as /odom.pose.pose.position.x, or the world of the bag"
+    )
+
+
 def _bag_series(source: str, fields: Sequence[str], _: PlotRequest) -> tuple[list[Series], list[int]]:
     from simkit.recording.bags.reader import open_bag_to_read
     from simkit.recording.charts.series import bag_series
@@ -205,6 +224,8 @@ def _bag_series(source: str, fields: Sequence[str], _: PlotRequest) -> tuple[lis
             if topic.type_name != topics[topic.name]:
                 print_note(f"note: {topic.name} also has messages of type {topic.type_name}; they are left out")
         topics = dict(sorted(topics.items()))
+        if expressions := [field for field in fields if is_expression(field)]:
+            _refuse_expressions(expressions, source, topics)
         curves, counts = _curves(fields, topics, bag.store_of, f"the bag {source}")
         return bag_series(bag, curves), counts
 
@@ -212,6 +233,7 @@ def _bag_series(source: str, fields: Sequence[str], _: PlotRequest) -> tuple[lis
 def _world_series(source: str, fields: Sequence[str], request: PlotRequest) -> tuple[list[Series], list[int]]:
     from simkit import msgs
     from simkit.recording.charts.series import SeriesTap
+    from simkit.testing.conditions.value_series import ValueSeries
     from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
     scenario = request.run(source)
@@ -219,7 +241,27 @@ def _world_series(source: str, fields: Sequence[str], request: PlotRequest) -> t
         sim = stack.enter_context(open_scenario(scenario))
         print_diagnostics(sim.diagnostics, verbose=False)
         topics = sim.communication.bus.topics()
-        curves, counts = _curves(fields, topics, lambda _: msgs.type_store(), scenario.title)
+        expressions = [field for field in fields if is_expression(field)]
+        paths = [field for field in fields if not is_expression(field)]
+        is_any = bool(paths) or not expressions
+        curves, counts = _curves(paths, topics, lambda _: msgs.type_store(), scenario.title) if is_any else ([], [])
+        values = stack.enter_context(ValueSeries(sim, expressions))
         tap = stack.enter_context(SeriesTap(sim, curves))
         run_scenario(scenario, sim)
-        return tap.series(), counts
+    return _in_order(fields, tap.series(), counts, values)
+
+
+def _in_order(
+    fields: Sequence[str], of_messages: Sequence[Series], counts: Sequence[int], of_expressions: ValueSeries
+) -> tuple[list[Series], list[int]]:
+    """Return the series of fields in their order, and the number of series of each field."""
+    from simkit.recording.charts.series import Series
+
+    groups: list[list[Series]] = []
+    rest, rest_counts, values = iter(of_messages), iter(counts), iter(of_expressions.values())
+    for field in fields:
+        if is_expression(field):
+            groups.append([Series(field, times=of_expressions.times, values=next(values))])
+        else:
+            groups.append(list(islice(rest, next(rest_counts))))
+    return [series for group in groups for series in group], [len(group) for group in groups]

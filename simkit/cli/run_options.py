@@ -17,7 +17,7 @@ from simkit.cli.terminal.options import option, validate_word
 from simkit.run_fields import CommandOption, LoadArguments, OptionPart, RunField
 from simkit.run_files import FileName
 from simkit.run_nodes import seconds_of
-from simkit.run_spec import FilePath, JsonObject, LoadOptions, RunSpec, SourceOptions, run_fields
+from simkit.run_spec import JsonObject, LoadOptions, RunSpec, SourceOptions, run_fields
 from simkit.run_values import Choice
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -219,24 +219,6 @@ def _option(command_option: CommandOption, usual: str) -> object:
     return made
 
 
-def read_run(world: str, usual_duration: float = 10.0, folders: Sequence[FilePath] = ()) -> RunSpec:
-    """Return the run specification of a world or scenario file, with the requests of the file for code.
-
-    Args:
-        world: world or scenario file.
-        usual_duration: simulated time of a world without a scenario [s].
-        folders: folders of the user in which a scenario may name files.
-
-    Raises:
-        LoadError: the scenario file has errors.
-    """
-    from simkit.testing.scenarios.scenario_file import is_scenario_file, read_scenario
-
-    if "<" not in world and is_scenario_file(world):
-        return read_scenario(world, folders)
-    return RunSpec(world, duration=usual_duration)
-
-
 def scenario_spec(
     world: str | RunSpec, given: GivenOptions, *, allow_code: bool = False, usual_duration: float = 10.0
 ) -> RunSpec:
@@ -253,6 +235,7 @@ def scenario_spec(
         InputError: the bag of `--play` cannot be read.
     """
     from simkit.testing.scenarios.code_permission import add_options
+    from simkit.testing.scenarios.scenario_file import read_run
 
     options = given.load_options()
     folders = options.get("resource_paths", ())

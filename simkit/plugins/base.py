@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from simkit.msgs.message_classes import ActionGoal, ServiceRequest
     from simkit.msgs.message_types import F, M, R
     from simkit.run_spec import PluginErrorPolicy
-    from simkit.runtime import Simulation
+    from simkit.runtime import Model, Simulation, Visual
     from simkit.runtime.array_rules import PluginRule
     from simkit.runtime.communication.action_server import Action, GoalHandle
     from simkit.runtime.communication.parameter import Parameter
@@ -473,17 +473,32 @@ class WorldPlugin(Plugin):
 
     parent_kind = "world"
 
+    if TYPE_CHECKING:  # a base class beside this one may have the method
+
+        @abc.abstractmethod
+        def load(self, parent: Simulation, params: Params) -> None: ...
+
 
 class ModelPlugin(Plugin):
     """Plugin of a model: `prepare` receives a `SceneModel`, `load` the `Model`."""
 
     parent_kind = "model"
 
+    if TYPE_CHECKING:  # a base class beside this one may have the method
+
+        @abc.abstractmethod
+        def load(self, parent: Model, params: Params) -> None: ...
+
 
 class VisualPlugin(Plugin):
     """Plugin of a visual: `prepare` receives a `SceneVisual`, `load` the `Visual`."""
 
     parent_kind = "visual"
+
+    if TYPE_CHECKING:  # a base class beside this one may have the method
+
+        @abc.abstractmethod
+        def load(self, parent: Visual, params: Params) -> None: ...
 
 
 class SensorPlugin(Plugin):

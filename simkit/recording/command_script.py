@@ -81,6 +81,22 @@ class Commands:
         for number in range(len(self._commands)):
             self._push(number, 0)
 
+    def check_messages(self) -> None:
+        """Check that each message matches the types of its topic; nothing is sent.
+
+        Raises:
+            InputError: SK-CLI-012 with one line for each message that does not match; with file and line.
+        """
+        bus = self._sim.communication.bus
+
+        def check(command: Command) -> None:
+            try:
+                bus.message_for(command.topic, command.message)
+            except MessageError as error:
+                raise _message_error(command, error) from None
+
+        _collect(check, self._commands)
+
     @property
     def next_tick(self) -> int | None:
         """Tick of the next command; None after the last command."""
@@ -98,7 +114,7 @@ class Commands:
             try:
                 self._sim.publish(command.topic, command.message)
             except MessageError as error:
-                raise InputError("SK-CLI-012", f"{command.where}: SK-CLI-012 {error}", shows_code=False) from None
+                raise _message_error(command, error) from None
             except InputError as error:  # nodes had time to create the topic
                 raise _script_error(command.where, error.message) from None
             self._push(number, index + 1)
@@ -126,7 +142,7 @@ class LateVelocity:
     """
 
     def __init__(self, sim: Simulation, text: str) -> None:
-        _velocity(text)
+        parse_velocity(text)
         self._sim, self._text = sim, text
         self._commands: Commands | None = None
         self._next_look = sim.tick
@@ -172,7 +188,7 @@ def steady_velocity(text: str, topics: Mapping[str, str], idle: Collection[str] 
     Raises:
         InputError: SK-CLI-010 the numbers are invalid, or the topic is not unique.
     """
-    linear, angular = _velocity(text)
+    linear, angular = parse_velocity(text)
     twists = [topic for topic, type_name in topics.items() if type_name in _TWISTS]
     # a controller of ros2_control takes commands without a stamp on a second topic and publishes its limited commands
     companions = {f"{topic}{suffix}" for topic in twists for suffix in ("_unstamped", "_out")}
@@ -187,8 +203,12 @@ def steady_velocity(text: str, topics: Mapping[str, str], idle: Collection[str] 
     return Command(0.0, topic, message, until=_LATEST, where="--cmd-vel")
 
 
-def _velocity(text: str) -> tuple[float, float]:
+def parse_velocity(text: str, where: str = "--cmd-vel") -> tuple[float, float]:
     """Return forward speed [m/s] and yaw rate [rad/s] of a text.
+
+    Args:
+        text: two numbers, separated by a comma or a space.
+        where: name of the argument, for the message.
 
     Raises:
         InputError: SK-CLI-010 the numbers are invalid.
@@ -199,7 +219,7 @@ def _velocity(text: str) -> tuple[float, float]:
         if not (math.isfinite(linear) and math.isfinite(angular)):
             raise ValueError
     except ValueError:
-        raise InputError("SK-CLI-010", f"--cmd-vel: found {text!r}; expected LINEAR,ANGULAR such as 0.2,0.3") from None
+        raise InputError("SK-CLI-010", f"{where}: found {text!r}; expected LINEAR,ANGULAR such as 0.2,0.3") from None
     return linear, angular
 
 
@@ -340,6 +360,10 @@ def _number(value: object, key: str, where: str, minimum: float, maximum: float)
         bounds = f"at least {minimum:g} and at most {maximum:.10g}"
         raise _script_error(where, f"{key}: found {value!r:.60}; expected a number of {bounds}")
     return number
+
+
+def _message_error(command: Command, error: MessageError) -> InputError:
+    return InputError("SK-CLI-012", f"{command.where}: SK-CLI-012 {error}", shows_code=False)
 
 
 def _script_error(where: str, message: str) -> InputError:

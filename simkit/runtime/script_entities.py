@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, TypeVar, cast, overload
 
 from simkit.runtime.contact.collision_contacts import Contact, list_contacts
+from simkit.runtime.contact.rim_slip import WheelSlip, list_wheel_slips
 from simkit.runtime.handles.find_sensor import checked_class, find_sensor
 
 if TYPE_CHECKING:
-    from simkit.extend import Sensor
+    from simkit.extend import Plugin, Sensor
     from simkit.runtime.engine.engine import Engine
     from simkit.runtime.handles.joint import Joint
     from simkit.runtime.handles.light import Light
@@ -86,11 +87,17 @@ class ScriptEntities:
 
     def contacts(self, model: Model | str | None = None) -> list[Contact]:
         """Return the contacts of a model, also with itself, or of all; a KeyError suggests the closest name."""
-        name = None if model is None else self.model(cast("str", getattr(model, "scoped", model))).scoped
-        return list_contacts(self.engine.compiled, self.engine.physics.awake_data(), name)
+        return list_contacts(self.engine.compiled, self.engine.physics.awake_data(), self._scoped(model))
+
+    def wheel_slips(self, model: Model | str | None = None) -> list[WheelSlip]:
+        """Return the true slip of the wheels of a model, or of all; a KeyError suggests the closest name."""
+        return list_wheel_slips(self.engine.compiled, self.engine.physics.awake_data(), self._scoped(model))
+
+    def _scoped(self, model: Model | str | None) -> str | None:
+        return None if model is None else self.model(cast("str", getattr(model, "scoped", model))).scoped
 
     @property
-    def plugins(self) -> dict[str, Any]:
-        """Plugins of the file by scoped name."""
+    def plugins(self) -> dict[str, Plugin]:
+        """Plugins by scoped name, `robot::drive`; those of the world by their own name."""
         self.engine.check_open()
         return self.contents.plugins

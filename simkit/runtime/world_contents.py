@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from simkit.errors import InputError
 from simkit.memory_error import memory_errors
@@ -21,7 +21,7 @@ from simkit.runtime.world_source import ModelLoader, WorldSource
 from simkit.scene import SceneLink
 
 if TYPE_CHECKING:
-    from simkit.extend import Sensor
+    from simkit.extend import Plugin, Sensor
     from simkit.runtime.communication.communication import Communication
     from simkit.runtime.engine.engine import Engine
     from simkit.runtime.engine.snapshot import Snapshots
@@ -78,14 +78,15 @@ class WorldContents:
         return dict(self.handles.tables["sensor"])
 
     @property
-    def plugins(self) -> dict[str, Any]:
+    def plugins(self) -> dict[str, Plugin]:
         """Plugins by scoped name, `robot::drive`; those of the world by their own name.
 
         The first of equal names counts.
         """
-        by_name: dict[str, Any] = {}
+        by_name: dict[str, Plugin] = {}
         for plugin in self._engine.structure.all_plugins():
-            by_name.setdefault(f"{plugin.scoped}::{plugin.name}" if plugin.scoped else plugin.name, plugin)
+            name = f"{plugin.scoped}::{plugin.name}" if plugin.scoped else plugin.name
+            by_name.setdefault(name, cast("Plugin", plugin))  # the runtime itself knows only `AttachedPlugin`
         return by_name
 
     @property

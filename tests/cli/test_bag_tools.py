@@ -66,6 +66,31 @@ def test_a_path_is_drawn_from_above(here: Path, simkit_line: Any) -> None:
     assert Path("p.png").read_bytes()[:4] == b"\x89PNG"
 
 
+def test_expressions_of_conditions_are_curves_beside_fields(here: Path, simkit_line: Any) -> None:
+    fields = ("distance('rover', (0, 0, 0))", "/odom.pose.pose.position.x")
+    line = ("plot", "yard.sdf", *fields, "topic('/odom').pose.pose.position.x", "not (time > 0.5)")
+    done = simkit_line(*line, "--duration", "1", "--script", "drive.yaml", "-o", "e.svg", "--json")
+    assert done.exit_code == 0, done.stderr
+    distance, field, same, late = json.loads(done.stdout)["curves"]
+    assert [row["label"] for row in (distance, field)] == list(fields)
+    assert distance["count"] == 501  # the start, and each step of 2 ms
+    assert same["last"] == field["last"] > 0.2
+    assert (late["min"], late["max"], late["mean"]) == (0.0, 1.0, pytest.approx(0.5, abs=0.001))
+
+
+def test_all_expressions_that_cannot_be_plotted_are_named_before_the_run(here: Path, simkit_line: Any) -> None:
+    done = simkit_line("plot", "yard.sdf", "pose('rovr').x", "pose('rover')", "--duration", "1")
+    assert done.exit_code == 2
+    assert "SK-COND-005" in done.stderr and "did you mean 'rover'" in done.stderr
+    assert "the plotted value is a pose, but must be a number, or true or false" in done.stderr
+
+
+def test_expressions_of_a_bag_are_refused_with_its_topics(here: Path, simkit_line: Any) -> None:
+    done = simkit_line("plot", "drive.mcap", "pose('rover').x", "distance('rover', 'a')")
+    assert done.exit_code == 2
+    assert "SK-BAG-010 pose('rover').x, distance('rover', 'a'): " in done.stderr and "/odom" in done.stderr
+
+
 @pytest.mark.parametrize(
     ("words", "code"),
     [

@@ -119,6 +119,36 @@ def test_plots_complete_bags_and_then_their_topics(tmp_path: Path, monkeypatch: 
     assert completed("simkit plot drive.mcap /o") == ["/odom"]
 
 
+YARD = """<sdf version="1.9"><world name="w"><model name="m"><link name="l">
+<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial>
+<sensor name="imu" type="imu"><topic>feel</topic></sensor></link></model></world></sdf>"""
+
+
+def test_topic_and_skip_of_a_run_complete_topics_of_its_bag_or_world(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("w.sdf").write_text(YARD, encoding="utf-8")
+    Path("s.yaml").write_text("world: w.sdf\n", encoding="utf-8")
+    Path("s.py").write_text("raise SystemExit(1)\n", encoding="utf-8")
+    with simkit.load("w.sdf") as sim, Recorder(sim, Path("drive.mcap"), topics=("/feel",)):
+        sim.run(0.1)
+    assert completed("simkit bag play drive.mcap --topics /") == ["/feel"]
+    for line in ("run w.sdf --topic", "golden record s.yaml --skip", "run empty --spawn w.sdf:0,0,0 --skip"):
+        assert completed(f"simkit {line} /fe") == ["/feel"], line
+    assert completed("simkit golden record s.py --topic /") == []
+    assert completed("simkit run no_such.sdf --topic /") == []
+
+
+@pytest.mark.slow
+@pytest.mark.needs_packs
+def test_motions_and_plugins_are_completed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert completed("simkit plugin info libgazebo_ros_diff") == ["libgazebo_ros_diff_drive.so"]
+    assert completed("simkit motion play home unfold_") == ["unfold_arm"]
+    assert completed("simkit motion play --robot no_such un") == []
+
+
 SHELLS = {
     "bash": """
 source ./script
@@ -161,6 +191,7 @@ def test_each_shell_offers_worlds_bags_and_topics(shell: str, place: Path, start
         ("simkit run turtlebot3_w", ["turtlebot3_waffle", "turtlebot3_waffle_pi", "turtlebot3_world"]),
         ("simkit bag info dr", ["drive.mcap"]),
         ("simkit topic echo /od", ["/odom"]),
+        ("simkit run turtlebot3_empty --skip /od", ["/odom"]),
     ):
         answer = subprocess.run(
             [program, "-c", SHELLS[shell]],

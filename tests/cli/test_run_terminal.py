@@ -22,7 +22,7 @@ from typer.testing import CliRunner
 import simkit.live
 from simkit.cli import app
 from simkit.cli.run import highest_pace
-from simkit.cli.terminal.output import report_errors
+from simkit.cli.terminal.json_report import report_errors
 
 if sys.platform == "win32":
     pytest.skip("its terminals are others", allow_module_level=True)

@@ -6,9 +6,11 @@ completed word.
 
 from __future__ import annotations
 
+import io
 import os
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stderr
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -30,7 +32,8 @@ def silent(complete: Callable[[typer.Context], Iterable[str]]) -> Completer:
     def matching_names(ctx: typer.Context, incomplete: str) -> list[str]:
         try:
             ctx.meta[_INCOMPLETE] = incomplete
-            return [name for name in complete(ctx) if name.startswith(incomplete)]
+            with redirect_stderr(io.StringIO()):
+                return [name for name in complete(ctx) if name.startswith(incomplete)]
         except Exception:  # noqa: BLE001
             return []
 
@@ -63,6 +66,7 @@ def open_topics(ctx: typer.Context) -> Iterator[Source]:
 
 _WORLD_SUFFIXES = (".sdf", ".world", ".urdf", ".xacro", ".xml", ".model", ".mjcf")
 _SCENARIO_SUFFIXES = (".yaml", ".yml", ".py")
+_READ_SUFFIXES = (*_WORLD_SUFFIXES, ".yaml", ".yml")  # a scenario in Python is code, which no completion runs
 _BAG_SUFFIXES = (".mcap", ".db3")
 
 
@@ -84,6 +88,12 @@ def scenarios(ctx: typer.Context) -> Iterable[str]:
 
 
 @silent
+def runs(ctx: typer.Context) -> Iterable[str]:
+    """Complete the same names as `scenarios`, and bundles; a folder can be a golden run."""
+    return _worlds_and_files(ctx, _WORLD_SUFFIXES + _SCENARIO_SUFFIXES + (".zip",))
+
+
+@silent
 def bags(ctx: typer.Context) -> Iterable[str]:
     """Complete bags, and folders, which can be bags."""
     return _files(incomplete_word(ctx), _BAG_SUFFIXES)
@@ -92,14 +102,34 @@ def bags(ctx: typer.Context) -> Iterable[str]:
 @silent
 def sources_and_fields(ctx: typer.Context) -> Iterable[str]:
     """Complete worlds, scenarios and bags; after a bag, a slash begins a topic of it."""
-    from simkit.recording.bags.reader import open_bag_to_read
-
-    words = [*(ctx.params.get("arguments") or ()), *ctx.args]
-    bag = next((word for word in words if word.endswith(_BAG_SUFFIXES)), None)
-    if bag is None or not incomplete_word(ctx).startswith("/"):
+    if not incomplete_word(ctx).startswith("/"):
         return _worlds_and_files(ctx, _WORLD_SUFFIXES + _SCENARIO_SUFFIXES + _BAG_SUFFIXES)
-    with open_bag_to_read(Path(bag)) as reader:
-        return list(dict.fromkeys(topic.name for topic in reader.topics))
+    return _source_topics(ctx)
+
+
+@silent
+def source_topics(ctx: typer.Context) -> Iterable[str]:
+    """Complete topics of the bag, or of the world or scenario with its spawned models, that the line names."""
+    return _source_topics(ctx)
+
+
+def _source_topics(ctx: typer.Context) -> list[str]:
+    from simkit.loaders.resources.bundled_models import bundled_names
+    from simkit.recording.bags.reader import open_bag_to_read
+    from simkit.testing.scenarios.scenario_file import read_run
+    from simkit.testing.scenarios.scenario_run import open_scenario
+
+    given = (value if isinstance(value, (list, tuple)) else [value] for value in ctx.params.values())
+    sources = [str(word) for values in (*given, ctx.args) for word in values]
+    bag = next((word for word in sources if word.endswith(_BAG_SUFFIXES)), None)
+    if bag is not None:
+        with open_bag_to_read(Path(bag)) as reader:
+            return list(dict.fromkeys(topic.name for topic in reader.topics))
+    source = next(word for word in sources if word.lower().endswith(_READ_SUFFIXES) or word in bundled_names())
+    run = read_run(source)
+    spawn = (*run.spawn, *(ctx.params.get("spawn_") or ()))
+    with open_scenario(replace(run, spawn=spawn)) as sim:
+        return list(sim.communication.bus.topics())
 
 
 def realism(ctx: typer.Context) -> Iterable[str]:

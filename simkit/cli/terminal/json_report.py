@@ -1,4 +1,7 @@
-"""Report of a command with `--json`: one JSON object on standard output, everything else on standard error."""
+"""End of a command: messages and exit codes for errors, and with `--json` one JSON object on standard output.
+
+With `--json`, everything else is on standard error.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +21,6 @@ from simkit.cli.terminal.output import (
     errors_in_words,
     json_written_to,
     print_json,
-    set_json_runner,
 )
 from simkit.diagnostics import Diagnostic
 from simkit.errors import InputError, LoadError, SimkitError
@@ -134,29 +136,34 @@ def error_diagnostics(error: BaseException) -> list[Diagnostic]:
     return [Diagnostic(code, "error", message, file, line, hint)]
 
 
+def report_errors(command: Callable[P, int | None]) -> Callable[P, None]:
+    """Convert the errors of a command to messages and exit codes, without a traceback for errors of the user.
+
+    With the parameter `json_`, standard output has JSON alone: values of `print_json`, or else one object with the
+    values of `add_to_report`, the diagnostics of an error and the exit code. Other output goes to standard error.
+    """
+    return _report_errors(command, is_always_printed=False)
+
+
 def report_errors_and_json(command: Callable[P, int | None]) -> Callable[P, None]:
-    """Wrap a command like `report_errors`; with `--json`, it always prints its report.
+    """Wrap a command like `report_errors`; with `json_`, the object is also printed if it has no values.
 
     The command adds its results with `add_to_report`. Diagnostics and the exit code are added here.
     """
+    return _report_errors(command, is_always_printed=True)
+
+
+def _report_errors(command: Callable[P, int | None], *, is_always_printed: bool) -> Callable[P, None]:
     in_words = errors_in_words(command)
 
     @functools.wraps(command)
     def run(*args: P.args, **kwargs: P.kwargs) -> None:
         if kwargs.get("json_"):
-            _run_with_report(command, True, *args, **kwargs)
+            _run_with_report(command, is_always_printed, *args, **kwargs)
         else:
             in_words(*args, **kwargs)
 
     return run
-
-
-def run_with_report(command: Callable[P, int | None], *args: P.args, **kwargs: P.kwargs) -> None:
-    """Run a command; print its report if it has values or failed, and has printed no other JSON."""
-    _run_with_report(command, False, *args, **kwargs)
-
-
-set_json_runner(run_with_report)
 
 
 def _run_with_report(command: Callable[P, int | None], has_report: bool, /, *args: P.args, **kwargs: P.kwargs) -> None:

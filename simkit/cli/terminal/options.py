@@ -10,7 +10,7 @@ from typing import Annotated
 from typer import Argument, Option
 from typer.models import ArgumentInfo, OptionInfo
 
-from simkit.cli.terminal import completion, json_report
+from simkit.cli.terminal import completion
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 
@@ -84,7 +84,6 @@ CodePaths = Annotated[
 ]
 Strict = Annotated[bool, Option("--strict", help="Treat warnings as errors.")]
 Json = Annotated[bool, Option("--json", help="Print JSON.")]
-_JSON_RUNNER = json_report.run_with_report  # the import also lets `report_errors` obey the option
 Verbose = Annotated[bool, Option("--verbose", "-v", help="Show every note instead of their number.")]
 Force = Annotated[bool, Option("--force", help="Overwrite existing files.")]
 Sim = Annotated[

@@ -29,6 +29,7 @@ from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, LoadError, PackError, PluginError, SimkitError
 from simkit.hidden_text import hidden_in_command, is_hiding
 from simkit.memory_error import OutOfMemory, find_memory_error
+from simkit.number_text import counted
 from simkit.packs import fault_text, foreign_pack_of
 
 if TYPE_CHECKING:
@@ -162,13 +163,11 @@ def print_diagnostics(
         listed[kind] += 1
         _print_entry(equal, target)
     for (severity, code), count in left_out.items():
-        target.print(
-            f"{count} more {severity}{'s' if count > 1 else ''} {code}; list all with `simkit check --all`", style="dim"
-        )
+        target.print(f"{counted(count, f'more {severity}')} {code}; list all with `simkit check --all`", style="dim")
     if notes:
         names = ", ".join(f"{code} × {count}" if count > 1 else code for code, count in sorted(notes.items()))
         total = sum(notes.values())
-        text = f"{total} note{'s' if total > 1 else ''} ({names}); show with --verbose"
+        text = f"{counted(total, 'note')} ({names}); show with --verbose"
         target.print(text, style="dim")
 
 
@@ -211,7 +210,7 @@ def print_error(error: SimkitError) -> None:
         print_diagnostics(error.diagnostics, verbose=False)
         count = sum(d.severity == "error" for d in error.diagnostics)
         if count:
-            stderr_console().print(f"{count} error{'s' if count > 1 else ''}; nothing was run", style="bold")
+            stderr_console().print(f"{counted(count, 'error')}; nothing was run", style="bold")
         else:
             stderr_console().print("--strict treats warnings as errors; nothing was run", style="bold")
         return
@@ -221,33 +220,6 @@ def print_error(error: SimkitError) -> None:
     if error.code not in message:
         message = f"{error.code} {message}"
     stderr_console().print(f"error: {printable(message)}", style="red")
-
-
-def report_errors(command: Callable[P, int | None]) -> Callable[P, None]:
-    """Convert the errors of a command to messages and exit codes, without a traceback for errors of the user.
-
-    With the parameter `json_`, standard output has JSON alone: values of `print_json`, or else one object with the
-    values of `add_to_report`, the diagnostics of an error and the exit code. Other output goes to standard error.
-    """
-    in_words = errors_in_words(command)
-
-    @functools.wraps(command)
-    def run(*args: P.args, **kwargs: P.kwargs) -> None:
-        if kwargs.get("json_") and _json_runner is not None:
-            _json_runner(command, *args, **kwargs)
-        else:
-            in_words(*args, **kwargs)
-
-    return run
-
-
-_json_runner: Callable[..., None] | None = None
-
-
-def set_json_runner(runner: Callable[..., None]) -> None:
-    """Set the function that runs a command with `--json`: `json_report`, which itself needs this module."""
-    global _json_runner
-    _json_runner = runner
 
 
 def errors_in_words(command: Callable[P, int | None]) -> Callable[P, None]:
@@ -412,8 +384,8 @@ def _json_value(value: object) -> object:
     return [_json_value(v) for v in value] if isinstance(value, (list, tuple)) else value
 
 
-def report_errors_quietly(command: Callable[P, int | None]) -> Callable[P, None]:
-    """Wrap a command like `report_errors`; Ctrl-C ends it without a message, with exit code 130."""
+def without_interrupt_message(command: Callable[P, int | None]) -> Callable[P, int]:
+    """Wrap a command so that Ctrl-C ends it without a message, with exit code 130."""
 
     @functools.wraps(command)
     def run(*args: P.args, **kwargs: P.kwargs) -> int:
@@ -422,7 +394,7 @@ def report_errors_quietly(command: Callable[P, int | None]) -> Callable[P, None]
         except KeyboardInterrupt as stopped:
             return interrupt_exit_code(stopped)
 
-    return report_errors(run)
+    return run
 
 
 def not_found_error(

@@ -392,8 +392,8 @@ class TopicBus:
             if publisher.pending is not None:
                 publisher.pending()
 
-    def publish(self, topic: str, message: Message) -> None:
-        """Publish a message from outside the loop: to subscribers now, to command inputs before the next step.
+    def message_for(self, topic: str, message: Message) -> Message:
+        """Return a message for a topic; a dict is converted to a type of the topic.
 
         Raises:
             MessageError: the type of a dict is unknown, or the dict fits no type.
@@ -402,11 +402,20 @@ class TopicBus:
         types = self.types_of(topic)
         if not types and isinstance(message, Mapping):
             raise MessageError(f"no topic {topic!r}; {name_hint(topic, self.topics())}")
-        message = checked_message(message, types, repr(topic))
+        return checked_message(message, types, repr(topic))
+
+    def publish(self, topic: str, message: Message) -> None:
+        """Publish a message from outside the loop: to subscribers now, to command inputs before the next step.
+
+        Raises:
+            MessageError: the type of a dict is unknown, or the dict fits no type.
+        """
+        topic = absolute_name(topic)
+        message = self.message_for(topic, message)
         with self.passing("publish", topic=topic, message=message):
             self.gather(topic)
             if self.tally_of(topic) is not None:
-                self._announce(topic, types[0])
+                self._announce(topic, self.types_of(topic)[0])
             readers = self._readers_of(topic)
             for receive in readers.receivers:
                 receive(message)

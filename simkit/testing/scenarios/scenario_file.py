@@ -232,6 +232,22 @@ def read_scenario(
     return permit_code(scenario, allow_code, plugin_paths) if allow_code or plugin_paths else scenario
 
 
+def read_run(world: str, usual_duration: float = 10.0, folders: Sequence[FilePath] = ()) -> RunSpec:
+    """Return the run specification of a world or scenario file, with the requests of the file for code.
+
+    Args:
+        world: world or scenario file.
+        usual_duration: simulated time of a world without a scenario [s].
+        folders: folders of the user in which a scenario may name files.
+
+    Raises:
+        LoadError: the scenario file has errors.
+    """
+    if "<" not in world and is_scenario_file(world):
+        return read_scenario(world, folders)
+    return RunSpec(world, duration=usual_duration)
+
+
 def _check_world(scenario: RunSpec, diagnostics: Diagnostics) -> None:
     """Report problems of the world together with those of the scenario file."""
     from simkit.build import read_scene

@@ -17,6 +17,7 @@ from simkit.errors import InputError
 from simkit.recording.command_script import (
     Commands,
     commands_of,
+    parse_velocity,
     read_script,
     script_items,
     steady_velocity,
@@ -193,7 +194,8 @@ def with_commands(spec: RunSpec, commands: CommandsArgument | None) -> RunSpec:
     """Return a run specification with other commands in place of its own; with its own if `commands` is None.
 
     Raises:
-        InputError: SK-CLI-011 a command or a script is invalid, or the value is of another kind.
+        InputError: SK-CLI-010 a velocity is invalid; SK-CLI-011 a command or a script is invalid, or the value is of
+            another kind.
     """
     if commands is None:
         return spec
@@ -202,9 +204,11 @@ def with_commands(spec: RunSpec, commands: CommandsArgument | None) -> RunSpec:
         path = Path(commands)
         if path.suffix in (".yaml", ".yml"):
             return replace(spec, commands=tuple(script_items(path)))
-        if path.exists():
+        if commands and path.exists():
             return replace(spec, play=str(path.absolute()))
         if isinstance(commands, str) and "," in commands:
+            if "{" not in commands:  # the values of variables are not known yet
+                parse_velocity(commands, "commands")
             return replace(spec, velocity=commands)
     if not isinstance(commands, (list, tuple)):
         wanted = "a list of mappings, a text V,W, a script FILE.yaml, or a bag that exists"
@@ -250,6 +254,8 @@ class ScenarioCommands:
         self._commands = Commands(
             sim, commands_of(resolve_commands(scenario, sim.communication.bus).commands, None if sim.nodes else topics)
         )
+        if not sim.nodes:  # nodes may create further topics
+            self._commands.check_messages()
         self._played: Playback | None = None
         if scenario.played_bag is not None:
             from simkit.recording.bags.playback import Playback

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -21,6 +21,14 @@ if TYPE_CHECKING:
     from simkit_authoring.plugin_facts import Facts, Service
 
 plugin = typer.Typer(help="List, describe and create plugins.", no_args_is_help=True)
+
+
+@completion.silent
+def plugin_names(_: typer.Context) -> Iterable[str]:
+    """Complete names of plugins, as files have them."""
+    from simkit.plugins.discovery.find_plugin_class import plugin_kinds
+
+    return plugin_kinds().written.values()
 
 
 @plugin.command("list")
@@ -68,7 +76,7 @@ def _matching(entry: Entry, search_words: list[str]) -> list[str]:
 @report_errors
 @with_run_options("plugin_paths")
 def show_info(
-    name: Annotated[str, argument("Name in any spelling, class, MODULE:CLASS or FILE.py.")],
+    name: Annotated[str, argument("Name in any spelling, class, MODULE:CLASS or FILE.py.", complete=plugin_names)],
     given: GivenOptions = NONE_GIVEN,
     json_: options.Json = False,
 ) -> None:

@@ -19,11 +19,9 @@ from simkit.errors import ArgumentTypeError, InputError, SimulationDiverged
 from simkit.plugins.discovery.python_plugins import copied_plugins
 from simkit.scene.overrides import override_texts
 from simkit.testing import count_left_out, log_left_out, newly_left_out, open_scenario
-from simkit.testing.conditions.binder import bind
-from simkit.testing.conditions.bound_expression import is_scalar
-from simkit.testing.conditions.parser import parse
-from simkit.testing.conditions.syntax_tree import UndecidedValue, expression_error
-from simkit.testing.conditions.value_types import TEXT
+from simkit.testing.conditions.binder import bind_value
+from simkit.testing.conditions.syntax_tree import UndecidedValue
+from simkit.testing.conditions.value_types import NUMBER, TRUTH
 from simkit.testing.conditions.world_view import WorldView
 from simkit_learning.environments.actions import Actions
 from simkit_learning.environments.observations import Observations, no_message
@@ -475,11 +473,7 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
         """Return the function that returns the present value of a reward or an end."""
         if not isinstance(value, str):
             return (lambda: value(self)) if callable(value) else (lambda: value or 0.0)
-        source = self.with_variables(value)
-        part = bind(parse(source), self._view_of_sim)
-        if not is_scalar(part.kind) or part.kind is TEXT:
-            message = f"the value is {part.kind}, but must be a number, or true or false"
-            raise expression_error("SK-COND-004", message, source, part.node.span)
+        part = bind_value(self.with_variables(value), self._view_of_sim, (NUMBER, TRUTH), "the value")
 
         def get() -> SupportsFloat:
             try:

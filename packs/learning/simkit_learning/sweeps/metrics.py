@@ -18,10 +18,10 @@ from simkit.errors import InputError, SimkitError
 from simkit.extend import did_you_mean
 from simkit.input_file import read_input
 from simkit.linked_files import hide_linked_text
-from simkit.testing.conditions.binder import bind, number_hint
-from simkit.testing.conditions.bound_expression import BoundNode, is_scalar
-from simkit.testing.conditions.parser import parse
-from simkit.testing.conditions.syntax_tree import UndecidedValue, expression_error
+from simkit.testing.conditions.binder import bind_value
+from simkit.testing.conditions.bound_expression import BoundNode
+from simkit.testing.conditions.syntax_tree import UndecidedValue
+from simkit.testing.conditions.value_types import NUMBER, TEXT, TRUTH
 from simkit.testing.conditions.world_view import WorldView
 from simkit_learning.sweeps.parameter_space import Scalar
 from simkit_learning.sweeps.sweep_spec import Metric
@@ -61,7 +61,7 @@ class RunMetrics:
         for name, metric in metrics.items():
             if isinstance(metric, str):
                 try:
-                    self._parts[name] = _bind_scalar(metric, self._view)
+                    self._parts[name] = bind_value(metric, self._view, (NUMBER, TEXT, TRUTH), "the metric")
                 except InputError as error:
                     problems.append((f"metric {name!r}: {error}", error.code))
         if problems:
@@ -119,15 +119,6 @@ class RunMetrics:
             raise MetricError(METRIC_FAILED, f"metric {name!r}: {text}") from None
         except Exception as error:
             raise MetricError(METRIC_FAILED, f"metric {name!r} raised {type(error).__name__}: {error}") from error
-
-
-def _bind_scalar(source: str, view: WorldView) -> BoundNode:
-    """Bind an expression that must be a number, a text, or true or false."""
-    part = bind(parse(source), view)
-    if not is_scalar(part.kind):
-        message = f"the metric is {part.kind}, but must be a number, a text, or true or false"
-        raise expression_error("SK-COND-004", message, source, part.node.span, number_hint(part.kind))
-    return part
 
 
 def _plain(name: str, value: object) -> Scalar:

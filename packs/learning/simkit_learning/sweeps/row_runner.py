@@ -11,14 +11,14 @@ from typing import Final
 
 from simkit import RunSpec, Simulation, apply_overrides
 from simkit.build import read_scene
-from simkit.errors import InputError, SimkitError
+from simkit.errors import InputError, SimkitError, raise_together
 from simkit.plugins.discovery.python_plugins import copied_plugins
 from simkit.recording import Recorder
 from simkit.runtime.engine.snapshot import state_hash
 from simkit.scene.overrides import apply_overrides as apply_to_scene
 from simkit.scene.overrides import check_used, value_text
 from simkit.testing import Watch, count_left_out, newly_left_out, open_scenario, run_scenario
-from simkit.testing.scenarios.scenario_run import ScenarioResult
+from simkit.testing.scenarios.scenario_run import ScenarioCommands, ScenarioResult
 from simkit_learning.sweeps.design import SweepRow
 from simkit_learning.sweeps.metrics import RunMetrics
 from simkit_learning.sweeps.parameter_space import Scalar
@@ -248,7 +248,7 @@ def _failed_checks(outcome: ScenarioResult) -> str:
 
 
 def check_runs(spec: SweepSpec, rows: list[SweepRow]) -> tuple[RowRunner, SweepRow]:
-    """Check the parameters and metrics of a sweep on its world before the first run.
+    """Check the parameters, metrics and commands of a sweep on its world before the first run.
 
     A parameter whose path exists but whose value is out of range in some rows is no error here: these rows fail.
 
@@ -260,8 +260,8 @@ def check_runs(spec: SweepSpec, rows: list[SweepRow]) -> tuple[RowRunner, SweepR
         Runner with a loaded world, and the row of this world.
 
     Raises:
-        InputError: SK-SWEEP-002 a parameter cannot be set with any of the values; an expression has an error; the world
-            cannot be loaded. The message lists all problems.
+        InputError: SK-SWEEP-002 a parameter cannot be set with any of the values; an expression or a command has an
+            error; the world cannot be loaded. The message lists all problems.
     """
     runner = RowRunner(spec)
     failures: list[InputError] = []
@@ -272,13 +272,13 @@ def check_runs(spec: SweepSpec, rows: list[SweepRow]) -> tuple[RowRunner, SweepR
             except InputError as error:
                 failures.append(error)
             else:
-                _check_expressions(spec, row, sim)
+                raise_together([*_expression_problems(spec, row, sim), *_command_problems(spec, rows, sim)])
                 return runner, row
         raise failures[0]
 
 
-def _check_expressions(spec: SweepSpec, row: SweepRow, sim: Simulation) -> None:
-    """Check the expressions of metrics and conditions in a world."""
+def _expression_problems(spec: SweepSpec, row: SweepRow, sim: Simulation) -> list[InputError]:
+    """Return the errors of the expressions of metrics and conditions in a world."""
     run = spec.row_spec(row)
     problems: list[InputError] = []
     try:
@@ -289,8 +289,19 @@ def _check_expressions(spec: SweepSpec, row: SweepRow, sim: Simulation) -> None:
         Watch(sim, run.checks, until=run.until, timeout=run.longest)
     except InputError as error:
         problems.append(error)
-    if problems:
-        raise InputError(problems[0].code, "\n".join(map(str, problems)), shows_code=False)
+    return problems
+
+
+def _command_problems(spec: SweepSpec, rows: Sequence[SweepRow], sim: Simulation) -> list[InputError]:
+    """Return the error of the commands in a world; none if they are valid with the values of any row."""
+    problems: list[InputError] = []
+    for row in rows:
+        try:
+            with ScenarioCommands(spec.row_spec(row), sim):
+                return []
+        except InputError as error:
+            problems.append(error)
+    return problems[:1]
 
 
 def parameter_problems(spec: SweepSpec, rows: Sequence[SweepRow], names: Sequence[str]) -> Mapping[str, InputError]:

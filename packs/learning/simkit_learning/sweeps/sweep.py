@@ -113,7 +113,7 @@ def sweep(
 
     Raises:
         InputError: SK-SWEEP-001 an argument is invalid; SK-SWEEP-002 a parameter is unknown; SK-SWEEP-003 the folder
-            has another sweep; SK-CLI-011 a command is invalid; SK-INPUT-004 pandas is not installed.
+            has another sweep; SK-CLI-010 to 012 a command is invalid; SK-INPUT-004 pandas is not installed.
         LoadError: the world has errors.
     """
     if find_spec("pandas") is None:

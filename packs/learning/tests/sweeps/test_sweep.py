@@ -185,9 +185,33 @@ def test_the_commands_of_a_sweep_replace_those_of_the_specification() -> None:
         ([{"topic": "/cmd_vel"}], "key 'at' is missing"),
         (["drive"], "expected {at, topic, message}"),
         ("missing.yaml", "cannot be read"),
+        ("", "found ''; expected a list of mappings"),
+        ([{"at": 0, "topic": "/cmd"}], "no topic '/cmd'; did you mean '/cmd_vel'"),
     ],
 )
 def test_a_sweep_with_invalid_commands_does_not_begin(commands: Any, text: str) -> None:
     with pytest.raises(InputError, match=text) as caught:
         simkit.sweep(BALL, commands=commands, metrics=X, duration=0.1, jobs=1)
     assert caught.value.code == "SK-CLI-011"
+
+
+@pytest.mark.parametrize(
+    "commands, code, text",
+    [
+        ("0.2,nan", "SK-CLI-010", "commands: found '0.2,nan'; expected LINEAR,ANGULAR"),
+        ("{v},1,2", "SK-CLI-010", "found '0.5,1,2'"),
+        ([{"at": 9, "topic": "/cmd_vel", "message": {"linaer": {}}}], "SK-CLI-012", "did you mean 'linear'"),
+    ],
+)
+def test_commands_that_fit_no_run_are_refused_before_the_first_run(commands: Any, code: str, text: str) -> None:
+    metrics = {"v": "pose('box').x"} if "{v}" not in commands else {"x": "pose('bax').x"}
+    parameters = {"v": [0.5, 1.0]} if "{v}" in commands else {}
+    with pytest.raises(InputError) as caught:
+        simkit.sweep(BALL, parameters, commands=commands, metrics=metrics, duration=0.1, jobs=1)
+    assert code in str(caught.value) and text in str(caught.value)
+    assert ("did you mean 'box'" in str(caught.value)) == ("{v}" in commands)
+
+
+def test_commands_that_fit_some_runs_fail_only_in_the_others() -> None:
+    table = simkit.sweep(BALL, {"v": [1.0, "fast"]}, commands="{v},0", metrics=X, duration=0.1, jobs=1)
+    assert table["status"].tolist() == ["ok", "invalid"]

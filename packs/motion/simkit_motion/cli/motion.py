@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, cast
@@ -31,6 +31,16 @@ Motions = Annotated[
     list[Path], option("Additional motion file (play_motion or play_motion2); repeatable.", "FILE.yaml", "--motions")
 ]
 OfModel = Annotated[str | None, option("Robot that plays the motions, if the world has several.", "NAME", "--model")]
+
+
+@completion.silent
+def motion_names(ctx: typer.Context) -> Iterable[str]:
+    """Complete the motions of the robot that the line names, or of the default robot."""
+    from simkit_motion.plugins.play_motion.motion_session import choose_player, motion_players
+
+    world, robot, motions, model = (ctx.params.get(name) for name in ("world", "robot", "motions", "model"))
+    with _open_world(world, robot, motions or (), {}, verbose=False) as sim:
+        return list(choose_player(motion_players(sim), model).motions)
 
 
 @motion.command("list")
@@ -80,7 +90,7 @@ def list_motions(
     },
 )
 def play(
-    names: Annotated[list[str], argument("Motions to play, one after another.", "MOTION...")],
+    names: Annotated[list[str], argument("Motions to play, one after another.", "MOTION...", motion_names)],
     world: Annotated[
         str | None, option("World (a file or a bare name); default: level ground.", "WORLD", complete=completion.worlds)
     ] = None,

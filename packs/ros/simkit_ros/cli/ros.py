@@ -9,8 +9,8 @@ from typer.core import TyperCommand
 
 from simkit.cli.run_loop import Interrupts
 from simkit.cli.terminal import completion, options
-from simkit.cli.terminal.output import print_message, report_errors_quietly
-from simkit.extend import add_to_report, argument
+from simkit.cli.terminal.output import print_message, without_interrupt_message
+from simkit.extend import add_to_report, argument, report_errors
 from simkit_ros.cli.run_parts import ros as ros_options
 
 
@@ -28,7 +28,8 @@ Simulation = Annotated[
 ]
 
 
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def ros(
     simulation: Simulation = None,
     ros_python: ros_options.RosPython = None,

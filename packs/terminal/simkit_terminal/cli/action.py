@@ -9,9 +9,9 @@ import typer
 from typer import Option
 
 from simkit.cli.terminal import options
-from simkit.cli.terminal.output import absolute_name, print_json, print_line, report_errors_quietly
+from simkit.cli.terminal.output import absolute_name, print_json, print_line, without_interrupt_message
 from simkit.cli.terminal.topic_sources import connect_to_simulation
-from simkit.extend import argument, option
+from simkit.extend import argument, option, report_errors
 from simkit_terminal.cli.terminal import completion
 from simkit_terminal.cli.terminal.live_command import Ros2Command, live_command
 from simkit_terminal.cli.terminal.message_arguments import check_type, make_message, parse_fields, split_type_and_values
@@ -99,7 +99,7 @@ def send_goal(
 
 
 live_command(action, "send_goal")(send_goal)
-action.command("send", cls=Ros2Command, help="Alias of send_goal.")(report_errors_quietly(send_goal))
+action.command("send", cls=Ros2Command, help="Alias of send_goal.")(report_errors(without_interrupt_message(send_goal)))
 
 
 class _GoalRun:

@@ -10,9 +10,9 @@ import typer
 from typer import Argument, Option
 
 from simkit.cli.terminal import options
-from simkit.cli.terminal.output import not_found_error, print_json, print_line, report_errors_quietly
+from simkit.cli.terminal.output import not_found_error, print_json, print_line, without_interrupt_message
 from simkit.errors import InputError, MessageError
-from simkit.extend import argument
+from simkit.extend import argument, report_errors
 from simkit_terminal.cli.terminal import completion
 from simkit_terminal.cli.terminal.name_lists import print_names
 
@@ -26,7 +26,8 @@ TypeName = Annotated[
 
 
 @interface.command("list")
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def list_(
     only_msgs: Annotated[bool, Option("--only-msgs", "-m", help="List only message types.")] = False,
     only_srvs: Annotated[bool, Option("--only-srvs", "-s", help="List only service types.")] = False,
@@ -48,7 +49,8 @@ def list_(
 
 
 @interface.command()
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def packages(json_: options.Json = False) -> None:
     """List the packages that define types."""
     from simkit.msgs.interface_definitions import interface_names
@@ -58,7 +60,8 @@ def packages(json_: options.Json = False) -> None:
 
 
 @interface.command()
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def package(name: Annotated[str, Argument(metavar="PACKAGE", show_default=False)], json_: options.Json = False) -> None:
     """List the types of a package."""
     from simkit.msgs.interface_definitions import interface_names
@@ -71,7 +74,8 @@ def package(name: Annotated[str, Argument(metavar="PACKAGE", show_default=False)
 
 
 @interface.command()
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def show(
     type_: TypeName,
     all_comments: Annotated[bool, Option("--all-comments", help="Print the comments of nested types, too.")] = False,
@@ -110,7 +114,8 @@ def _of_bag(name: str, bag: object, *, comments: bool, all_comments: bool) -> st
 
 
 @interface.command()
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def proto(
     type_: TypeName,
     no_quotes: Annotated[bool, Option("--no-quotes", help="Leave out the quotes around the text.")] = False,

@@ -11,10 +11,10 @@ import typer
 
 from simkit.cli.terminal import completion, options
 from simkit.cli.terminal.options import validate_word
-from simkit.cli.terminal.output import print_json, print_line, print_note, report_errors_quietly
+from simkit.cli.terminal.output import print_json, print_line, print_note, without_interrupt_message
 from simkit.cli.terminal.topic_sources import open_source
 from simkit.errors import InputError
-from simkit.extend import argument, option
+from simkit.extend import argument, counted, option, report_errors
 from simkit_terminal.cli.terminal.live_command import Ros2Command
 from simkit_terminal.cli.terminal.named_endpoints import find_topic
 
@@ -27,7 +27,8 @@ _DEPTH: Final = 1000  # queued messages for a slow terminal
 _LABELS: Final = {number: name.upper() for name, number in LEVELS.items()}
 
 
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def log(
     simulation: Annotated[
         str | None, argument("Name of the running simulation, if several run.", "[SIM]", completion.simulations)
@@ -59,7 +60,9 @@ def log(
             if wanted(message):
                 _print(message, json_)
             if feed.lost > lost:
-                print_note(f"note: {feed.lost - lost} messages were lost, because they came faster than they were read")
+                print_note(
+                    f"note: {counted(feed.lost - lost, 'message')} lost, because they came faster than they were read"
+                )
                 lost = feed.lost
 
 

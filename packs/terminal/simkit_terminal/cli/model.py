@@ -9,9 +9,9 @@ import typer
 from typer import Option
 
 from simkit.cli.terminal import options
-from simkit.cli.terminal.output import JsonObject, not_found_error, print_json, print_line, report_errors_quietly
+from simkit.cli.terminal.output import JsonObject, not_found_error, print_json, print_line, without_interrupt_message
 from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name
-from simkit.extend import argument
+from simkit.extend import argument, counted, report_errors
 from simkit_terminal.cli.terminal import completion
 
 if TYPE_CHECKING:
@@ -24,7 +24,8 @@ Model = Annotated[str, argument("Name of the model; for a nested model OUTER::IN
 
 
 @model.command("list")
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def list_(
     verbose: Annotated[bool, Option("--verbose", "-v", help="Show poses, links and joints, too.")] = False,
     sim: options.Sim = None,
@@ -47,11 +48,12 @@ def list_(
 
 
 def _count_text(items: Sequence[object], noun: str) -> str:
-    return f"{len(items)} {noun}{'' if len(items) == 1 else 's'}"
+    return counted(len(items), noun)
 
 
 @model.command()
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def pose(
     model: Model,
     link: Annotated[str | None, argument("Link of the model.", "[LINK]", completion.links)] = None,
@@ -85,7 +87,8 @@ def _pose_text(pose: JsonObject) -> str:
 
 
 @model.command()
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def joint(
     model: Model,
     joint: Annotated[

@@ -19,11 +19,11 @@ from simkit.cli.terminal.output import (
     print_line,
     print_name,
     printable,
-    report_errors_quietly,
+    without_interrupt_message,
 )
 from simkit.cli.terminal.topic_sources import open_source
 from simkit.errors import InputError, TransformError
-from simkit.extend import option
+from simkit.extend import counted, option, report_errors
 from simkit_terminal.cli.terminal import completion
 
 if TYPE_CHECKING:
@@ -40,7 +40,8 @@ Topics = Annotated[
 
 
 @tf.command()
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def tree(
     topic: Topics = [],
     duration: Annotated[float, option("Wall time for collecting transforms.", "S", "--time", min=0)] = _COLLECTION_TIME,
@@ -69,7 +70,8 @@ def tree(
 
 
 @tf.command("frames")
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def draw_frames(
     output: Annotated[Path, option("Chart to write: OUT.pdf or OUT.svg.", "OUT", "--output", "-o")] = Path(
         "frames.pdf"
@@ -95,11 +97,12 @@ def draw_frames(
         edges = len([child for child, parent in parents.items() if parent])
         print_json({"output": str(output), "frames": len(parents), "edges": edges})
     else:
-        print_line(f"{output}: {len(parents)} frame{'' if len(parents) == 1 else 's'}")
+        print_line(f"{output}: {counted(len(parents), 'frame')}")
 
 
 @tf.command()
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def echo(
     source_frame: Annotated[str, Argument(metavar="SOURCE", show_default=False, autocompletion=completion.frames)],
     target_frame: Annotated[str, Argument(metavar="TARGET", show_default=False, autocompletion=completion.frames)],

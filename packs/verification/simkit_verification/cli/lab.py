@@ -14,7 +14,7 @@ import typer
 from typer import Option
 
 from simkit.cli.terminal import options
-from simkit.cli.terminal.output import not_found_error, print_json, print_line, print_status, report_errors_quietly
+from simkit.cli.terminal.output import not_found_error, print_json, print_line, print_status, without_interrupt_message
 from simkit.errors import InputError
 from simkit.extend import add_to_report, argument, option, report_errors
 from simkit.input_file import TEXT_LIMIT, read_input
@@ -63,7 +63,8 @@ def _complete(incomplete: str) -> list[str]:
 
 
 @lab.command("list")
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def list_(json_: options.Json = False) -> None:
     """List the labs, a name a line."""
     names = list(_labs())
@@ -75,7 +76,8 @@ def list_(json_: options.Json = False) -> None:
 
 
 @lab.command()
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def start(
     name: Annotated[str, argument("Name of the lab; its number is enough.", "NAME", _complete)],
     folder: Annotated[Path, argument("New folder of the lab.", "DIR")],

@@ -16,11 +16,11 @@ from simkit.cli.terminal.output import (
     not_found_error,
     print_line,
     print_status,
-    report_errors_quietly,
+    without_interrupt_message,
 )
 from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name
 from simkit.errors import InputError
-from simkit.extend import GivenOptions, add_to_report, argument, option, with_run_options
+from simkit.extend import GivenOptions, add_to_report, argument, option, report_errors, with_run_options
 
 if TYPE_CHECKING:
     from simkit.live import Client
@@ -42,7 +42,8 @@ Name = Annotated[str, argument("Name of the node.", "NODE", _complete_nodes)]
 
 
 @node.command(context_settings=_WORDS)
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 @with_run_options("package_paths")
 def run(
     program: Annotated[str, argument("Python file, or PACKAGE/EXECUTABLE of a workspace.", "PROGRAM")],
@@ -84,7 +85,8 @@ def run(
 
 
 @node.command()
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def ping(
     node: Name,
     count: Annotated[int, Option("--count", "-c", help="Number of pings.", min=1)] = 1,
@@ -112,7 +114,8 @@ def ping(
 
 
 @node.command()
-@report_errors_quietly
+@report_errors
+@without_interrupt_message
 def kill(
     nodes: Annotated[list[str], argument("Names of the nodes.", "NODE...", _complete_nodes)],
     sim: options.Sim = None,

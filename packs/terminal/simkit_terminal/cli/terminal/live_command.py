@@ -8,7 +8,8 @@ from typing import Any
 from typer import Typer
 from typer.core import TyperCommand
 
-from simkit.cli.terminal.output import P, report_errors_quietly
+from simkit.cli.terminal.output import P, without_interrupt_message
+from simkit.extend import report_errors
 
 _FLAGS = frozenset({"--no-daemon", "--use-sim-time"})
 _QOS = ("profile", "reliability", "durability", "history", "depth", "liveliness", "liveliness-lease-duration-seconds")
@@ -46,6 +47,6 @@ def live_command(group: Typer, name: str | None = None) -> Callable[[Callable[P,
     """
 
     def add(command: Callable[P, int | None]) -> Callable[P, None]:
-        return group.command(name, cls=Ros2Command)(report_errors_quietly(command))
+        return group.command(name, cls=Ros2Command)(report_errors(without_interrupt_message(command)))
 
     return add

@@ -53,7 +53,7 @@ class WaveVisual(WavesBase):
         self.read_waves(self.options.read_all().wavefield)
         params.block("shader").mark_all_read()  # files and values of a shader of Gazebo
 
-    def load(self, parent: Visual, params: Params) -> None:
+    def load(self, parent: Visual, params: Params) -> None:  # type: ignore[override]  # as `parent_kind`
         self._visual = parent
         self.listen_to_waves(self.options.wavefield)
 
