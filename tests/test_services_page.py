@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import pytest
+
 import simkit
 from simkit import msgs
 from simkit.msgs.interface_definitions import interface_names
@@ -52,6 +54,7 @@ def test_the_page_has_the_topics_that_a_world_tells_of_itself() -> None:
         assert kind.rpartition("/")[2] in text
 
 
+@pytest.mark.slow
 def test_every_type_can_be_made_and_written() -> None:
     for name in interface_names("srv"):
         for end in ("Request", "Response"):

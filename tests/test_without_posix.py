@@ -236,6 +236,7 @@ def command(*words: str, environment: Mapping[str, str], folder: Path) -> subpro
     )
 
 
+@pytest.mark.slow
 def test_every_module_is_imported() -> None:
     found = subprocess.run(
         [sys.executable, "-c", IMPORTS, OPTIONAL], capture_output=True, text=True, encoding="utf-8", check=False

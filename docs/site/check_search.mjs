@@ -58,6 +58,7 @@ const ANSWERS = {
   "Service /spawn_entity unavailable. Was Gazebo started with GazeboRosFactory?": "docs/troubleshooting",
   "Service /controller_manager/list_controllers not available. Controller manager not available": "docs/troubleshooting",
   "Warning: TF_OLD_DATA ignoring data from the past": "docs/troubleshooting",
+  "hot reload": "docs/commands/run",
   "docker": "docs/systems",
   "windows": "docs/systems",
   "jupyter": "docs/systems",

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 from simkit.cli.run_options import GivenOptions, scenario_spec
 from simkit.cli.terminal.output import print_diagnostics, print_json, print_line, print_note
 from simkit.errors import InputError
+from simkit.number_text import counted
 from simkit.run_spec import RunSpec
 from simkit.writers.atomic_output import check_writable, write_atomically
 
@@ -161,7 +162,7 @@ def _summary(output: Path, series: list[Series], *, json_: bool) -> None:
         unit = f" {row['unit']}" if row["unit"] else ""
         numbers = "  ".join(f"{key} {row[key]:.6g}" for key in ("min", "max", "mean", "last"))
         print_line(f"{row['label']:<{width}}  {row['count']:>7}  {numbers}{unit}")
-    print_line(f"{output}: {len(rows)} curve{'s' if len(rows) > 1 else ''}")
+    print_line(f"{output}: {counted(len(rows), 'curve')}")
 
 
 # ---------------------------------------------------------------------- numbers of a source
@@ -180,7 +181,7 @@ def _series(source: str, fields: Sequence[str], request: PlotRequest) -> list[Se
         return series_list
     base = series_list[-counts[-1] :]
     if len(base) != 1:
-        raise InputError("SK-BAG-010", f"--against {request.against}: has {len(base)} numbers; expected 1")
+        raise InputError("SK-BAG-010", f"--against {request.against}: has {counted(len(base), 'number')}; expected 1")
     return series_over(series_list[: -counts[-1]], base[0])
 
 

@@ -63,7 +63,7 @@ def unstable_gains(model: mujoco.MjModel) -> Iterator[UnstableGain]:
         joint_name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_JOINT, joint)
         message = (
             f"actuator {name!r}: the {kind} gain {gain:.4g} on joint {joint_name!r} with an inertia of {inertia:.3g} "
-            f"(kg m2 or kg) diverges at a step of {step * 1e3:g} ms"
+            f"(kg m2 or kg) oscillates or diverges at a step of {step * 1e3:g} ms"
         )
         limit = f"use at most {most:.3g}, " if most > 0.0 else "use "
         if is_velocity:

@@ -68,7 +68,8 @@ def check_target(path: Path, folder: str, *, overwrite: bool) -> None:
     check_file(path, overwrite=overwrite)
     asset_folder = path.with_name(folder)
     if asset_folder.exists() and not overwrite:
-        raise _report_existing(asset_folder)
+        remedy = "give the output another name; --force replaces the folder, also for another file that uses it"
+        raise InputError("SK-CLI-016", f"{asset_folder} already exists", help=remedy)
 
 
 def _report_existing(path: Path) -> InputError:

@@ -315,6 +315,13 @@ def test_a_folder_that_is_not_empty_is_left_alone(here: Path) -> None:
     assert [p.name for p in (here / "box").iterdir()] == ["mine.txt"]
 
 
+def test_the_meshes_of_another_output_with_the_same_stem_are_not_replaced_unasked(here: Path) -> None:
+    assert run("convert", "arm_description/urdf/arm.urdf", "-o", "arm.xml").exit_code == 0
+    refused = run("convert", "arm_description/urdf/arm.urdf", "-o", "arm.mjcf")
+    assert refused.exit_code == 2 and "give the output another name" in refused.stderr
+    assert not (here / "arm.mjcf").exists()
+
+
 def test_an_mjcf_file_whose_path_is_not_text_is_refused(here: Path) -> None:
     before = sorted(here.rglob("*"))
     refused = run("convert", "arm_description/urdf/arm.urdf", "-o", "a\udcff.xml")

@@ -181,6 +181,7 @@ def wave(beside: Any) -> Any:
     return script("wave")["run"]()
 
 
+@pytest.mark.slow
 def test_it_waves(wave: Any) -> None:
     """arm_4 goes from 2.09 to 1.83, to 2.18, and to 1.83 rad, a second for each."""
     elbow = wave.positions[:, 3]
@@ -191,10 +192,12 @@ def test_it_waves(wave: Any) -> None:
     assert last.max() == pytest.approx(2.18, abs=0.02)
 
 
+@pytest.mark.slow
 def test_it_gets_back_to_where_its_arm_was(wave: Any) -> None:
     np.testing.assert_allclose(wave.after, wave.before, atol=5e-3)
 
 
+@pytest.mark.slow
 def test_each_motion_says_that_all_went_well(wave: Any) -> None:
     assert [(r.success, r.error) for r in wave.results] == [(True, "")] * 3
 

@@ -39,6 +39,7 @@ def test_a_type_has_the_hash_that_its_package_publishes(name: str) -> None:
     assert msgs.rihs(name) == "RIHS01_" + PUBLISHED[name]
 
 
+@pytest.mark.slow
 def test_every_type_can_be_made_written_and_read_back() -> None:
     for name in message_type_names():
         message = msgs.make(name)

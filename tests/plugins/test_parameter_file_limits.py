@@ -27,6 +27,7 @@ def test_a_dotted_key_has_as_many_levels_as_names(tmp_path: Path, levels: int, f
     assert not [d for d in simkit.check(tmp_path / "m.sdf") if "Error" in d.message]
 
 
+@pytest.mark.slow
 def test_a_thousand_controllers_are_looked_up_once_each(tmp_path: Path) -> None:
     """Without the memory of `ParameterFiles`, the time is cubic: minutes for 500 controllers."""
     types = "".join(f"    c{i}: {{type: pid_controller/PidController}}\n" for i in range(1000))

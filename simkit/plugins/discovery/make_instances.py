@@ -182,8 +182,8 @@ class InstanceMaker:
                 diagnostics.warning("SK-SENSOR-001", f"{message}: {fault}", scene.where)
                 return None
             message = f"sensor {scene.scoped!r}: kind {scene.kind!r} is not simulated"
-            hint = did_you_mean(scene.kind, kinds) or "kinds: " + ", ".join(kinds)
-            hint += "; or install the pack that has it"
+            near = did_you_mean(scene.kind, kinds)
+            hint = f"{near or 'kinds: ' + ', '.join(kinds) + ';'} or install the pack that has it"
             pack = left_out_names("kinds").get(scene.kind)
             if pack is not None:
                 needs, hint = missing_pack_text(pack)

@@ -47,6 +47,7 @@ def loaded(make, compiled, tmp_path, mesh, *bodies, steps=0):
     return c
 
 
+@pytest.mark.slow
 def test_a_bent_pipe_is_covered_by_few_tiles_within_their_error(make, compiled, tmp_path):
     vertices, faces = bent_pipe()
     pieces, tiles, error, _ = large_surface_pieces(vertices, faces)
@@ -79,6 +80,7 @@ def test_the_solid_of_tiles_lies_in_the_closed_mesh():
         assert distances.max() <= error
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("inside", [True, False])
 def test_a_ball_rests_in_a_bowl_at_its_true_height(make, compiled, tmp_path, inside):
     bowl = trimesh.creation.icosphere(subdivisions=5, radius=2.0)
@@ -95,6 +97,7 @@ def test_a_ball_rests_in_a_bowl_at_its_true_height(make, compiled, tmp_path, ins
     assert -1.8 - 0.004 < height < -1.8 + (0.004 if inside else 0.17)
 
 
+@pytest.mark.slow
 def test_a_ball_falls_through_a_hole_in_a_curved_surface(make, compiled, tmp_path):
     x, y = np.meshgrid(np.linspace(-3, 3, 61), np.linspace(-3, 3, 61), indexing="ij")
     moved = np.random.default_rng(0).uniform(-0.02, 0.02, (2, *x.shape))  # no regular grid
@@ -113,6 +116,7 @@ def test_a_ball_falls_through_a_hole_in_a_curved_surface(make, compiled, tmp_pat
     assert c.data.body("beside::link").xpos[2] == pytest.approx(0.2, abs=0.006)
 
 
+@pytest.mark.slow
 def test_a_ball_rolls_down_an_irregular_channel_as_in_theory(tmp_path):
     x, y = np.meshgrid(np.linspace(0, 12, 71), np.linspace(-3, 3, 71), indexing="ij")
     moved = np.random.default_rng(0).uniform(-0.03, 0.03, (2, *x.shape))

@@ -33,6 +33,7 @@ def world(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return file
 
 
+@pytest.mark.slow
 def test_the_processes_fill_the_cache_and_the_world_has_the_same_bits(
     world: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

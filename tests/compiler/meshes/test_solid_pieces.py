@@ -96,6 +96,7 @@ def test_an_open_surface_is_not_closed():
     assert not is_closed(np.vstack([mesh.faces[1:], mesh.faces[:1, ::-1]]))
 
 
+@pytest.mark.slow
 def test_balls_rest_on_every_ring_and_fall_through_its_hole(make, compiled, tmp_path):
     mesh = rings(30, distance=8.0)  # 9000 triangles
     mesh.export(tmp_path / "rings.stl")

@@ -79,7 +79,9 @@ CHAINS: dict[str, tuple[Callable[[Path, int], str], int, str]] = {
 }
 
 
-@pytest.mark.parametrize("name", CHAINS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow if name.startswith("links") else ()) for name in CHAINS]
+)
 def test_the_longest_chain_passes_and_a_longer_one_is_refused(tmp_path: Path, name: str) -> None:
     make, most, code = CHAINS[name]
     found: dict[int, list[str]] = {}
@@ -93,9 +95,12 @@ def test_the_longest_chain_passes_and_a_longer_one_is_refused(tmp_path: Path, na
     "frames",
     [
         lambda n: "".join(f'<frame name="f{i}" attached_to="{f"f{i + 1}" if i < n - 1 else "l"}"/>' for i in range(n)),
-        lambda n: "".join(
-            f'<frame name="f{i}"><pose relative_to="{f"f{i + 1}" if i < n - 1 else "l"}">0 0 1 0 0 0</pose></frame>'
-            for i in range(n)
+        pytest.param(
+            lambda n: "".join(
+                f'<frame name="f{i}"><pose relative_to="{f"f{i + 1}" if i < n - 1 else "l"}">0 0 1 0 0 0</pose></frame>'
+                for i in range(n)
+            ),
+            marks=pytest.mark.slow,
         ),
     ],
     ids=["attached_to", "relative_to"],

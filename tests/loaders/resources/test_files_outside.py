@@ -99,7 +99,7 @@ def assert_nothing_is_opened(top: Path, every: int, names: Iterable[str] = READE
 
 def test_no_spelling_of_a_private_file_is_opened_or_printed(tmp_path: Path) -> None:
     """Each reader gets a part of the spellings here, beginning at another one; the slow test has all of them."""
-    assert_nothing_is_opened(tmp_path, 61)
+    assert_nothing_is_opened(tmp_path, 181)
 
 
 @pytest.mark.slow

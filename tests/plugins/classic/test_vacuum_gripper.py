@@ -127,6 +127,7 @@ def test_in_ros_1_the_gripper_has_two_services_and_a_topic() -> None:
     assert sim.model("box").pose.position[2] < 0.5
 
 
+@pytest.mark.slow
 def test_remove_spawn_reset_and_restore_keep_the_grasp_consistent() -> None:
     sim = load()
     reach_down(sim)

@@ -104,6 +104,7 @@ def test_missing_publishers_and_subscribers_are_reported_once() -> None:
     assert "/model/rover/cmd_vel" in warnings[1]
 
 
+@pytest.mark.slow
 def test_reset_and_restore_include_the_target() -> None:
     sim = load()
     sim.run(0.1)

@@ -90,6 +90,7 @@ def test_repeated_commands_add_one_stop_and_invalid_floors_none() -> None:
     assert [("floor 3" in m, "0 to 2" in m) for m in left_out] == [(True, True), (False, True)]
 
 
+@pytest.mark.slow
 def test_a_blocked_doorway_keeps_the_door_open_and_restarts_the_wait() -> None:
     text = world(shaft(elevator("<open_door_wait_duration>1</open_door_wait_duration>"), lidar=True), PILLAR)
     sim = simkit.load(text)

@@ -265,6 +265,7 @@ def test_of_two_commands_to_one_joint_the_later_in_the_file_counts() -> None:
     assert sim.joint("m::j_a").velocity == pytest.approx(4.0, abs=1e-4)
 
 
+@pytest.mark.slow
 def test_a_run_in_another_process_is_identical() -> None:
     script = (
         "import sys; sys.path[:0] = sys.argv[1:]\n"
