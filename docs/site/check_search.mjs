@@ -61,6 +61,7 @@ const ANSWERS = {
   "two robots": "docs/robots",
   "several robots namespace": "docs/robots",
   "spawn a robot": "docs/robots",
+  "hot reload": "docs/commands/run",
   "docker": "docs/systems",
   "windows": "docs/systems",
   "jupyter": "docs/systems",

@@ -12,6 +12,8 @@ from typing import Any
 
 from site_pages import ROOT, github_anchor, outside_fences, repository_pages
 
+_MOMENT = ("moment.Moment", *(f"moment_contents.{name}" for name in ("TouchingPair", "JointLoad", "ConstraintError")))
+
 _HANDLES = {
     "Simulation": ("A running simulation, which `simkit.load` returns.", ("simkit.Simulation",)),
     "Models, links, joints": (
@@ -25,8 +27,15 @@ _HANDLES = {
         ("simkit.sensors.base.Sensor",),
     ),
     "World and contacts: sim.world, sim.contacts": (
-        "`sim.world` describes the world as it was read. `sim.contacts()` returns the present contacts.",
-        ("simkit.scene.world.SceneWorld", "simkit.runtime.contact.collision_contacts.Contact"),
+        "`sim.world` describes the world as it was read. `sim.contacts()` returns the present contacts, "
+        "`sim.wheel_slips()` the slip of the wheels, and `sim.why()` [explains the "
+        "moment](../../packs/verification/docs/commands/why.md).",
+        (
+            "simkit.scene.world.SceneWorld",
+            "simkit.runtime.contact.collision_contacts.Contact",
+            "simkit.runtime.contact.rim_slip.WheelSlip",
+            *(f"simkit.runtime.moment.{name}" for name in _MOMENT),
+        ),
     ),
     "Plugins": (
         "Base classes of plugins ([writing a plugin](../../docs/writing_a_plugin.md)), and the elements of a "

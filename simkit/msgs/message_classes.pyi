@@ -8938,6 +8938,19 @@ class SceneEntity:
     __msgtype__: ClassVar[str]
 
 @dataclass
+class WheelMotion:
+    """`simkit_msgs/msg/WheelMotion`"""
+    header: Header
+    name: list[str]
+    load: NDArray[np.float64]
+    rim_speed: NDArray[np.float64]
+    axle_speed: NDArray[np.float64]
+    slip: NDArray[np.float64]
+    ratio: NDArray[np.float64]
+    sideways: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
 class Wind:
     """`simkit_msgs/msg/Wind`"""
     header: Header
@@ -12816,6 +12829,7 @@ __all__: list[str] = [
     "WaypointSetCurrent_Request",
     "WaypointSetCurrent_Response",
     "WheelDropEvent",
+    "WheelMotion",
     "WheelSlip",
     "WheelStatus",
     "WheelTicks",

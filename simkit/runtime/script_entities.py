@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, TypeVar, cast, overload
 
 from simkit.runtime.contact.collision_contacts import Contact, list_contacts
+from simkit.runtime.contact.rim_slip import WheelSlip, list_wheel_slips
 from simkit.runtime.handles.find_sensor import checked_class, find_sensor
 
 if TYPE_CHECKING:
@@ -86,8 +87,14 @@ class ScriptEntities:
 
     def contacts(self, model: Model | str | None = None) -> list[Contact]:
         """Return the contacts of a model, also with itself, or of all; a KeyError suggests the closest name."""
-        name = None if model is None else self.model(cast("str", getattr(model, "scoped", model))).scoped
-        return list_contacts(self.engine.compiled, self.engine.physics.awake_data(), name)
+        return list_contacts(self.engine.compiled, self.engine.physics.awake_data(), self._scoped(model))
+
+    def wheel_slips(self, model: Model | str | None = None) -> list[WheelSlip]:
+        """Return the true slip of the wheels of a model, or of all; a KeyError suggests the closest name."""
+        return list_wheel_slips(self.engine.compiled, self.engine.physics.awake_data(), self._scoped(model))
+
+    def _scoped(self, model: Model | str | None) -> str | None:
+        return None if model is None else self.model(cast("str", getattr(model, "scoped", model))).scoped
 
     @property
     def plugins(self) -> dict[str, Plugin]:

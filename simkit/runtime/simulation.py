@@ -28,6 +28,8 @@ from simkit.runtime.engine.snapshot import Snapshot, Snapshots, Stateful
 from simkit.runtime.engine.step_tasks import StepTasks
 from simkit.runtime.handles.model import Model
 from simkit.runtime.handles.notebook_tables import world_html
+from simkit.runtime.moment.explain_moment import explain_moment
+from simkit.runtime.moment.moment import Moment
 from simkit.runtime.portable_snapshot import PortableSnapshot, pack_snapshot, unpack_snapshot
 from simkit.runtime.script_entities import ScriptEntities
 from simkit.runtime.world_contents import WorldContents
@@ -405,6 +407,20 @@ class Simulation(ScriptEntities, ScriptGraph, InProcess):
         if self._page is None:
             self._page = pack_module("sim.view").ScriptView(self, port)
         return self._page.address
+
+    def why(self, model: str | None = None, joint: str | None = None) -> Moment:
+        """Explain the present moment: contacts, joints, constraints and wheels, with what slides or has a limit.
+
+        `print(sim.why())` prints sentences. The attributes of the result have the numbers.
+
+        Args:
+            model: scoped name of a model; None for all models.
+            joint: scoped name of a joint, or its last name if only one joint has it; None for all joints.
+
+        Raises:
+            KeyError: no such model or joint; the message suggests the closest name.
+        """
+        return explain_moment(self.engine, self.contents.open_handles, model, joint)
 
     def add_node(
         self,

@@ -14,7 +14,7 @@ from simkit.lazy_names import lazy_attributes
 if TYPE_CHECKING:
     from simkit.testing.conditions import Watch
     from simkit.testing.golden.cause import explain
-    from simkit.testing.golden.check import check_golden
+    from simkit.testing.golden.check import check_golden, golden_scenario
     from simkit.testing.golden.compare.runs import compare
     from simkit.testing.golden.store import write_golden
     from simkit.testing.run_record.left_out import count_left_out, log_left_out, newly_left_out
@@ -27,6 +27,7 @@ __all__ = [
     "compare",
     "count_left_out",
     "explain",
+    "golden_scenario",
     "log_left_out",
     "newly_left_out",
     "open_scenario",
@@ -38,7 +39,7 @@ __all__ = [
 _MODULES = {
     "simkit.testing.conditions": ("Watch",),
     "simkit.testing.golden.cause": ("explain",),
-    "simkit.testing.golden.check": ("check_golden",),
+    "simkit.testing.golden.check": ("check_golden", "golden_scenario"),
     "simkit.testing.golden.compare.runs": ("compare",),
     "simkit.testing.golden.store": ("write_golden",),
     "simkit.testing.run_record.left_out": ("count_left_out", "log_left_out", "newly_left_out"),

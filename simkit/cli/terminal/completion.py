@@ -88,6 +88,12 @@ def scenarios(ctx: typer.Context) -> Iterable[str]:
 
 
 @silent
+def runs(ctx: typer.Context) -> Iterable[str]:
+    """Complete the same names as `scenarios`, and bundles; a folder can be a golden run."""
+    return _worlds_and_files(ctx, _WORLD_SUFFIXES + _SCENARIO_SUFFIXES + (".zip",))
+
+
+@silent
 def bags(ctx: typer.Context) -> Iterable[str]:
     """Complete bags, and folders, which can be bags."""
     return _files(incomplete_word(ctx), _BAG_SUFFIXES)

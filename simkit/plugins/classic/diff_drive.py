@@ -20,6 +20,7 @@ from simkit.params import Params
 from simkit.plugins.classic.commanded_drive import CommandedDrive
 from simkit.plugins.drives.drive_outputs import DriveOutputOptions, DriveOutputs
 from simkit.plugins.drives.drive_rule import DifferentialDriveRule, DriveWheel
+from simkit.plugins.drives.ground_truth import WHEEL_MOTION, GroundTruth
 from simkit.plugins.drives.motion_errors import MotionErrorOptions, with_errors
 from simkit.plugins.drives.odometry import (
     COMMAND_TYPES,
@@ -35,7 +36,6 @@ from simkit.plugins.drives.odometry_messages import (
     BodyTwist,
     LatePose,
     PlanarPose,
-    odometry_message,
 )
 from simkit.plugins.drives.odometry_noise import (
     EquivalentWheelAngles,
@@ -205,7 +205,8 @@ class GazeboRosDiffDrive(CommandedDrive):
     """Drives pairs of wheels from `cmd_vel`, and publishes odometry on `odom` and `/tf`.
 
     The last command stays active until the next. `<publish_ground_truth>` (simkit's own) publishes the model's true
-    pose on `ground_truth/odom`, at the same instants as the odometry. `<odometry_noise>` (simkit's own) adds errors to
+    pose on `ground_truth/odom` and the slip of the wheels on `ground_truth/wheel_slip`, at the same instants as the
+    odometry. `<odometry_noise>` (simkit's own) adds errors to
     the odometry of either source; the covariance of the odometry accumulates the wheels' errors. `<actuation_error>`
     (simkit's own) makes the wheels turn faster or slower than commanded.
     """
@@ -215,6 +216,7 @@ class GazeboRosDiffDrive(CommandedDrive):
         publishes("odom", ODOMETRY, named_by=("odometryTopic",)),
         publishes("/tf", TRANSFORMS),
         publishes("ground_truth/odom", ODOMETRY),
+        publishes("ground_truth/wheel_slip", WHEEL_MOTION),
         publishes("joint_states", JOINT_STATE),
     )
     option_types: ClassVar[tuple[type[Options], ...]] = (DiffDriveOptions, DiffDriveRos1Options)
@@ -250,7 +252,8 @@ class GazeboRosDiffDrive(CommandedDrive):
         self._outputs = DriveOutputs(
             self, options, [wheel.scene for wheel in self._wheels], lambda: self._measured()[0]
         )
-        self._truth = self.advertise("ground_truth/odom", ODOMETRY) if options.publish_ground_truth else None
+        truth = parent, self._true, self._joints, "", options.robot_base_frame
+        self._truth = GroundTruth(self, *truth) if options.publish_ground_truth else None
 
     # ------------------------------------------------------------------ commands
 
@@ -277,13 +280,13 @@ class GazeboRosDiffDrive(CommandedDrive):
 
     def after_step(self) -> None:
         """Publish odometry, transforms, ground truth and joint states."""
-        options, now = self.options, self.sim.time_ns
+        options = self.options
         if self._erring is not None:
             self._advance_with_noise(self._erring)
         elif options.from_encoders:
             self._advance()
-        if self._truth is not None and self._truth.wanted:
-            self._truth.publish(odometry_message(now, "world", options.robot_base_frame, *self._true.state()))
+        if self._truth is not None:
+            self._truth.tell()
         if self._outputs.wants_odometry:
             self._outputs.tell(*self._measured(), *self._covariances())
         self._outputs.tell_joints()
@@ -404,7 +407,7 @@ class GazeboRosDiffDriveRule(DifferentialDriveRule):
             if drive._followed is not None:
                 raise CannotBatchError(f"topic {topic}: ground truth with <odometry_noise>")
             return self.wheel_odometry() if drive.options.from_encoders else self.true_odometry(drive._true)
-        if drive._truth is not None and topic == drive._truth.topic:
+        if drive._truth is not None and topic == drive._truth.odometry_topic:
             return self.true_odometry(drive._true)
         return None
 
@@ -448,6 +451,7 @@ class GazeboRosSkidSteerDrive(GazeboRosDiffDrive):
         publishes("odom", "nav_msgs/msg/Odometry", named_by=("odometryTopic",)),
         publishes("/tf", "tf2_msgs/msg/TFMessage"),
         publishes("ground_truth/odom", "nav_msgs/msg/Odometry"),
+        publishes("ground_truth/wheel_slip", WHEEL_MOTION),
     )
     option_types = (SkidSteerOptions,)
     filenames = ("libgazebo_ros_skid_steer_drive.so",)

@@ -11,8 +11,9 @@ import numpy as np
 from simkit.msgs.topic_names import valid_topic
 from simkit.params import Params
 from simkit.plugins.drives.drive_rule import DifferentialDriveRule, DriveWheel
+from simkit.plugins.drives.ground_truth import GroundTruth
 from simkit.plugins.drives.odometry import FleetOdometry, TrueMotion, WheelOdometry, WheelOdometryRows, rim_speeds
-from simkit.plugins.drives.odometry_messages import ODOMETRY, odometry_message, planar_odometry, planar_transform
+from simkit.plugins.drives.odometry_messages import planar_odometry, planar_transform
 from simkit.plugins.drives.odometry_noise import NoisyOdometry, odometry_noise
 from simkit.plugins.drives.speed_limits import limit_each, speed_limits
 from simkit.plugins.drives.twist_drive import Speeds, TwistDrive, WheeledDriveOptions
@@ -24,7 +25,7 @@ from simkit.runtime.handles.joint import wheel_angles
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.msgs import Bool
-    from simkit.runtime import Model, Publisher
+    from simkit.runtime import Model
     from simkit.runtime.state_arrays import StateArrays
     from simkit.scene import SceneModel
 
@@ -42,8 +43,9 @@ class DiffDrive(TwistDrive):
 
     The odometry is computed from the first pair of wheels. Its pose starts at zero and describes the point between
     these wheels. Its twist is the mean over the last ten steps. Three options do not exist in Gazebo.
-    `<publish_ground_truth>` publishes the true pose on `/model/<model>/ground_truth/odom`. `<odometry_noise>` adds
-    errors to the odometry, with their covariance. `<actuation_error>` makes the wheels turn faster or slower.
+    `<publish_ground_truth>` publishes the true pose on `/model/<model>/ground_truth/odom`, and the slip of the wheels
+    on `/model/<model>/ground_truth/wheel_slip`. `<odometry_noise>` adds errors to the odometry, with their covariance.
+    `<actuation_error>` makes the wheels turn faster or slower.
     """
 
     options = OptionsOf(DiffDriveOptions)
@@ -75,8 +77,9 @@ class DiffDrive(TwistDrive):
         self._last_ns = self.sim.time_ns
         self.open_topics(parent, params)
         self.listen(valid_topic(f"/model/{parent.name}/enable"), "std_msgs/msg/Bool", self._on_enable)
-        truth = valid_topic(f"/model/{parent.name}/ground_truth/odom")
-        self._truth = self.advertise(truth, ODOMETRY) if self.options.publish_ground_truth else None
+        joints = [name for side in self._joint_names for name in side]
+        truth = parent, self._true, joints, f"{valid_topic(f'/model/{parent.name}')}/", self._child
+        self._truth = GroundTruth(self, *truth) if self.options.publish_ground_truth else None
 
     # ------------------------------------------------------------------ commands
 
@@ -132,7 +135,7 @@ class DiffDrive(TwistDrive):
             covariances = noisy.messages_covariance() if noisy.noise.wheel_variance else ()
             self.publish_odometry(noisy.reckoning.pose, noisy.twist, *covariances)
         if self._truth is not None:
-            self._publish_truth(self._truth)
+            self._truth.tell()
 
     def publish_planar(self, ahead: float, turn: float) -> None:
         """Publish the pose of `odometry` and a forward speed [m/s] and turning rate [rad/s], as `after_step` does."""
@@ -143,12 +146,7 @@ class DiffDrive(TwistDrive):
         if self._tf.wanted:
             self._tf.publish_later(partial(planar_transform, *fields))
         if self._truth is not None:
-            self._publish_truth(self._truth)
-
-    def _publish_truth(self, publisher: Publisher) -> None:
-        if publisher.wanted:
-            message = odometry_message(self.sim.time_ns, "world", self._child, *self._true.state())
-            publisher.publish(message)
+            self._truth.tell()
 
     # ------------------------------------------------------------------ many simulations
 
@@ -305,6 +303,6 @@ class DiffDriveRule(DifferentialDriveRule):
         drive = self._drive
         if topic == drive._odom.topic:
             return self.wheel_odometry()
-        if drive._truth is not None and topic == drive._truth.topic:
+        if drive._truth is not None and topic == drive._truth.odometry_topic:
             return self.true_odometry(drive._true)
         return None

@@ -42,6 +42,12 @@ class CollisionTable:
         numbers = [i for i, name in enumerate(self.names) if name in scoped]
         return np.isin(self.of_geom, numbers)
 
+    def mask_of_model(self, model: str | None) -> Bools:
+        """Return a mask of the geoms of a model by its scoped name; None for all geoms."""
+        if model is None:
+            return np.append(np.ones(len(self.of_geom) - 1, bool), False)
+        return self.mask([name for name in self.names if name.startswith(f"{model}::")])
+
 
 def collision_table(compiled: Compiled) -> CollisionTable:
     """Return the collisions of a compiled model; computed once for all callers."""
@@ -65,6 +71,7 @@ class CollisionContacts:
     """Contacts of some collisions, k of them, in the engine's order.
 
     Attributes:
+        numbers: indices among the engine's contacts, shape (k,).
         geoms: two geoms of each contact, shape (k, 2).
         positions: position half way between the two surfaces [m], world frame, shape (k, 3).
         frames: axes of each contact as rows, world frame, shape (k, 3, 3); the first points from geom 0 to geom 1.
@@ -72,6 +79,7 @@ class CollisionContacts:
         wrenches: force [N] and torque [N·m] on geom 1 at the position, in the contact's axes, shape (k, 6).
     """
 
+    numbers: Ints
     geoms: Ints
     positions: Floats
     frames: Floats
@@ -111,7 +119,33 @@ def find_contacts(model: mujoco.MjModel, data: mujoco.MjData, selected: Bools) -
     if not rows.size:
         return None
     frames = contact.frame[rows].reshape(-1, 3, 3)
-    return CollisionContacts(pairs[rows], contact.pos[rows], frames, depths, wrenches)
+    return CollisionContacts(rows, pairs[rows], contact.pos[rows], frames, depths, wrenches)
+
+
+def slip_velocities(model: mujoco.MjModel, data: mujoco.MjData, contacts: CollisionContacts) -> Floats:
+    """Return the velocity of the second surface of each contact against the first one [m/s], along the contact's axes.
+
+    Belts and tracks count with the speed of their surface.
+
+    Returns:
+        Velocities, shape (k, 3): along the normal, where a positive number is a contact that opens, and along the two
+        tangents.
+    """
+    found = np.empty((len(contacts.numbers), 3))
+    surface = data.contact.surfacevel
+    for place, (number, geoms) in enumerate(zip(contacts.numbers.tolist(), contacts.geoms.tolist(), strict=True)):
+        first, second = (point_velocity(model, data, geom, contacts.positions[place]) for geom in geoms)
+        found[place] = matmul(contacts.frames[place], second - first)
+        found[place, 1:] += surface[number, :2]
+    return found
+
+
+def point_velocity(model: mujoco.MjModel, data: mujoco.MjData, geom: int, point: Vector) -> Vector:
+    """Return the velocity of the point of a geom's body at a position in the world [m/s], world frame, shape (3,)."""
+    body, motion = int(model.geom_bodyid[geom]), np.empty(6)
+    mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_XBODY, body, motion, 0)
+    velocity: Vector = motion[3:] + np.cross(motion[:3], point - data.xpos[body])
+    return velocity
 
 
 class Contact(NamedTuple):
@@ -140,11 +174,7 @@ def list_contacts(compiled: Compiled, data: mujoco.MjData, model: str | None) ->
         model: scoped name of a model; only contacts of its collisions are listed. None for all contacts.
     """
     table = collision_table(compiled)
-    if model is None:
-        selected = np.append(np.ones(compiled.model.ngeom, bool), False)
-    else:
-        selected = table.mask([name for name in table.names if name.startswith(f"{model}::")])
-    contacts = find_contacts(compiled.model, data, selected)
+    contacts = find_contacts(compiled.model, data, table.mask_of_model(model))
     if contacts is None:
         return []
     return [

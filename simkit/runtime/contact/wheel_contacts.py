@@ -12,6 +12,7 @@ where the contact line crosses the middle of the tread.
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any, Final
 
 import mujoco
@@ -29,6 +30,12 @@ _CENTRED: Final = 0.05
 _LEVEL: Final = 0.9999
 """Least cosine between the normals of two contacts on one line."""
 
+_SPHERE: Final = int(mujoco.mjtGeom.mjGEOM_SPHERE)
+_DISCS: Final = (int(mujoco.mjtGeom.mjGEOM_CYLINDER), int(mujoco.mjtGeom.mjGEOM_MESH))
+
+WHEEL_SHAPES: Final = (*_DISCS, _SPHERE, int(mujoco.mjtGeom.mjGEOM_ELLIPSOID))
+"""Types of geoms that may be wheels; spheres and ellipsoids touch flat ground in one point."""
+
 Floats = npt.NDArray[np.float64]
 
 _ROTATION: Final = 5
@@ -44,6 +51,40 @@ WheelPair = tuple[Floats, Floats, list[int], bool]
 """
 
 _NO_ISLANDS: Final = int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
+
+
+def turns_freely(model: mujoco.MjModel, joint: int) -> bool:
+    """Check whether a hinge turns more than once, and is the only joint of its body."""
+    low, high = model.jnt_range[joint].tolist()
+    is_free = not model.jnt_limited[joint] or high - low > 2.0 * np.pi
+    return is_free and bool(model.body_jntnum[model.jnt_bodyid[joint]] == 1)
+
+
+def wheel_column(model: mujoco.MjModel, geom: int, joint: int, kinds: Collection[int] = _DISCS) -> int | None:
+    """Return the column of a geom's matrix about which the geom is a wheel on a joint; None if it is not a wheel.
+
+    Args:
+        model: MuJoCo's model.
+        geom: geom of the body that the joint moves.
+        joint: hinge.
+        kinds: types of geoms that may be wheels.
+    """
+    kind = int(model.geom_type[geom])
+    if kind not in kinds or not (model.geom_contype[geom] | model.geom_conaffinity[geom]):
+        return None
+    matrix = np.empty(9)
+    mujoco.mju_quat2Mat(matrix, model.geom_quat[geom])
+    along = np.abs(matmul(matrix.reshape(3, 3).T, model.jnt_axis[joint]))
+    column = int(along.argmax())
+    centre, size = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]
+    across = [i for i in range(3) if i != column]
+    radius = float(size[across].max())
+    offset = model.geom_pos[geom] + matmul(matrix.reshape(3, 3), centre) - model.jnt_pos[joint]
+    off_axis = norm(np.cross(offset, model.jnt_axis[joint]))
+    is_round = size[across].min() > (1.0 - _CENTRED) * radius
+    is_aligned = along[column] > _ALIGNED or kind == _SPHERE
+    is_wheel = is_aligned and is_round and off_axis < _CENTRED * radius and size[column] <= radius
+    return column if is_wheel else None
 
 
 class WheelContacts:
@@ -65,38 +106,16 @@ class WheelContacts:
         if model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL:  # its rows are edges, not tangents
             return
         for joint in np.flatnonzero(model.jnt_type == mujoco.mjtJoint.mjJNT_HINGE).tolist():
-            low, high = model.jnt_range[joint].tolist()
             body = int(model.jnt_bodyid[joint])
-            is_free = not model.jnt_limited[joint] or high - low > 2.0 * np.pi
-            if is_free and model.body_jntnum[body] == 1:
+            if turns_freely(model, joint):
                 first = int(model.body_geomadr[body])
                 for geom in range(first, first + int(model.body_geomnum[body])):
-                    column = self._axis(geom, joint)
+                    column = wheel_column(model, geom, joint)
                     if column is not None:
                         self._axis_of[geom] = column
 
     def __bool__(self) -> bool:
         return bool(self._axis_of)
-
-    def _axis(self, geom: int, joint: int) -> int | None:
-        """Return the matrix column of the axis about which a geom is a wheel on a joint; None if it is not a wheel."""
-        model = self._model
-        kind = int(model.geom_type[geom])
-        collides = bool(model.geom_contype[geom] | model.geom_conaffinity[geom])
-        if not collides or kind not in (mujoco.mjtGeom.mjGEOM_CYLINDER, mujoco.mjtGeom.mjGEOM_MESH):
-            return None
-        matrix = np.empty(9)
-        mujoco.mju_quat2Mat(matrix, model.geom_quat[geom])
-        along = np.abs(matmul(matrix.reshape(3, 3).T, model.jnt_axis[joint]))
-        column = int(along.argmax())
-        centre, size = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]
-        across = [i for i in range(3) if i != column]
-        radius = float(size[across].max())
-        offset = model.geom_pos[geom] + matmul(matrix.reshape(3, 3), centre) - model.jnt_pos[joint]
-        off_axis = norm(np.cross(offset, model.jnt_axis[joint]))
-        is_round = size[across].min() > (1.0 - _CENTRED) * radius
-        is_wheel = along[column] > _ALIGNED and is_round and off_axis < _CENTRED * radius and size[column] <= radius
-        return column if is_wheel else None
 
     def merge(self, data: mujoco.MjData) -> bool:
         """Give the contacts of a line one friction point: the tangent rows of their Jacobians become equal.

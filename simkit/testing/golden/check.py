@@ -26,6 +26,7 @@ from simkit.testing.golden.compare.runs import compare
 from simkit.testing.golden.store import (
     MAIN_FILE,
     golden_folder,
+    is_golden,
     line_of_key,
     read_golden,
     read_history,
@@ -143,6 +144,30 @@ def _append_world_changes(error: InputError, golden: RunRecord, scenario: RunSpe
         lines.append(f"{len(changes) - len(lines)} more")
     text = "\n".join(f"    changed since the golden run: {line}" for line in lines)
     return InputError(error.code, f"{error}\n{text}", shows_code=False)
+
+
+def golden_scenario(
+    folder: FilePath,
+    *,
+    folders: Sequence[FilePath] = (),
+    allow_code: bool = False,
+    plugin_paths: Sequence[FilePath] = (),
+) -> RunSpec | None:
+    """Return the scenario of a golden run, which a check would run; None if a path is not a golden run.
+
+    Args:
+        folder: Folder.
+        folders: Folders in which the golden run may name files, as in `check_golden`.
+        allow_code: Allow the code that the golden run and its scenario name.
+        plugin_paths: Allow the code in these folders only.
+
+    Raises:
+        InputError: See `check_golden`.
+    """
+    if not is_golden(folder):
+        return None
+    place = golden_folder(folder)
+    return _current_scenario(place, read_golden(place), folders, allow_code, plugin_paths)
 
 
 def _current_scenario(

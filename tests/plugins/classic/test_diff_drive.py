@@ -9,6 +9,7 @@ import pytest
 from plugin_worlds import GROUND, classic_drive, element, rover, stamps, world, xyz, yaw
 
 import simkit
+from simkit import msgs
 
 TWIST = {"linear": {"x": 0.3}}
 
@@ -169,6 +170,27 @@ def test_ground_truth_is_published_on_request() -> None:
     np.testing.assert_array_equal(stamps(odometry.messages), stamps(truth.messages))
     np.testing.assert_allclose(xyz(truth.latest.pose.pose.position), position, atol=1e-12)
     assert truth.latest.header.frame_id == "world"
+
+
+def test_the_slip_of_the_wheels_is_published_with_the_ground_truth() -> None:
+    with opened(odometry_source=0, publish_ground_truth="true") as sim:
+        truth, slip = (
+            sim.subscribe("/ground_truth/odom"),
+            sim.subscribe("/ground_truth/wheel_slip", type=msgs.WheelMotion),
+        )
+        sim.publish("/cmd_vel", TWIST)
+        sim.run(1.0)
+        wheels = {wheel.joint: wheel for wheel in sim.wheel_slips("rover")}
+    np.testing.assert_array_equal(stamps(slip.messages), stamps(truth.messages))
+    assert slip.latest is not None
+    assert slip.latest.name == ["left_wheel", "right_wheel"]
+    for place, name in enumerate(slip.latest.name):
+        assert slip.latest.slip[place] == wheels[f"rover::{name}"].slip
+
+
+def test_without_a_request_there_is_no_ground_truth() -> None:
+    with opened(odometry_source=0) as sim:
+        assert not [topic for topic in sim.topics() if "ground_truth" in topic]
 
 
 def test_the_ros_1_spelling_drives_too() -> None:

@@ -144,8 +144,12 @@ def test_a_disabled_drive_stops_and_ignores_commands() -> None:
 def test_ground_truth_is_published_on_request() -> None:
     with load(publish_ground_truth="true") as sim:
         truth = sim.subscribe("/model/rover/ground_truth/odom")
+        slip = sim.subscribe("/model/rover/ground_truth/wheel_slip")
         sim.publish("/model/rover/cmd_vel", {"linear": {"x": 0.2}})
         sim.run(1.0)
+        assert slip.latest.name == ["left_wheel", "right_wheel"]
+        np.testing.assert_allclose(slip.latest.rim_speed, 0.2, rtol=0.01)
+        np.testing.assert_allclose(slip.latest.slip, 0.0, atol=1e-4)
         np.testing.assert_allclose(xyz(truth.latest.pose.pose.position), sim.model("rover").pose.position, atol=1e-12)
 
 

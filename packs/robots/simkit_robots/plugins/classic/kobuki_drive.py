@@ -86,6 +86,7 @@ class GazeboRosKobuki(KobukiSensors, GazeboRosDiffDrive):
         publishes("odom", ODOMETRY),
         publishes("/tf", TRANSFORMS),
         publishes("ground_truth/odom", ODOMETRY),
+        publishes("ground_truth/wheel_slip", "simkit_msgs/msg/WheelMotion"),
         publishes("joint_states", JOINT_STATE),
         *KobukiSensors.sensor_endpoints,
     )

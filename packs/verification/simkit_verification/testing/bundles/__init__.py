@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from simkit_verification.testing.bundles.archive import Bundle, open_bundle
 from simkit_verification.testing.bundles.bundle_recorder import BundleRecorder
-from simkit_verification.testing.bundles.bundle_replay import ReplayResult, replay
+from simkit_verification.testing.bundles.bundle_replay import ReplayResult, replay, replay_until
 from simkit_verification.testing.bundles.bundle_writer import keep, write_bundle
 
-__all__ = ["Bundle", "BundleRecorder", "ReplayResult", "keep", "open_bundle", "replay", "write_bundle"]
+__all__ = ["Bundle", "BundleRecorder", "ReplayResult", "keep", "open_bundle", "replay", "replay_until", "write_bundle"]

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 import tempfile
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
 from simkit import Simulation
 from simkit.errors import InputError, PluginError, SimkitError
-from simkit.extend import SceneModel
+from simkit.extend import SceneModel, counted
 from simkit.recording import Recorder
 from simkit.recording.bags.reader import open_bag_to_read
 from simkit.runtime.engine.snapshot import state_hash
@@ -79,6 +81,30 @@ def replay(
             allowed.
         LoadError: The world has errors on this machine.
     """
+    with _opened_replay(path, allow_code=allow_code) as opened:
+        return opened.run(on_slice, record)
+
+
+@contextmanager
+def replay_until(path: str | os.PathLike[str], time: float | None, *, allow_code: bool = False) -> Iterator[Simulation]:
+    """Repeat the run in a bundle up to a time, and yield its simulation.
+
+    Args:
+        path: Bundle.
+        time: Simulated time [s]; None for the end of the run. A run that failed ends before its last step.
+        allow_code: See `replay`.
+
+    Raises:
+        InputError, LoadError: See `replay`.
+        SimulationDiverged, PluginError: The run failed before that time.
+    """
+    with _opened_replay(path, allow_code=allow_code) as opened, opened.at(time) as sim:
+        yield sim
+
+
+@contextmanager
+def _opened_replay(path: str | os.PathLike[str], *, allow_code: bool) -> Iterator[_Replay]:
+    """Extract a bundle to a temporary folder."""
     with open_bundle(path) as bundle, tempfile.TemporaryDirectory(prefix="simkit-replay.") as folder:
         if bundle.brings_code and not allow_code:
             listed = ", ".join(name.partition("/")[2].partition("/")[2] for name in bundle.manifest.code)
@@ -88,7 +114,7 @@ def replay(
                 help="read the code with simkit replay --extract DIR, then allow the code with --allow-code",
             )
         bundle.extract(Path(folder), with_code=allow_code)
-        return _Replay(bundle, Path(folder)).run(on_slice, record)
+        yield _Replay(bundle, Path(folder))
 
 
 class _Replay:
@@ -106,16 +132,12 @@ class _Replay:
         """Load the world, play the journal and compare the result."""
         manifest = self._manifest
         machine = fingerprint_differences(manifest.fingerprint, fingerprint())
-        numbers = sorted({int(n) for name in manifest.code if (n := name.split("/")[1]).isdecimal()})
-        code = [self._folder / "code" / str(number) for number in numbers]
-        spec = packed_run_spec(self._folder, manifest.run_spec, code)
         try:
-            opened = load_packed_world(spec)
+            opened = self._load()
         except PluginError as error:
             met = failure_from_error(error)
             return ReplayResult(manifest, "", 0.0, met, tuple(self._failures(met)), machine, (), 0)
         with opened as sim:
-            self._read_models_from_bundle(sim)
             window, marks = (
                 MessageWindow(sim, manifest.seconds, manifest.topics, manifest.run.skip, most=1 << 62),
                 StateHashes(sim),
@@ -137,6 +159,25 @@ class _Replay:
                 manifest, state_hash(sim), sim.time, failure, (*differences, *streams), machine, refused, count
             )
 
+    @contextmanager
+    def at(self, time: float | None) -> Iterator[Simulation]:
+        """Repeat the run up to a simulated time [s], None for its end, and yield its simulation."""
+        with self._load() as sim:
+            raised = self._run_to_end(
+                sim, JournalPlayer(sim, self._bundle.commands()), None, math.inf if time is None else time
+            )
+            if raised is not None:
+                raise raised
+            yield sim
+
+    def _load(self) -> Simulation:
+        """Load the world of the bundle at t = 0."""
+        numbers = sorted({int(n) for name in self._manifest.code if (n := name.split("/")[1]).isdecimal()})
+        code = [self._folder / "code" / str(number) for number in numbers]
+        sim = load_packed_world(packed_run_spec(self._folder, self._manifest.run_spec, code))
+        self._read_models_from_bundle(sim)
+        return sim
+
     def _read_models_from_bundle(self, sim: Simulation) -> None:
         """Read every spawned model from the bundle; raise an error if the bundle does not contain the model."""
         read, models = sim.contents.models_reader, self._manifest.models
@@ -152,23 +193,36 @@ class _Replay:
         sim.contents.models_reader = read_packed
 
     def _run_to_end(
-        self, sim: Simulation, player: JournalPlayer, on_slice: Callable[[Simulation], None] | None
+        self,
+        sim: Simulation,
+        player: JournalPlayer,
+        on_slice: Callable[[Simulation], None] | None,
+        until: float | None = None,
     ) -> SimkitError | None:
-        """Run to the recorded end. Return the error that stopped the replay, or None without an error."""
+        """Run to the recorded end. Return the error that stopped the replay, or None without an error.
+
+        Args:
+            sim: Simulation at t = 0.
+            player: Player of the journal.
+            on_slice: See `replay`.
+            until: Simulated time at which the replay stops [s], or at the end before a failure; None to repeat the
+                failure, too.
+        """
         end = self._manifest.end
+        last_tick = math.inf if until is None or math.isinf(until) else sim.engine.clock.ticks(until)
         slice_ = max(1, sim.engine.clock.ticks(_SLICE))
         try:
-            while True:
+            while sim.tick < last_tick:
                 player.play_due()
                 if sim.engine.steps >= end.steps:
                     break
-                stop = min(sim.engine.steps + slice_, end.steps)
+                stop = int(min(sim.engine.steps + slice_, end.steps, sim.engine.steps + last_tick - sim.tick))
                 if player.next_steps is not None:
                     stop = min(stop, max(player.next_steps, sim.engine.steps + 1))
                 sim.step(stop - sim.engine.steps)
                 if on_slice is not None:
                     on_slice(sim)
-            if end.failure is not None and end.failure.kind in ("PluginError", "SimulationDiverged"):
+            if until is None and end.failure is not None and end.failure.kind in ("PluginError", "SimulationDiverged"):
                 sim.step(1)  # the run failed within this step, before the step was counted
         except InputError:
             raise
@@ -205,7 +259,7 @@ class _Replay:
         where = f"equal up to {same * step:g} s" if same else "no equal state is known"
         where += f", differs at {first * step:g} s" if first is not None else ", differs at the end"
         if sim.engine.steps != end.steps:
-            where += f"; the replay made {sim.engine.steps} steps, the run made {end.steps} steps"
+            where += f"; the replay made {counted(sim.engine.steps, 'step')}, the run made {counted(end.steps, 'step')}"
         return [f"state {state_hash(sim)[:16]}…, in the bundle {end.state[:16]}… ({where})"]
 
     def _streams(self, window: MessageWindow) -> tuple[list[str], int]:
@@ -254,4 +308,4 @@ def _first_difference(there: list[WindowMessage], here: list[WindowMessage]) -> 
             )
     last = min(len(there), len(here))
     rest = (there if len(there) > len(here) else here)[last:]
-    return (rest[0].time_ns if rest else 0), f"{len(here)} messages, in the bundle {len(there)}"
+    return (rest[0].time_ns if rest else 0), f"{counted(len(here), 'message')}, in the bundle {len(there)}"
