@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import PurePath
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.diagnostics import did_you_mean
@@ -154,9 +155,10 @@ def _speed_limits(model: Model | None, topic: str, owner: object) -> tuple[Bound
 
 
 def _turtlebot3_limits(model: Model) -> tuple[float, float] | None:
-    """Return speed [m/s] and yaw rate [rad/s] of a TurtleBot3; None for another robot."""
+    """Return speed [m/s] and yaw rate [rad/s] of a TurtleBot3, by its name, file or folder; None for another robot."""
     joints = model.joints
-    if not _TURTLEBOT.search(model.scoped) or not all(name in joints for name in _WHEELS):
+    file = "/".join(PurePath(model.scene.where.file or "").parts[-2:])
+    if not _TURTLEBOT.search(f"{model.scoped} {file}") or not all(name in joints for name in _WHEELS):
         return None
     left, right = (joints[name].scene.pose_world.position for name in _WHEELS)
     return _BURGER if math.dist(left, right) < _BURGER_WIDTH else _WAFFLE

@@ -144,6 +144,12 @@ def test_no_robot_is_driven_beyond_its_bounds() -> None:
             assert teleop.speeds[0] == pytest.approx(max(linear[0], expected[0] - 500 * target.linear_step))
 
 
+def test_a_turtlebot3_of_another_name_has_its_limits_because_of_its_file() -> None:
+    with simkit.load("empty", spawn=["turtlebot3_burger:0,0,0:first:one", "turtlebot3_waffle:1,0,0:second:two"]) as sim:
+        limits = {target.topic: target.linear for target in find_targets(sim)}
+    assert limits == {"/one/cmd_vel": (-0.22, 0.22), "/two/cmd_vel": (-0.26, 0.26)}
+
+
 def test_q_and_z_change_all_speeds_alike_so_that_a_curve_stays_the_same() -> None:
     with simkit.load(world(rover("burger"))) as sim:
         teleop = Teleop(sim, find_target(sim))

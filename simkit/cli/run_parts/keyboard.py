@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from simkit.cli.terminal.keyboard import Keyboard, WindowsKeyboard
     from simkit.runtime import Simulation
 
-_TOPIC: Final = re.compile(r"/[A-Za-z0-9_/]*")
+_TOPIC: Final = re.compile(r"\w*/[\w/]*", re.ASCII)
 HINT: Final = "space resumes, n advances one step, Ctrl-C ends"
 _KEY_TIMEOUT_HELP = "Simulated seconds without a key after which --teleop stops; inf: never."
 
@@ -48,7 +48,7 @@ class KeyboardControl(RunPart):
 
     @classmethod
     def complete_words(cls, words: list[str]) -> list[str]:
-        """Give --teleop its empty topic, unless the next word begins with a slash and is not a file."""
+        """Give --teleop its empty topic, unless the next word has a slash and no dot, and is not a file."""
         return fill_in_value(words, "--teleop", "", lambda word: _TOPIC.fullmatch(word) and not Path(word).exists())
 
     @property
