@@ -102,6 +102,7 @@ def test_parameters_that_act_alike_cannot_be_told_apart(tmp_path: Path) -> None:
     assert "SK-FIT-009" in {d.code for d in result.diagnostics}
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_result_in_several_processes(pushed: Path) -> None:
     fits = [simkit.fit(slider(), pushed, [MASS], compare="/joint_states", jobs=jobs, seed=4) for jobs in (1, 2)]
     assert fits[0].as_dict() | {"wall_time": 0} == fits[1].as_dict() | {"wall_time": 0}

@@ -37,7 +37,7 @@ JOINTS = "/world/w/model/rover/joint_state"
 OBSERVATION = {"scan": "/rover/scan", "odom": "/odom", "joints": JOINTS, "imu": "/rover/imu"}
 
 
-@pytest.mark.parametrize("rate", [30, 2, 0])
+@pytest.mark.parametrize("rate", [30, pytest.param(2, marks=pytest.mark.slow), pytest.param(0, marks=pytest.mark.slow)])
 def test_scan_odometry_joint_states_and_imu_have_the_bits_of_single_robots(rate: float) -> None:
     plugin = COMMAND_AND_ODOMETRY + ACCELERATION + RATE.format(rate)
     source = world(rover("rover", 0, plugin))
@@ -66,6 +66,7 @@ def moved(env: Any) -> None:
     env.sim.step(int(env.np_random.integers(1, 9)))
 
 
+@pytest.mark.slow
 def test_an_episode_begins_with_the_motion_and_the_enabled_state_that_on_reset_leaves() -> None:
     source = world(rover("rover", 0, COMMAND_AND_ODOMETRY + ACCELERATION + RATE.format(17)))
     options: dict[str, Any] = {"observation": {"odom": "/odom", "robot": "rover"}, "on_reset": moved}
@@ -82,7 +83,7 @@ PUBLISHER = """</plugin><plugin filename="gz-sim-odometry-publisher-system" name
 <odom_topic>true_odom</odom_topic><odom_publish_frequency>{}</odom_publish_frequency>"""
 
 
-@pytest.mark.parametrize("rate", [30, 0])
+@pytest.mark.parametrize("rate", [30, pytest.param(0, marks=pytest.mark.slow)])
 def test_the_odometry_publisher_has_the_bits_of_single_robots(rate: float) -> None:
     source = world(rover("rover", 0, COMMAND_AND_ODOMETRY + ACCELERATION + PUBLISHER.format(rate)))
     options: dict[str, Any] = {"observation": {"true": "/true_odom", "odom": "/odom"}, "on_reset": moved}
@@ -150,6 +151,7 @@ TURTLEBOT3 = Path(__file__).resolve().parents[4] / "shared" / "corpus" / "files"
 TURTLEBOT3_MODELS = TURTLEBOT3 / "turtlebot3_gazebo" / "models"
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not TURTLEBOT3_MODELS.is_dir(), reason="needs the corpus in ../shared")
 def test_the_public_waffle_in_its_world_has_the_bits_of_single_robots() -> None:
     models = "".join(

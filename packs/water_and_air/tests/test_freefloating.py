@@ -59,6 +59,7 @@ def test_a_light_robot_rises_to_the_height_where_its_lift_carries_it() -> None:
         assert base.pose.position[2] + 0.1 == pytest.approx(height, abs=0.01)  # the oscillation decays slowly
 
 
+@pytest.mark.slow
 def test_thrusters_drive_and_turn_the_robot_within_their_limits() -> None:
     with dive(robot(BUOYANCY.replace(str(LIFT), "1.004")), 20.0) as sim:
         base, use = sim.link("auv::base_link"), sim.subscribe("/auv/thruster_use", keep=1)
@@ -141,6 +142,7 @@ def test_a_boat_of_usv_sim_lsa_is_pushed_by_the_wind_and_floats_on_a_moved_surfa
         assert base.pose.position[2] == pytest.approx(before + 1.0, abs=0.05)
 
 
+@pytest.mark.slow
 def test_a_removed_and_a_second_robot_leave_the_others_afloat() -> None:
     with dive(robot()) as sim:
         sim.spawn(robot(), "second", simkit.Pose((5.0, 0.0, -1.0)))

@@ -43,6 +43,7 @@ def world(content: str) -> str:
       <physics name="p" type="ode"><max_step_size>0.01</max_step_size></physics>{content}</world></sdf>"""
 
 
+@pytest.mark.slow
 def test_a_vehicle_drifts_with_the_current_and_a_service_turns_it() -> None:
     current = CURRENT.format(mean=0.4, mu=0, noise=0, angle=0)
     with simkit.load(world(current + vehicle())) as sim:
