@@ -28,6 +28,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from simkit.number_text import counted
+
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 IMAGES = ROOT / "docs" / "images" / "gallery"
@@ -312,7 +314,8 @@ def picture(entry: Entry, file: Path) -> str:
 def motion(result: dict[str, Any]) -> str:
     """Return the text of what works, for one entry."""
     if "rate" in result:
-        return f"{result['models']} models, {result['sensors']} sensors; {result['rate']:.0f} × real time"
+        counts = f"{counted(result['models'], 'model')}, {counted(result['sensors'], 'sensor')}"
+        return f"{counts}; {result['rate']:.0f} × real time"
     if "drive" in result:
         texts = []
         for part, r in sorted(result["drive"].items(), reverse=True):

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.errors import ArgumentTypeError, ArgumentValueError
+from simkit.number_text import counted
 
 if TYPE_CHECKING:
     import numpy as np
@@ -136,7 +137,7 @@ def checked_vector(value: object, name: str, count: int = 3) -> npt.NDArray[np.f
     """Return finite numbers as an array of shape (count,)."""
     import numpy as np
 
-    allowed = f"{count} finite {'number' if count == 1 else 'numbers'}"
+    allowed = counted(count, "finite number")
     try:
         entries = np.asarray(value)
         if value is None or entries.dtype.kind not in "iufO":

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from simkit.diagnostic_record import NOWHERE, TEXT_SOURCE, Diagnostic, Severity, Where
 from simkit.errors import LoadError
+from simkit.number_text import counted
 
 __all__ = [
     "NOWHERE",
@@ -76,7 +77,7 @@ class Diagnostics:
         file = where.file or (TEXT_SOURCE if where.line else None)
         self._put(Diagnostic(code, severity, message, file, where.line, hint[:LONGEST_MESSAGE]))
         if severity == "error" and self._errors >= MOST_ERRORS:
-            text = f"the input has {self._errors} errors; the rest is not checked"
+            text = f"the input has {counted(self._errors, 'error')}; the rest is not checked"
             self._put(Diagnostic("SK-LOAD-012", "error", text, file, where.line))
             self.raise_if_errors()
 

@@ -34,6 +34,7 @@ from simkit import hidden_text
 from simkit.deprecation import SimkitDeprecationWarning as SimkitDeprecationWarning
 from simkit.deprecation import warn_deprecated
 from simkit.diagnostic_record import NOWHERE, Diagnostic, Where
+from simkit.number_text import counted
 
 if not hasattr(sys.modules["simkit"], "_DISTRIBUTION"):
     from simkit.name_conflict import conflict_error
@@ -150,7 +151,7 @@ class LoadError(InputError):
         errors = [d for d in self.diagnostics if d.severity == "error"] or list(self.diagnostics)
         lines = [str(d) for d in errors[:_MOST_LISTED]]
         if len(errors) > _MOST_LISTED:
-            lines.append(f"and {len(errors) - _MOST_LISTED} more problems; `diagnostics` has all of them")
+            lines.append(f"and {counted(len(errors) - _MOST_LISTED, 'more problem')}; `diagnostics` has all of them")
         super().__init__(errors[0].code if errors else "SK-LOAD-001", "\n".join(lines), shows_code=False)
 
 

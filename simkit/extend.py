@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from simkit.diagnostics import Diagnostics, Where, did_you_mean
     from simkit.loaders.resources.loader import Loader, LoadRequest
     from simkit.loaders.resources.xml_reader import Document
+    from simkit.number_text import counted
     from simkit.params import LARGEST
     from simkit.plugins.base import NEVER
     from simkit.plugins.base import Plugin as Plugin  # for type checkers alone; users import it from `simkit`
@@ -130,6 +131,7 @@ __all__ = [
     "blocks",
     "boolean",
     "choice",
+    "counted",
     "did_you_mean",
     "find_link",
     "find_named_joint",
@@ -159,6 +161,7 @@ _MODULES = {
     "simkit.cli.terminal.options": ("argument", "option"),
     "simkit.compiler": ("Compiled", "SpecBuilder"),
     "simkit.diagnostics": ("Diagnostics", "Where", "did_you_mean"),
+    "simkit.number_text": ("counted",),
     "simkit.loaders.resources.loader": ("LoadRequest", "Loader"),
     "simkit.loaders.resources.xml_reader": ("Document",),
     "simkit.params": ("LARGEST",),

@@ -1,4 +1,4 @@
-"""Numbers and truth values in the text of a file."""
+"""Numbers and truth values in the text of a file or a message."""
 
 from __future__ import annotations
 
@@ -22,6 +22,11 @@ def is_number(text: str) -> bool:
 def number_or_nan(text: str) -> float:
     """Return the number that a text contains; NaN if the text is not a number."""
     return float(text) if is_number(text) else math.nan
+
+
+def counted(count: int, noun: str, plural: str = "") -> str:
+    """Return a number with its noun, such as `1 note` or `2 notes`; without a plural, an s is added to the noun."""
+    return f"{count} {noun if count == 1 else plural or noun + 's'}"
 
 
 def range_text(minimum: float | None, maximum: float | None) -> str:

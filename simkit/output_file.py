@@ -10,6 +10,7 @@ import errno
 import os
 import stat
 import time
+from contextlib import suppress
 from io import BufferedRandom
 from pathlib import Path
 from typing import IO, Final
@@ -71,6 +72,9 @@ def open_target(path: Path, *, overwrite: bool = False) -> IO[bytes]:
     """
     if overwrite and path.exists() and not path.is_file():
         return open_special(path)
+    if overwrite and not path.is_symlink():
+        with suppress(PermissionError):  # the file may be writable although its folder is not
+            path.unlink(missing_ok=True)  # another run may still write to it
     return path.open("wb" if overwrite else "xb")
 
 

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any, ClassVar, TypeVar
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
-from simkit.number_text import is_number, parse_boolean, parse_number, range_text, without_units
+from simkit.number_text import counted, is_number, parse_boolean, parse_number, range_text, without_units
 from simkit.pose import IDENTITY, Pose
 from simkit.template_texts import find_template_text
 
@@ -227,7 +227,7 @@ class Params:
             return tuple(parse_number(v, -LARGEST, LARGEST, True) for v in parts)
 
         fallback = None if default is None else tuple(float(v) for v in default)
-        return self._value(name, fallback, (0.0,) * size, required, parse, f"{size} numbers")
+        return self._value(name, fallback, (0.0,) * size, required, parse, counted(size, "number"))
 
     def vector3(
         self, name: str, default: Sequence[float] | None = None, required: bool = False
@@ -266,7 +266,7 @@ class Params:
         if len(parts) > count and all(map(is_number, parts)):
             shown = self.value if len(self.value) <= 60 else self.value[:57] + "..."
             what = "number is" if count == 1 else f"{count} numbers are"
-            message = f"<{self.name}>{shown}</{self.name}> has {len(parts)} numbers, the first {what} used"
+            message = f"<{self.name}>{shown}</{self.name}> has {counted(len(parts), 'number')}, the first {what} used"
             self.diagnostics.warning("SK-PARAM-006", message, self.where)
             return parts[:count]
         return parts
@@ -292,7 +292,7 @@ class Params:
         if len(numbers) > 6:
             self.first_of(6)  # reports the surplus
         elif len(numbers) < 6:
-            text = f"<{self.name}>{self.value}</{self.name}> has {len(numbers)} numbers"
+            text = f"<{self.name}>{self.value}</{self.name}> has {counted(len(numbers), 'number')}"
             lost = ", and the rotation needs 3 of them: it is 0, as in Gazebo Classic" if len(numbers) > 3 else ""
             self.diagnostics.warning("SK-PARAM-006", text + (lost or ", 0 is used for the others"), self.where)
             numbers = numbers[:3]

@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING, Final, Unpack
 import pytest
 
 from simkit.diagnostics import shorten
+from simkit.number_text import counted
 from simkit.run_fields import LoadArguments
 
 if TYPE_CHECKING:
@@ -102,7 +103,9 @@ class _Opened:
         """Return the progress of the run and every diagnostic."""
         if self.sim is None:
             return _lines(self.refused)
-        progress = f"stopped at {self.sim.time:.6g} s, after {self.sim.tick} steps of {self.sim.timestep:g} s"
+        progress = (
+            f"stopped at {self.sim.time:.6g} s, after {counted(self.sim.tick, 'step')} of {self.sim.timestep:g} s"
+        )
         return "\n".join(filter(None, (progress, _lines(self.sim.diagnostics))))
 
 

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import IO, Any, Final, NamedTuple, Self
 
 from simkit.errors import InputError
+from simkit.number_text import counted
 from simkit.process_control import kill_process_tree
 from simkit.run_spec import JsonObject
 
@@ -220,7 +221,7 @@ class BridgeProcess:
         if self._period_start is None or self._period_start > latest_start:
             return
         if (omitted := self._note_count - _MOST_NOTES) > 0:
-            self._report(f"note {self._codes.note}: {omitted} more notes are not shown")
+            self._report(f"note {self._codes.note}: {counted(omitted, 'more note')} not shown")
         self._period_start, self._note_count = None, 0
 
     def _report_last_notes(self) -> None:

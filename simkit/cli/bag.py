@@ -30,6 +30,7 @@ from simkit.cli.terminal.output import (
 )
 from simkit.cli.terminal.topic_sources import SimClock, connect_to_simulation
 from simkit.errors import InputError
+from simkit.number_text import counted
 
 if TYPE_CHECKING:
     from simkit.live import Client, LivePublisher
@@ -104,7 +105,8 @@ def export(
     for e in exports:
         for note in e.notes:
             print_note(f"note: {e.topic}: {note}")
-    print_line(f"{target}: {sum(e.count for e in exports)} messages of {len(exports)} topics")
+    messages = counted(sum(e.count for e in exports), "message")
+    print_line(f"{target}: {messages} of {counted(len(exports), 'topic')}")
 
 
 @report_errors
@@ -144,7 +146,7 @@ def video(
     if json_:
         print_json({"output": str(output), "frames": count, "models": sorted(moved)})
     else:
-        print_line(f"{output}: {count} frames, {float(film.frame_rate):g} per second")
+        print_line(f"{output}: {counted(count, 'frame')}, {float(film.frame_rate):g} per second")
     return interrupts.exit_code
 
 
@@ -308,8 +310,9 @@ def recover(
     for line in recovery.loss_lines()[:_LOSSES_LISTED]:
         print_note(f"note: {line}")
     if len(recovery.losses) > _LOSSES_LISTED:
-        print_note(f"note: {len(recovery.losses) - _LOSSES_LISTED} more damaged parts")
+        print_note(f"note: {counted(len(recovery.losses) - _LOSSES_LISTED, 'more damaged part')}")
     span = (recovery.end - recovery.start) * 1e-9
     print_line(
-        f"{target}: {recovery.messages} messages on {recovery.topics} topics over {span:.3f} s ({recovery.state})"
+        f"{target}: {counted(recovery.messages, 'message')} on {counted(recovery.topics, 'topic')} "
+        f"over {span:.3f} s ({recovery.state})"
     )

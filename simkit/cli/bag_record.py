@@ -18,6 +18,7 @@ from simkit.cli.terminal.topic_sources import LiveSource, connect_to_simulation
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 from simkit.msgs.topic_names import is_hidden
+from simkit.number_text import counted
 
 if TYPE_CHECKING:
     from simkit.cli.terminal.topic_sources import LiveFeed, ReceivedMessage, TopicEntry
@@ -82,10 +83,10 @@ def record(
     if json_:
         print_json(summary)
     else:
-        print_note(f"{target}: {bag.span.count} messages on {len(bag.channels)} topics")
+        print_note(f"{target}: {counted(bag.span.count, 'message')} on {counted(len(bag.channels), 'topic')}")
         if lost:
             counts = ", ".join(f"{count} of {topic}" for topic, count in lost.items())
-            text = f"note: {sum(lost.values())} messages were dropped ({counts})"
+            text = f"note: {counted(sum(lost.values()), 'message')} dropped ({counts})"
             print_note(f"{text}; `simkit run --record` drops none")
     return stop.exit_code
 

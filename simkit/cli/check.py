@@ -18,6 +18,7 @@ from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import print_diagnostics, print_json, stdout_console
 from simkit.diagnostics import Diagnostic, Diagnostics, Where
 from simkit.errors import InputError
+from simkit.number_text import counted
 from simkit.run_files import FilePath
 from simkit.writers.atomic_output import check_file
 
@@ -149,7 +150,7 @@ def _run_options(given: GivenOptions) -> Iterator[str]:
 
 def _counts(diagnostics: Sequence[Diagnostic]) -> str:
     counts = Counter(d.severity for d in diagnostics)
-    return ", ".join(f"{counts[s]} {s}{'' if counts[s] == 1 else 's'}" for s in ("error", "warning", "note"))
+    return ", ".join(counted(counts[s], s) for s in ("error", "warning", "note"))
 
 
 def _fix_inertia(file: str, output: Path | None, force: bool, resource_paths: Sequence[FilePath], json_: bool) -> int:
@@ -170,10 +171,10 @@ def _fix_inertia(file: str, output: Path | None, force: bool, resource_paths: Se
             stdout_console().print(str(fix))
         for problem in result.problems:
             stdout_console().print(problem)
-        stdout_console().print(f"{len(result.fixes)} impossible inertias")
+        stdout_console().print(counted(len(result.fixes), "impossible inertia"))
     if output is not None:
         count = result.write(output)
         rest = f"; {len(result.elsewhere)} are in other files" if result.elsewhere else ""
         if not json_:
-            stdout_console().print(f"{output}: {count} links changed{rest}")
+            stdout_console().print(f"{output}: {counted(count, 'link')} changed{rest}")
     return 0

@@ -14,6 +14,7 @@ from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import print_diagnostics, print_status, stdout_console
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError
+from simkit.number_text import counted
 from simkit.run_spec import SourceOptions
 from simkit.writers.atomic_output import check_target
 
@@ -52,7 +53,7 @@ def convert(
         text = f"found the ending {output.suffix!r}; expected .xml, .mjcf, .sdf or .world"
         raise InputError("SK-CLI-018", f"--output {output}: {text}")
     add_to_report(output=str(output), assets=count)
-    stdout_console().print(f"{output}" + (f" and {count} files in {output.stem}_assets" if count else ""))
+    stdout_console().print(f"{output}" + (f" and {counted(count, 'file')} in {output.stem}_assets" if count else ""))
 
 
 def _to_mjcf(file: str, output: Path, source: SourceOptions, *, strict: bool, force: bool, verbose: bool) -> int:

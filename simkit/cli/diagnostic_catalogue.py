@@ -25,6 +25,7 @@ from typing import Literal, get_args
 
 from simkit.cli.terminal.output import JsonObject, JsonValue
 from simkit.diagnostics import did_you_mean
+from simkit.number_text import counted
 from simkit.packs import foreign_packs, pack_folders, warn_of_pack
 
 Kind = Literal["xml", "command", "python"]
@@ -265,7 +266,7 @@ def _example(entry: JsonObject) -> Example:
 def _example_files(example: Example) -> list[tuple[str, str]]:
     """Return a title and a text for each file of an example; the file that the example runs comes last."""
     files = [
-        (f"{name}:", content if isinstance(content, str) else f"({len(content)} bytes)")
+        (f"{name}:", content if isinstance(content, str) else f"({counted(len(content), 'byte')})")
         for name, content in example.files.items()
     ]
     title = {"xml": f"example{example.suffix}:", "command": "then:", "python": "in Python:"}[example.kind]

@@ -18,6 +18,7 @@ from simkit.cli.terminal.output import stdout_console
 from simkit.install_command import install_command
 from simkit.mujoco_import import REINSTALL
 from simkit.name_conflict import find_conflict
+from simkit.number_text import counted
 from simkit.run_spec import JsonObject
 from simkit.version import __version__
 
@@ -147,7 +148,7 @@ def _versions(facts: dict[str, str]) -> list[str]:
     """Add the versions to `facts`, and return the problems."""
     facts["simkit"] = __version__
     facts["python"] = f"{platform.python_version()} ({sys.executable})"
-    facts["platform"] = f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores"
+    facts["platform"] = f"{platform.system()} {platform.machine()}, {counted(os.cpu_count() or 1, 'core')}"
     problems = []
     for name in _PACKAGES:
         try:

@@ -11,6 +11,7 @@ from simkit.cli.terminal.options import argument
 from simkit.cli.terminal.output import print_json, stdout_console
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
+from simkit.number_text import counted
 
 
 @report_errors
@@ -38,4 +39,4 @@ def explain(
 
 def _text(value: object) -> str:
     """Format a value that JSON does not support; bytes are replaced by a text with their number."""
-    return f"({len(value)} bytes)" if isinstance(value, bytes) else str(value)
+    return f"({counted(len(value), 'byte')})" if isinstance(value, bytes) else str(value)

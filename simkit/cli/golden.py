@@ -27,6 +27,7 @@ from simkit.cli.terminal.output import (
     stdout_console,
 )
 from simkit.errors import InputError, RegressionError
+from simkit.number_text import counted
 from simkit.run_spec import run_fields
 from simkit.testing.golden.parallel_check import CheckResult
 from simkit.testing.scenarios.code_permission import without_permissions
@@ -120,7 +121,7 @@ def _print_results(results: Sequence[CheckResult], *, blessed: bool, quiet: bool
             print_error(result.error)
         elif verdict is not None and _was_blessed(verdict, blessed):
             count = len(verdict.comparison.differences)
-            what = f"with {count} difference{'s' if count > 1 else ''}:" if count else "with the bits of this machine"
+            what = f"with {counted(count, 'difference')}:" if count else "with the bits of this machine"
             stdout_console().print(f"{verdict.name}: updated, {what}")
             for difference in verdict.comparison.differences[:5]:
                 stdout_console().print(f"  {difference.words}")
@@ -232,7 +233,9 @@ def record(
     _print_needed_folders(out_)
     messages = sum(len(stream.times_ns) for stream in recorded.streams.values())
     size = sum(path.stat().st_size for path in out_.iterdir())
-    stdout_console().print(f"{out_}: {len(recorded.streams)} topics, {messages} messages, {size / 1000:.1f} kB")
+    stdout_console().print(
+        f"{out_}: {counted(len(recorded.streams), 'topic')}, {counted(messages, 'message')}, {size / 1000:.1f} kB"
+    )
     add_to_report(
         folder=str(out_),
         topics=len(recorded.streams),

@@ -24,6 +24,7 @@ from simkit.cli.terminal.output import (
     without_interrupt_message,
 )
 from simkit.cli.terminal.topic_sources import open_source
+from simkit.number_text import counted
 from simkit.run_fields import LoadArguments
 
 if TYPE_CHECKING:
@@ -66,9 +67,7 @@ def graph(
     if json_:
         print_json({"output": str(output), **{f"{kind}s": count for kind, count in kinds.items()}, "edges": len(edges)})
     else:
-        print_line(
-            f"{output}: " + ", ".join(f"{count} {kind}{'' if count == 1 else 's'}" for kind, count in kinds.items())
-        )
+        print_line(f"{output}: " + ", ".join(counted(count, kind) for kind, count in kinds.items()))
 
 
 def _of_simulation(name: str, *, tf: bool) -> tuple[Mapping[str, JsonObject], TransformTree]:

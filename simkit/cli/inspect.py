@@ -15,6 +15,7 @@ from simkit.cli.terminal.json_report import report_errors
 from simkit.cli.terminal.output import JsonObject, print_diagnostics, print_json, printable, stdout_console
 from simkit.diagnostics import Diagnostic, did_you_mean
 from simkit.errors import InputError
+from simkit.number_text import counted
 from simkit.run_spec import SourceOptions
 
 
@@ -81,7 +82,8 @@ def _tree(description: JsonObject) -> Iterator[str]:
             yield from _model(model, "  ")
     if description["model"]:
         yield from _model(description["model"], "")
-    yield "total  " + ", ".join(f"{v:g} kg" if k == "mass" else f"{v} {k}" for k, v in description["totals"].items())
+    totals = description["totals"].items()
+    yield "total  " + ", ".join(f"{v:g} kg" if k == "mass" else counted(v, k.removesuffix("s")) for k, v in totals)
     severities = [d["severity"] for d in description["diagnostics"]]
     if severities:
         counts = ", ".join(f"{severities.count(s)} {s}s" for s in ("error", "warning", "note") if s in severities)
@@ -93,7 +95,7 @@ def _model(model: JsonObject, indent: str) -> Iterator[str]:
     yield f"{indent}model {model['name']}{static}  at {_numbers(model['pose_world'][:3])}"
     inner = indent + "  "
     for link in model["links"]:
-        shapes = f"{len(link['collisions'])} collisions, {len(link['visuals'])} visuals"
+        shapes = f"{counted(len(link['collisions']), 'collision')}, {counted(len(link['visuals']), 'visual')}"
         yield f"{inner}link {link['name']}  {link['mass']:g} kg, {shapes}"
         yield from _sensors(link, inner + "  ")
     for joint in model["joints"]:

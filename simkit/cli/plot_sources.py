@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 from simkit.cli.run_options import GivenOptions, scenario_spec
 from simkit.cli.terminal.output import print_diagnostics, print_json, print_line, print_note
 from simkit.errors import InputError
+from simkit.number_text import counted
 from simkit.run_spec import RunSpec
 from simkit.writers.atomic_output import check_writable, write_atomically
 
@@ -161,7 +162,7 @@ def _summary(output: Path, series: list[Series], *, json_: bool) -> None:
         unit = f" {row['unit']}" if row["unit"] else ""
         numbers = "  ".join(f"{key} {row[key]:.6g}" for key in ("min", "max", "mean", "last"))
         print_line(f"{row['label']:<{width}}  {row['count']:>7}  {numbers}{unit}")
-    print_line(f"{output}: {len(rows)} curve{'s' if len(rows) > 1 else ''}")
+    print_line(f"{output}: {counted(len(rows), 'curve')}")
 
 
 # ---------------------------------------------------------------------- numbers of a source
@@ -180,7 +181,7 @@ def _series(source: str, fields: Sequence[str], request: PlotRequest) -> list[Se
         return series_list
     base = series_list[-counts[-1] :]
     if len(base) != 1:
-        raise InputError("SK-BAG-010", f"--against {request.against}: has {len(base)} numbers; expected 1")
+        raise InputError("SK-BAG-010", f"--against {request.against}: has {counted(len(base), 'number')}; expected 1")
     return series_over(series_list[: -counts[-1]], base[0])
 
 
@@ -257,10 +258,13 @@ def _in_order(
     from simkit.recording.charts.series import Series
 
     groups: list[list[Series]] = []
-    rest, rest_counts, values = iter(of_messages), iter(counts), iter(of_expressions.values())
+    rest, rest_counts = iter(of_messages), iter(counts)
+    expressions = zip(of_expressions.values(), of_expressions.units(), strict=True)
     for field in fields:
         if is_expression(field):
-            groups.append([Series(field, times=of_expressions.times, values=next(values))])
+            values, unit = next(expressions)
+            is_angle = unit == "rad" and not field.endswith("pitch")
+            groups.append([Series(field, unit, is_angle, times=of_expressions.times, values=values)])
         else:
             groups.append(list(islice(rest, next(rest_counts))))
     return [series for group in groups for series in group], [len(group) for group in groups]

@@ -17,6 +17,7 @@ from simkit.cli.terminal.json_report import add_diagnostics, add_to_report
 from simkit.cli.terminal.output import JsonObject, print_diagnostics, print_status, stderr_console, stdout_console
 from simkit.diagnostics import NOWHERE, Diagnostics, name_hint
 from simkit.errors import InputError, RenderError
+from simkit.number_text import counted
 from simkit.plugins.discovery.left_out import DRIVE_CODE as LEFT_OUT_DRIVE
 from simkit.recording.bags.bag_contents import matches_topic
 from simkit.run_spec import RunSpec
@@ -57,7 +58,8 @@ def print_summary(
         for row in counter.rows:
             stdout_console().print(f"{row.topic:<{width}}  {row.count:>8}  {rate_text(row):>12}  {row.type_name}")
     factor = sim.time / max(elapsed, 1e-9)
-    line = f"simulated {sim.time:.3f} s in {elapsed:.2f} s ({factor:.2f} × real time), {counter.total} messages read"
+    line = f"simulated {sim.time:.3f} s in {elapsed:.2f} s ({factor:.2f} × real time)"
+    line += f", {counted(counter.total, 'message')} read"
     if recording is not None:
         line += f"; {recording.message_count} in {recording.path}"
     stdout_console().print(line)
@@ -87,8 +89,8 @@ def print_nodes(sim: Simulation) -> None:
         if program.awaited:
             stdout_console().print(f"node {name}: {state}")
             continue
-        numbers = f"{program.hand_overs} turns, {len(program.log)} log lines"
-        restarts = f", {program.restarts} restarts" if program.restarts else ""
+        numbers = f"{program.hand_overs} turns, {counted(len(program.log), 'log line')}"
+        restarts = f", {counted(program.restarts, 'restart')}" if program.restarts else ""
         style = "red" if program.error is not None else None
         stdout_console().print(f"node {name}: {state}, {numbers}{restarts}", style=style)
     if rows:

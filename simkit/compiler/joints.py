@@ -17,6 +17,7 @@ from simkit.compiler.kinematic_tree import WORLD, TreeEdge
 from simkit.compiler.name_map import Follower, JointBinding, ModelRecord
 from simkit.diagnostics import Diagnostics
 from simkit.linear_algebra import matmul, norm
+from simkit.number_text import counted
 from simkit.pose import IDENTITY, Pose, Vector
 from simkit.scene import Axis, SceneJoint, SceneLink
 
@@ -181,7 +182,7 @@ class JointWriter:
             directions = _plane_axes(joint, at)
             axes = [*axes, None, None, None] if len(axes) != 1 else [*axes, *axes, *axes]
         elif len(axes) < len(kinds):
-            message = f"joint {joint.scoped} ({joint.type}) needs {len(kinds)} axes"
+            message = f"joint {joint.scoped} ({joint.type}) needs {counted(len(kinds), 'axis', 'axes')}"
             self.diagnostics.error("SK-PHYS-019", message, joint.where)
             return []
         else:

@@ -17,6 +17,7 @@ from simkit.compiler.contact_friction import MU_MOST, friction_priority
 from simkit.compiler.kinematic_tree import WORLD
 from simkit.compiler.state_transfer import JOINT_WIDTHS
 from simkit.diagnostics import NOWHERE, Diagnostics
+from simkit.number_text import counted
 from simkit.scene import SceneModel
 from simkit.scene.mjcf_source import MjcfSource
 
@@ -154,7 +155,7 @@ def drop_lights(child: mujoco.MjSpec, model: SceneModel, diagnostics: Diagnostic
     for light in lights:
         child.delete(light)
     if lights:
-        message = f"model {model.scoped}: {len(lights)} lights of the file's own world are ignored"
+        message = f"model {model.scoped}: {counted(len(lights), 'light')} of the file's own world ignored"
         diagnostics.note("SK-MJCF-011", message, model.where)
 
 

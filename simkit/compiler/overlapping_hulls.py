@@ -15,6 +15,7 @@ import mujoco
 from simkit.compiler.name_map import ModelRecord, NameMap
 from simkit.compiler.start_positions import place_joints
 from simkit.diagnostics import Diagnostics
+from simkit.number_text import counted
 
 _LEAST_DEPTH: Final = 1e-3
 """Overlap [m] from which two links do not collide; links that touch at the start overlap by less."""
@@ -68,7 +69,7 @@ def exclude_overlapping_hulls(
 def _report(record: ModelRecord, pairs: dict[tuple[str, str], float], diagnostics: Diagnostics) -> None:
     deepest = sorted(pairs, key=lambda pair: (-pairs[pair], pair))
     texts = [" and ".join(link.rpartition("::")[2] for link in pair) for pair in deepest[:_NAMED_MOST]]
-    more = f" and {len(deepest) - _NAMED_MOST} more pairs" if len(deepest) > _NAMED_MOST else ""
+    more = f" and {counted(len(deepest) - _NAMED_MOST, 'more pair')}" if len(deepest) > _NAMED_MOST else ""
     message = (
         f"model {record.scene.scoped}: the links {'; '.join(texts)}{more} do not collide with each other: the convex "
         f"hulls of their meshes overlap at the start, by up to {1e3 * max(pairs.values()):.0f} mm"

@@ -12,6 +12,7 @@ from typing import Any, Final
 from simkit.diagnostics import Diagnostics
 from simkit.loaders import Resolver, find_document
 from simkit.loaders.resources.model_list import client_models
+from simkit.number_text import counted
 from simkit.pose import Pose
 from simkit.run_files import SPAWN_KEYS, SPAWN_TEXT
 from simkit.run_values import NamedValues
@@ -78,7 +79,7 @@ def parse_spawn(text: str, diagnostics: Diagnostics) -> SpawnedModel | None:
         return SpawnedModel(text.strip())
     numbers = tuple(float(v) for v in match["numbers"].split(","))
     if len(numbers) not in _COUNTS:
-        message = f"--spawn: {text!r} has {len(numbers)} number{'s' if len(numbers) > 1 else ''}"
+        message = f"--spawn: {text!r} has {counted(len(numbers), 'number')}"
         forms = "; ".join(f"{count} ({form})" for count, form in _COUNTS.items())
         diagnostics.error("SK-SPAWN-001", message, hint=f"give {forms} numbers")
         return None

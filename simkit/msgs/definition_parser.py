@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any, Final
 
 from simkit.diagnostics import did_you_mean
+from simkit.number_text import counted
 
 BASE, NAME, ARRAY, SEQUENCE = 1, 2, 3, 4
 """Kinds of field nodes in the type store: `rosbags.interfaces.Nodetype`, whose import would load all of rosbags."""
@@ -297,7 +298,9 @@ def _parse_value(node: FieldNode, text: str) -> object:
         raise ValueError(f"found {text!r:.80}; expected a list such as [1, 2]")
     values = [_parse_value(inner, item) for item in _items(text[1:-1])]
     if (kind == ARRAY and len(values) != size) or (kind == SEQUENCE and size and len(values) > size):
-        raise ValueError(f"found {len(values)} values; expected {size if kind == ARRAY else f'at most {size}'}")
+        raise ValueError(
+            f"found {counted(len(values), 'value')}; expected {size if kind == ARRAY else f'at most {size}'}"
+        )
     return values
 
 
@@ -315,7 +318,7 @@ def _scalar(kind: str, bound: int, text: str) -> bool | int | float | str:
     if kind in TEXTS:
         value = _unquoted(text)
         if bound and len(value) > bound:
-            raise ValueError(f"found {len(value)} characters; expected at most {bound}")
+            raise ValueError(f"found {counted(len(value), 'character')}; expected at most {bound}")
         return value
     if kind == "bool":
         if text.lower() not in ("true", "false", "1", "0"):

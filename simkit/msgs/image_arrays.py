@@ -11,6 +11,7 @@ from simkit.argument_checks import wrong_type
 from simkit.errors import ArgumentValueError
 from simkit.msgs.message_builder import builder_of
 from simkit.msgs.message_types import Message
+from simkit.number_text import counted
 
 if TYPE_CHECKING:
     from simkit.msgs.message_classes import CompressedImage
@@ -91,7 +92,7 @@ def _rows(message: ImageMessage, kind: str, channels: int, encoding: str) -> Pix
     row, step = width * channels * dtype.itemsize, int(message.step) or width * channels * dtype.itemsize
     data = np.asarray(message.data).view(np.uint8).ravel()
     if step < row or data.size < step * (height - 1) + row or not height or not width:
-        raise ArgumentValueError(f"an image of {width} × {height} {encoding} has {data.size} bytes")
+        raise ArgumentValueError(f"an image of {width} × {height} {encoding} has {counted(data.size, 'byte')}")
     rows = np.lib.stride_tricks.as_strided(data, (height, row), (step, 1))
     values = np.ascontiguousarray(rows).view(dtype).astype(dtype.newbyteorder("="), copy=False)
     return values.reshape(height, width, channels)

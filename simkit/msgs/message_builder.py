@@ -16,6 +16,7 @@ from simkit.errors import MessageError
 from simkit.msgs.definition_parser import ARRAY, BASE, INTEGER_RANGES, NAME, SEQUENCE, TEXTS, FieldNode
 from simkit.msgs.message_types import FieldValue, Message, definition_of, full_name, type_store
 from simkit.msgs.shipped_interfaces import NO_FIELD, rosbags_defaults
+from simkit.number_text import counted
 
 _DTYPES = {"byte": "uint8", "char": "uint8", "bool": "bool"}
 
@@ -180,7 +181,7 @@ def _text(value: FieldValue) -> str:
 def _bounded_text(bound: int, value: FieldValue) -> str:
     text = _text(value)
     if len(text) > bound:
-        raise MessageError(f"found {len(text)} characters; expected at most {bound}")
+        raise MessageError(f"found {counted(len(text), 'character')}; expected at most {bound}")
     return text
 
 

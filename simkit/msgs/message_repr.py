@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any, Final
 
+from simkit.number_text import counted
+
 _EMPTY: Final = "structure_needs_at_least_one_member"
 _MOST_NUMBERS: Final = 8  # numbers of an array that are written out
 _MOST_ITEMS: Final = 3  # items of a list that are written out
@@ -42,7 +44,7 @@ def _value_repr(value: Any) -> str:
         return repr(value.tolist())
     if isinstance(value, (list, tuple)):
         items = [_value_repr(item) for item in value[:_MOST_ITEMS]]
-        return "[" + ", ".join(items + [f"… {len(value)} items"] * (len(value) > _MOST_ITEMS)) + "]"
+        return "[" + ", ".join(items + [f"… {counted(len(value), 'item')}"] * (len(value) > _MOST_ITEMS)) + "]"
     if isinstance(value, (str, bytes)) and len(value) > _LONGEST_TEXT:
         return f"{value[:_LONGEST_TEXT]!r}… ({len(value)} {'characters' if isinstance(value, str) else 'bytes'})"
     return repr(value)

@@ -16,6 +16,7 @@ from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
 from simkit.msgs.definition_parser import ARRAY, NAME, SEQUENCE, FieldNode
 from simkit.msgs.message_types import FieldValue, Message, type_store
+from simkit.number_text import counted
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -229,4 +230,4 @@ def _step_into_item(value: FieldValue, item: re.Match[str], node: FieldNode | No
     try:
         return value[int(item[2])], None
     except (IndexError, ValueError):
-        raise MessageError(f"{walked!r} has {len(value)} items, found {item[0]}") from None
+        raise MessageError(f"{walked!r} has {counted(len(value), 'item')}, found {item[0]}") from None

@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
 
 from simkit.errors import SimkitError
+from simkit.number_text import counted
 
 _HTML: Final = "_repr_html_"  # method that notebooks call
 _MOST_DOTS: Final = 360
@@ -33,7 +34,8 @@ def scan_html(scan: Any) -> str:
     ]
     hits = [(r * math.cos(angle), r * math.sin(angle)) for angle, r in rays if math.isfinite(r)]
     reach = max((r for _, r in rays if math.isfinite(r)), default=0.0)
-    return f"{_caption(scan)}<br>{_from_above(hits, _SENSOR)} {len(scan.ranges)} rays, farthest hit {reach:.2f} m"
+    rays_text = counted(len(scan.ranges), "ray")
+    return f"{_caption(scan)}<br>{_from_above(hits, _SENSOR)} {rays_text}, farthest hit {reach:.2f} m"
 
 
 def cloud_html(cloud: Any) -> str:
@@ -49,7 +51,7 @@ def cloud_html(cloud: Any) -> str:
     if "optical" in cloud.header.frame_id:  # z points forward, x to the right
         places = np.stack([places[:, 2], -places[:, 0]], axis=1)
     shown = places[:: max(1, math.ceil(len(places) / _MOST_DOTS)), :2].tolist()
-    return f"{_caption(cloud)}<br>{_from_above(shown, _SENSOR)} {len(places)} points"
+    return f"{_caption(cloud)}<br>{_from_above(shown, _SENSOR)} {counted(len(places), 'point')}"
 
 
 def path_html(path: Any) -> str:
@@ -60,7 +62,7 @@ def path_html(path: Any) -> str:
     step = max(1, math.ceil(len(places) / _MOST_DOTS))
     length = math.fsum(math.dist(*pair) for pair in itertools.pairwise(places))
     shown = [*places[:-1:step], places[-1]]
-    return f"{_caption(path)}<br>{_from_above(shown, '', is_line=True)} {len(places)} poses, {length:.2f} m"
+    return f"{_caption(path)}<br>{_from_above(shown, '', is_line=True)} {counted(len(places), 'pose')}, {length:.2f} m"
 
 
 def grid_html(grid: Any) -> str:

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from simkit.argument_checks import wrong_type
 from simkit.errors import ArgumentValueError
+from simkit.number_text import counted
 
 if TYPE_CHECKING:
     from simkit.msgs.message_classes import PointCloud2
@@ -56,7 +57,7 @@ def read_points(message: PointCloud2) -> PointArray:
         if not 1 <= int(field.datatype) < len(_KINDS):
             raise ArgumentValueError(f"a field {field.name!r} of a point cloud has the unknown type {field.datatype}")
         if int(field.count) > int(message.point_step):  # a loop over 4e9 values would take an hour
-            text = f"a field {field.name!r} of a point cloud has {field.count} values"
+            text = f"a field {field.name!r} of a point cloud has {counted(field.count, 'value')}"
             raise ArgumentValueError(f"{text} in a point of {message.point_step} bytes")
         for number in range(max(1, int(field.count))):
             kind = np.dtype(order + _KINDS[int(field.datatype)])
@@ -72,7 +73,9 @@ def read_points(message: PointCloud2) -> PointArray:
         or (ends and max(ends) > step)
         or (height and data.size < row * (height - 1) + width * step)
     ):
-        raise ArgumentValueError(f"a point cloud of {width} × {height} points of {step} bytes has {data.size} bytes")
+        raise ArgumentValueError(
+            f"a point cloud of {width} × {height} points of {step} bytes has {counted(data.size, 'byte')}"
+        )
     layout = np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": max(step, 1)})
     if not height or not width or not names:
         return np.empty(0, dtype=layout)

@@ -12,6 +12,7 @@ from simkit.diagnostics import did_you_mean
 from simkit.errors import TransformError
 from simkit.float_sum import float_sum
 from simkit.msgs.message_types import FieldValue, Message
+from simkit.number_text import counted
 from simkit.pose import Pose
 
 UNKNOWN_FRAME: Final = "SK-TF-001"
@@ -320,7 +321,7 @@ class TransformTree:
             frame.stamps, frame.samples = list(stamps), list(samples)
 
     def __repr__(self) -> str:
-        return f"<{type(self).__name__} of {len(self.frames())} frames>"
+        return f"<{type(self).__name__} of {counted(len(self.frames()), 'frame')}>"
 
 
 def _nanoseconds(time: FieldValue) -> int | None:

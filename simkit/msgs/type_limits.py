@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import Final
 
 from simkit.msgs.definition_parser import ARRAY, BASE, LARGEST_SIZE, NAME, TEXTS, FieldNode
+from simkit.number_text import counted
 
 
 class DefinitionTooLarge(ValueError):
@@ -37,7 +38,7 @@ def check_size(type_name: str, fields_of: Callable[[str], Sequence[tuple[str, Fi
             return count_type(node[1])
         item, length = node[1]
         if kind == ARRAY and length > LARGEST_SIZE:
-            raise DefinitionTooLarge(f"an array has {length} items; the largest allowed has {LARGEST_SIZE}")
+            raise DefinitionTooLarge(f"an array has {counted(length, 'item')}; the largest allowed has {LARGEST_SIZE}")
         is_unrolled = kind == ARRAY and (int(item[0]) != BASE or item[1][0] in TEXTS)
         return count_node(item) * max(1, length if is_unrolled else 1)
 

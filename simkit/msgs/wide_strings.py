@@ -13,6 +13,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.msgs.definition_parser import ARRAY, BASE, NAME, SEQUENCE, FieldNode
+from simkit.number_text import counted
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -115,7 +116,7 @@ def _numbers(data: bytes | memoryview, count: int, is_swapped: bool) -> array[in
         ValueError: the data is too short.
     """
     if len(data) != 4 * count:
-        raise ValueError(f"a wstring has {len(data)} bytes; expected {4 * count}")
+        raise ValueError(f"a wstring has {counted(len(data), 'byte')}; expected {4 * count}")
     codes = array("I", bytes(data))
     if is_swapped:
         codes.byteswap()

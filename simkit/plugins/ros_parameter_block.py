@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Literal, TypeVar
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
+from simkit.number_text import counted
 from simkit.params import Params
 
 T = TypeVar("T")
@@ -133,7 +134,7 @@ def read_numbers(params: Params, name: str, default: Sequence[float], minimum: f
     numbers = [item.number(name, minimum=minimum) for item in items]
     if len(numbers) == len(default):
         return numbers
-    items[0].error("SK-PARAM-002", f"found {len(numbers)} numbers in {name!r}; expected {len(default)}")
+    items[0].error("SK-PARAM-002", f"found {counted(len(numbers), 'number')} in {name!r}; expected {len(default)}")
     return list(default)
 
 

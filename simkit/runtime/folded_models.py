@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 
 from simkit.diagnostics import Diagnostics
+from simkit.number_text import counted
 
 if TYPE_CHECKING:
     from simkit.runtime.simulation import Simulation
@@ -43,6 +44,6 @@ def find_folded_models(sim: Simulation) -> Diagnostics:
         height = float(first.xpos[body, 2] - first.xpos[below, 2].min())
         sunk = float(first.xpos[body, 2] - data.xpos[body, 2])
         if _SHARE * height < sunk < _MOST * height:
-            text = f"{name}: nothing drives its {len(joints)} joints, so it folded, as in Gazebo"
+            text = f"{name}: nothing drives its {counted(len(joints), 'joint')}, so it folded, as in Gazebo"
             diagnostics.warning("SK-JOINT-020", f"{text}: its base sank by {sunk:.2g} m", found.scene.where, _HINT)
     return diagnostics

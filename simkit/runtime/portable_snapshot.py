@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, Final
 import mujoco
 
 from simkit.errors import ArgumentTypeError, ArgumentValueError
+from simkit.number_text import counted
 from simkit.runtime.engine.entity_structure import WorldStructure
 from simkit.runtime.engine.heap_resistance import clear_resistance
 from simkit.runtime.engine.snapshot import Snapshot
@@ -55,7 +56,7 @@ class PortableSnapshot:
         return PortableSnapshot, (self.tick, self.time, self.content)
 
     def __repr__(self) -> str:
-        return f"<PortableSnapshot at t={self.time:g} s, {self.size} bytes>"
+        return f"<PortableSnapshot at t={self.time:g} s, {counted(self.size, 'byte')}>"
 
 
 def pack_snapshot(sim: SnapshotOwner, snapshot: Snapshot) -> PortableSnapshot:

@@ -13,6 +13,7 @@ from typing import Any
 
 from simkit.diagnostics import Diagnostic, did_you_mean
 from simkit.errors import InputError
+from simkit.number_text import counted
 from simkit.pose import Pose
 from simkit.scene.entity_paths import AREAS, Entity, EntityPaths, replace_at
 from simkit.scene.model import SceneLink, SceneModel, ScenePlugin, SceneSensor
@@ -281,7 +282,7 @@ class _Override:
         known = [field.element for field in _all_fields(entity, item)]
         known += ["pose"] if not entity.path or entity.path not in AREAS else []
         if element.startswith("axis2.") and not any(name.startswith("axis2.") for name in known):
-            return _NoElementError(self._error(f"joint {entity.path!r} has {len(item.axes)} axes"))
+            return _NoElementError(self._error(f"joint {entity.path!r} has {counted(len(item.axes), 'axis', 'axes')}"))
         ends = {name.rpartition(".")[2]: name for name in known}
         hint = did_you_mean(element, [*known, *ends]) or _listed(known)
         return _NoElementError(self._error(f"the element {element!r} cannot be set here; {hint}"))

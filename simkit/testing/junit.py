@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from simkit.diagnostics import shorten
+from simkit.number_text import counted
 from simkit.writers.atomic_output import write_atomically
 
 LONGEST: Final = 100_000
@@ -113,7 +114,9 @@ def _element_text(text: str) -> str:
     """Escape a text between tags, replace characters that XML does not allow, and remove terminal colours."""
     text = _COLOURS.sub("", text.replace("\r\n", "\n").replace("\r", "\n"))
     if len(text) > LONGEST:
-        text = f"{text[: LONGEST // 2]}\n… {len(text) - LONGEST} characters left out …\n{text[-LONGEST // 2 :]}"
+        text = (
+            f"{text[: LONGEST // 2]}\n… {counted(len(text) - LONGEST, 'character')} left out …\n{text[-LONGEST // 2 :]}"
+        )
     return _ILLEGAL.sub("\ufffd", text).replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from simkit.compiler.refused_inertias import format_moments, repair_inertia
 from simkit.diagnostics import Diagnostics
+from simkit.number_text import counted
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import (
@@ -211,11 +212,13 @@ class _Writer:
 
     def _report_lost(self, model: SceneModel) -> None:
         lost = {
-            "transmissions": len(model.transmissions),
+            "transmission": len(model.transmissions),
             "<safety_controller>": sum(j.safety is not None for j in model.joints),
             "<calibration>": sum(j.calibration is not None for j in model.joints),
         }
-        listed = ", ".join(f"{count} {name}" for name, count in lost.items() if count)
+        listed = ", ".join(
+            counted(count, name, name if name[0] == "<" else "") for name, count in lost.items() if count
+        )
         if listed:
             message = f"model {model.scoped!r}: SDF does not support {listed}; they are omitted"
             self.diagnostics.warning("SK-WRITE-002", message, model.where)

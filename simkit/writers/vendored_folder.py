@@ -20,6 +20,7 @@ from simkit.loaders.resources.bundled_models import turtlebot3_uri
 from simkit.loaders.resources.model_folder import model_file
 from simkit.loaders.resources.uris import absolute_path
 from simkit.loaders.resources.xml_reader import parse_file
+from simkit.number_text import counted
 from simkit.params import Params
 from simkit.run_spec import NamedValues, PackagePaths
 from simkit.writers.asset_folder import companion_files
@@ -180,7 +181,7 @@ class WorldCollector:
 
     def _count(self, size: int) -> None:
         self.count, self.size = self.count + 1, self.size + size
-        progress.set_item(f"{self.count} files, {self.size / 1e6:.0f} MB")
+        progress.set_item(f"{counted(self.count, 'file')}, {self.size / 1e6:.0f} MB")
         if self.count > MOST_FILES or self.size > MOST_BYTES:
             raise OSError(f"more than {MOST_FILES} files or {MOST_BYTES >> 30} GiB")
 

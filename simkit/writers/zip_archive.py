@@ -10,6 +10,8 @@ import zipfile
 from collections.abc import Callable, Iterable
 from typing import IO, BinaryIO, Final, Literal, cast
 
+from simkit.number_text import counted
+
 MAX_FILES: Final = 20_000
 """Limit for the files of an archive, and for its folders."""
 MAX_INDEX_BYTES: Final = 16 << 20
@@ -96,7 +98,7 @@ def size_fault(infos: Iterable[zipfile.ZipInfo], archive_size: int, most: int) -
     sizes = [info.file_size for info in infos]
     total = sum(sizes)
     if len(sizes) > MAX_FILES:
-        return f"has {len(sizes)} files; the limit is {MAX_FILES}"
+        return f"has {counted(len(sizes), 'file')}; the limit is {MAX_FILES}"
     if total > most:
         return f"would unpack to {total >> 20} MiB; the limit is {most >> 20} MiB"
     if total > max(_ALWAYS_ALLOWED_BYTES, _MAX_RATIO * archive_size):

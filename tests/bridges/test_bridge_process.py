@@ -18,7 +18,7 @@ def test_a_flood_of_notes_is_cut_and_counted() -> None:
         bridge._take_line(json.dumps({"note": f"/add failed: {number}"}))
     bridge._report_last_notes()
     assert lines[0] == "note SK-ROS-005: /add failed: 0"
-    assert lines[-1] == "note SK-ROS-005: 980 more notes are not shown"
+    assert lines[-1] == "note SK-ROS-005: 980 more notes not shown"
     assert len(lines) == 21
 
 

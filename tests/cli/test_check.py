@@ -113,7 +113,7 @@ def test_new_numbers_are_shown_and_written_and_nothing_else_is_changed(here: Pat
     assert result.exit_code == 0
     assert "arm.urdf:8: link 'upper' (0.5 kg): ixx 0.001 -> 0.0011" in result.stdout
     assert "falls short of C by 9.09 % of C" in result.stdout
-    assert "new.urdf: 1 links changed" in result.stdout
+    assert "new.urdf: 1 link changed" in result.stdout
     old, new = URDF.splitlines(), (here / "new.urdf").read_text().splitlines()
     assert [i for i, (a, b) in enumerate(zip(old, new, strict=True), 1) if a != b] == [8]
     assert (here / "arm.urdf").read_text() == URDF
@@ -168,7 +168,7 @@ def test_a_nan_of_a_static_model_leaves_the_other_inertias_to_be_corrected(here:
     )
     models = model.format("wall", "true", "nan") + model.format("m", "false", "1")
     (here / "m.sdf").write_text(f"<sdf version='1.9'><world name='w'>{models}</world></sdf>")
-    assert "1 impossible inertias" in run("m.sdf", "--fix-inertia").stdout
+    assert "1 impossible inertia\n" in run("m.sdf", "--fix-inertia").stdout
 
 
 def test_missing_inertia_values_of_sdf_are_inserted(here: Path) -> None:
@@ -195,7 +195,7 @@ def test_zero_moments_become_those_of_the_collisions(here: Path, pose: str) -> N
         "<collision name='c'><geometry><box><size>0.75 0.55 0.35</size></box></geometry></collision>"
         "</link></model></sdf>"
     )
-    assert "1 impossible inertias" in run("m.sdf", "--fix-inertia", "-o", "n.sdf").stdout
+    assert "1 impossible inertia\n" in run("m.sdf", "--fix-inertia", "-o", "n.sdf").stdout
     link = simkit.describe(here / "n.sdf")["model"]["links"][0]
     x, y, z = (0.5 * side**2 for side in (0.75, 0.55, 0.35))
     expected = (y + z, x + z, x + y) if not pose else (2 * (x + y + z) / 3,) * 3

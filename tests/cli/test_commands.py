@@ -236,7 +236,7 @@ def test_inspect_prints_one_json_object_or_a_tree(world: Path) -> None:
     assert described["worlds"][0]["models"][0]["links"][0]["sensors"][0]["update_rate"] == 100
     tree = simkit("inspect", world).stdout
     assert "sensor imu  imu, 100 Hz, imu" in tree
-    assert "1 models" in tree
+    assert "1 model, 1 link" in tree
 
 
 def test_convert_writes_files_that_mujoco_opens(world: Path) -> None:

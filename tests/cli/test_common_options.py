@@ -95,6 +95,44 @@ def test_json_is_one_value_and_nothing_else(
     assert "note" not in result.stderr
 
 
+LINES_OF_PACKS = """
+vendor w.sdf vendored
+fetch w.sdf
+pkg list
+pkg known
+pkg executables
+pkg create own; pkg find own; pkg prefix own; pkg depends own
+new pack own
+plugin new wheel_brake --folder plugins
+bundle w.sdf --duration 0.1 -o w.bundle; replay w.bundle
+lab list
+lab start 01_turtlesim lab
+view w.sdf --no-open --duration 0
+"""
+"""Commands of packs; `simkit ros` succeeds only where ROS is installed."""
+
+
+@pytest.mark.needs_packs
+@pytest.mark.parametrize("lines", LINES_OF_PACKS.strip().splitlines())
+def test_a_command_of_a_pack_that_succeeds_prints_one_json_document(
+    lines: str, tmp_path: Path, simkit_line: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("w.sdf").write_text(BALL)
+    for line in lines.split(";"):
+        result = simkit_line(*shlex.split(line), "--json", "-q")
+        assert result.exit_code == 0, result
+        json.loads(result.stdout)
+
+
+@pytest.mark.needs_packs
+@pytest.mark.parametrize("line", ["list", "info /yard", "ping /yard --count 1"])
+def test_json_of_nodes_is_one_document(line: str, yard: Any, simkit_line: Callable[..., Any]) -> None:
+    result = simkit_line("node", *shlex.split(line), "--json", "-q")
+    assert result.exit_code == 0, result
+    json.loads(result.stdout)
+
+
 def test_the_report_of_a_conversion_has_its_warnings(folder: Path, simkit_line: Callable[..., Any]) -> None:
     (folder / "odd.sdf").write_text(BALL.replace("</world>", '<plugin filename="none.so" name="n"/></world>'))
     for output in ("odd.xml", "odd_copy.sdf"):

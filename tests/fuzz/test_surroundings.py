@@ -126,7 +126,7 @@ def problems(name: str, place: str, folder: Path) -> list[str]:
     variables = {**environment(), "TMPDIR": str(folder.parent / "tmp"), "COLUMNS": "200", **given.variables}
     (folder.parent / "tmp").mkdir(exist_ok=True)
     arguments = [part.replace("OUT", given.out) for part in COMMANDS[name].split(" ")]
-    command = [sys.executable, "-m", "simkit", *arguments]
+    command = [sys.executable, "-B", "-m", "simkit", *arguments]  # no byte code that is cut off by a full disk
     if given.mounts:
         # The work folder is mounted on /mnt, so that it stays when /tmp is hidden.
         mounts = f"mount --bind . /mnt && cd /mnt && {given.mounts} && cd /mnt"

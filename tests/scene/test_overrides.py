@@ -80,7 +80,7 @@ def test_a_later_override_replaces_an_earlier_one() -> None:
         ("arm::tip::imv.update_rate=3", "did you mean 'arm::tip::imu'?"),
         ("arm::tip::imu.update_rate=often", "found 'often'"),
         ("arm::hinge.axis.limit.uper=1", "did you mean 'axis.limit.upper'?"),
-        ("arm::hinge.axis2.limit.upper=1", "has 1 axes"),
+        ("arm::hinge.axis2.limit.upper=1", "has 1 axis"),
         ("arm::tip::imu.imu=3", "holds elements; name one of them: angular_velocity"),
         ("arm.static=maybe", "true, false, 1 or 0"),
         ("nonsense", "write PATH=VALUE"),

@@ -34,7 +34,8 @@ def _simkit(command: str, folder: Path, largest: int | None = None) -> subproces
         if largest is not None:
             resource.setrlimit(resource.RLIMIT_FSIZE, (largest, largest))
 
-    arguments = [sys.executable, "-m", "simkit", *command.split(" ")]
+    # without -B, Python 3.11 leaves byte code of simkit that is cut off at the limit
+    arguments = [sys.executable, "-B", "-m", "simkit", *command.split(" ")]
     return subprocess.run(
         arguments, cwd=folder, capture_output=True, text=True, preexec_fn=limit, timeout=120, check=False
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from simkit.extend import counted
 from simkit_authoring.plugin_facts import Facts, Parameter, Service, Topic
 
 
@@ -22,7 +23,7 @@ def tables_of(facts: Facts) -> dict[str, list[tuple[str, ...]]]:
 
 
 def _parameter_row(p: Parameter) -> tuple[str, ...]:
-    kind = f"{p.size} numbers" if p.kind == "vector" and p.size else {"vector": "numbers"}.get(p.kind, p.kind)
+    kind = counted(p.size, "number") if p.kind == "vector" and p.size else {"vector": "numbers"}.get(p.kind, p.kind)
     notes = [_range(p), "one of " + ", ".join(map(repr, p.choices)) if p.choices else ""]
     notes += ["repeatable" if p.repeated else "", "live" if p.live else "", p.says]
     depth = "  " * (len(p.path) - 1)

@@ -19,6 +19,7 @@ from urllib.parse import urlsplit
 from urllib.request import HTTPRedirectHandler, OpenerDirector, ProxyHandler, Request, build_opener
 
 from simkit import __version__
+from simkit.extend import counted
 from simkit.input_file import read_input_text
 from simkit.json_reader import parse_json
 from simkit.progress import Task
@@ -198,7 +199,9 @@ class Download:
                     self.file.truncate(0)  # the beginning does not belong to the file that the server has now
                     has_restarted = True
                 elif size <= before or attempts == _MOST_ATTEMPTS or isinstance(error, TimeoutError):
-                    raise _network_error(self.address, error, f" after {size} bytes" if size else "") from None
+                    raise _network_error(
+                        self.address, error, f" after {counted(size, 'byte')}" if size else ""
+                    ) from None
 
     def _receive(self, at: int) -> tuple[int | None, bool]:
         """Request the part of the file that is not there yet, and append it."""
@@ -237,7 +240,7 @@ class Download:
             self._task.done = at / 1e6
         self.file.flush()
         if total is not None and at != total:
-            raise ConnectionError(f"the connection ended after {at} of {total} bytes")
+            raise ConnectionError(f"the connection ended after {at} of {counted(total, 'byte')}")
 
     def _check_size(self, size: int) -> None:
         if size > self.limit:

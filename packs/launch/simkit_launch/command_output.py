@@ -7,7 +7,7 @@ from pathlib import Path, PurePath
 from typing import Final
 
 from simkit.errors import InputError
-from simkit.extend import Diagnostics, Where
+from simkit.extend import Diagnostics, Where, counted
 from simkit.input_file import read_failure, read_input_text
 from simkit.loaders import Resolver, find_document
 from simkit.run_files import PackagePaths
@@ -60,7 +60,7 @@ def xacro_output(
     """
     files, arguments = split_xacro_words(words)
     if len(files) != 1:
-        message = f"`xacro {' '.join(words)}` is left out: it names {len(files)} files; xacro takes one"
+        message = f"`xacro {' '.join(words)}` is left out: it names {counted(len(files), 'file')}; xacro takes one"
         diagnostics.warning(LEFT_OUT, message, where)
         return None
     file = Path(files[0])

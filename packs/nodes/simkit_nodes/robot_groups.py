@@ -9,7 +9,7 @@ from itertools import pairwise
 from typing import Final
 
 from simkit import Params
-from simkit.extend import Diagnostics
+from simkit.extend import Diagnostics, counted
 from simkit.loaders.resources.xml_reader import parse_text
 
 _MOVES: Final = frozenset(("revolute", "continuous", "prismatic"))
@@ -138,7 +138,7 @@ def read_joint_tree(urdf: str) -> JointTree:
     children = {joint.child for joint in unsorted}
     tops = [link for link in links if link not in children]
     if len(tops) != 1:
-        text = f"{len(tops)} root links: {', '.join(tops)}" if tops else "no root link"
+        text = f"{counted(len(tops), 'root link')}: {', '.join(tops)}" if tops else "no root link"
         raise DescriptionError(f"the robot description has {text}; expected one")
     below: dict[str, list[TreeJoint]] = {}
     for joint in sorted(unsorted, key=lambda joint: joint.name):

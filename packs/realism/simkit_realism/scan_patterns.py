@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from simkit.errors import InputError
-from simkit.extend import Vector
+from simkit.extend import Vector, counted
 from simkit.input_file import read_input
 
 MOST_ROWS: Final = 4_000_000
@@ -152,7 +152,11 @@ def read_table(path: Path) -> tuple[Vector, Vector]:
         reason = str(error).partition(";")[0]
         raise InputError("SK-SENSOR-281", f"scan pattern {path.name}: {reason}", help=_HELP) from None
     if not 0 < len(rows) <= MOST_ROWS or not np.isfinite(rows).all():
-        found = f"found {len(rows)} rows" if np.isfinite(rows).all() else "found numbers that are NaN or infinite"
+        found = (
+            f"found {counted(len(rows), 'row')}"
+            if np.isfinite(rows).all()
+            else "found numbers that are NaN or infinite"
+        )
         expected = f"expected 1 to {MOST_ROWS} rows of finite numbers"
         raise InputError("SK-SENSOR-281", f"scan pattern {path.name}: {found}; {expected}", help=_HELP)
     azimuths, heights = (rows[:, i] * scale for i, (_, scale) in enumerate(wanted))

@@ -361,7 +361,7 @@ def test_invalid_commands_are_reported_and_ignored(arm: simkit.Simulation) -> No
     found = "\n".join(warnings(arm))
     for text in (
         "a joint command of mode 7 is ignored",
-        "a joint command with 2 names and 1 values is ignored",
+        "a joint command with 2 names and 1 value is ignored",
         "a joint command with a NaN or infinite number is ignored",
         "the left arm has no joint 'left_e2'",
         "a time limit of -1 s",

@@ -8,6 +8,7 @@ from hmac import compare_digest
 from typing import Any, Final
 
 from simkit.errors import InputError
+from simkit.number_text import counted
 
 
 class LiveError(InputError):
@@ -131,7 +132,7 @@ class FrameReader:
         if kind not in self._kinds:
             raise BadFrame(f"a frame has kind {kind}; expected {' or '.join(map(str, self._kinds))}")
         if length > self._largest:
-            raise BadFrame(f"a frame has {length} bytes; the limit is {self._largest}")
+            raise BadFrame(f"a frame has {counted(length, 'byte')}; the limit is {self._largest}")
         end = begin + 5 + length
         if available < end:
             return None

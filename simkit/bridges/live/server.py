@@ -24,6 +24,7 @@ from simkit.bridges.live.message_reader import message_reader
 from simkit.bridges.live.protocol import ASK, NUMBER, PROTOCOL, TELL, BadFrame, JsonObject
 from simkit.bridges.live.topic_feed import TopicFeeds
 from simkit.errors import SimkitError
+from simkit.number_text import counted
 from simkit.runtime.communication.command_queue import QUEUE_DEPTH
 from simkit.version import __version__
 
@@ -295,7 +296,9 @@ class Server:
         peer.send_json(TELL, {"tell": "hello", "protocol": PROTOCOL, **hello})
         limit = os.sysconf("SC_OPEN_MAX") if hasattr(os, "sysconf") else 0  # Windows has no such limit
         if len(self.peers) > MOST_CLIENTS or 0 < limit <= connection.fileno() + _RESERVED_FILES:
-            self.refuse(peer, f"{len(self.peers) - 1} clients are connected to {self.name!r} already", "SK-LIVE-007")
+            self.refuse(
+                peer, f"{counted(len(self.peers) - 1, 'client')} connected to {self.name!r} already", "SK-LIVE-007"
+            )
             self._disconnect(peer)
         else:
             self._write(peer)

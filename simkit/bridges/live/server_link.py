@@ -34,6 +34,7 @@ from simkit.bridges.live.protocol import (
 )
 from simkit.bridges.live.type_exchange import SentTypes, detach
 from simkit.msgs import own_interfaces
+from simkit.number_text import counted
 
 _ENDPOINT_TELLS = ("request", "goal_request", "goal_cancel", "parameter")
 _PIECE = 1 << 20  # [bytes] read from the socket at once
@@ -213,7 +214,7 @@ class ServerLink:
         if self._closed is not None:
             raise self._closed
         if len(frame) > LARGEST_IN:
-            text = f"a message of {len(frame)} bytes is too large to send; the limit is {LARGEST_IN}"
+            text = f"a message of {counted(len(frame), 'byte')} is too large to send; the limit is {LARGEST_IN}"
             raise LiveError("SK-LIVE-008", text)
         try:
             self._socket.sendall(frame)

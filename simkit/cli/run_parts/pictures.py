@@ -14,6 +14,7 @@ from simkit.cli.terminal import options
 from simkit.cli.terminal.json_report import add_to_report
 from simkit.cli.terminal.options import option
 from simkit.cli.terminal.output import stdout_console
+from simkit.number_text import counted
 from simkit.run_spec import RunSpec
 
 if TYPE_CHECKING:
@@ -110,5 +111,7 @@ def _film(run: OpenRun, options: FilmOptions, driven: DrivenPath) -> Iterator[No
     finally:
         film.close()
         names = ", ".join(map(str, options.outputs)) if film.count else "no frames"
-        stdout_console().print(f"film {names}: {film.count} frames, {float(options.frame_rate):g} per simulated second")
+        stdout_console().print(
+            f"film {names}: {counted(film.count, 'frame')}, {float(options.frame_rate):g} per simulated second"
+        )
         add_to_report(film={"files": [str(path) for path in options.outputs], "frames": film.count})

@@ -25,6 +25,7 @@ from simkit.cli.scores.part_places import PartPlaces
 from simkit.diagnostic_record import TEXT_SOURCE
 from simkit.diagnostics import Diagnostic, Diagnostics, shorten
 from simkit.errors import SimkitError
+from simkit.number_text import counted
 from simkit.plugins.discovery.find_plugin_class import find_plugin
 from simkit.plugins.discovery.left_out import CODE, DRIVE_CODE
 from simkit.recording.pictures.frames import Look
@@ -100,7 +101,7 @@ def refused_score(shown: str, found: Sequence[Diagnostic], options: ScoreOptions
         first = next((item for item in errors if options.effect_of(item.code, "warning") == "left out"), errors[0])
         reason = _without_places(first.message)
         if len(errors) > 1:
-            reason += f" (and {len(errors) - 1} more error{'s' if len(errors) > 2 else ''})"
+            reason += f" (and {counted(len(errors) - 1, 'more error')})"
     remedies: dict[tuple[str, str], Remedy] = {}
     for item in errors:
         message = _without_places(item.message)

@@ -9,6 +9,7 @@ from simkit.cli.terminal.options import option, validate_word
 from simkit.diagnostics import Diagnostic, Diagnostics
 from simkit.errors import InputError
 from simkit.install_command import install_command
+from simkit.number_text import counted
 
 if TYPE_CHECKING:
     from simkit.cli.second_reader.reading_differences import Difference
@@ -95,7 +96,7 @@ def compare_readers(
 
 
 def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}{'' if number == 1 else 's'}"
+    return counted(number, noun)
 
 
 def _message(difference: Difference, reader: str) -> str:

@@ -29,6 +29,7 @@ from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, LoadError, PackError, PluginError, SimkitError
 from simkit.hidden_text import hidden_in_command, is_hiding
 from simkit.memory_error import OutOfMemory, find_memory_error
+from simkit.number_text import counted
 from simkit.packs import fault_text, foreign_pack_of
 
 if TYPE_CHECKING:
@@ -162,13 +163,11 @@ def print_diagnostics(
         listed[kind] += 1
         _print_entry(equal, target)
     for (severity, code), count in left_out.items():
-        target.print(
-            f"{count} more {severity}{'s' if count > 1 else ''} {code}; list all with `simkit check --all`", style="dim"
-        )
+        target.print(f"{counted(count, f'more {severity}')} {code}; list all with `simkit check --all`", style="dim")
     if notes:
         names = ", ".join(f"{code} × {count}" if count > 1 else code for code, count in sorted(notes.items()))
         total = sum(notes.values())
-        text = f"{total} note{'s' if total > 1 else ''} ({names}); show with --verbose"
+        text = f"{counted(total, 'note')} ({names}); show with --verbose"
         target.print(text, style="dim")
 
 
@@ -211,7 +210,7 @@ def print_error(error: SimkitError) -> None:
         print_diagnostics(error.diagnostics, verbose=False)
         count = sum(d.severity == "error" for d in error.diagnostics)
         if count:
-            stderr_console().print(f"{count} error{'s' if count > 1 else ''}; nothing was run", style="bold")
+            stderr_console().print(f"{counted(count, 'error')}; nothing was run", style="bold")
         else:
             stderr_console().print("--strict treats warnings as errors; nothing was run", style="bold")
         return

@@ -44,6 +44,7 @@ from simkit.install_command import install_command
 from simkit.linear_algebra import matmul, norm
 from simkit.loaders.meshes.mesh_cache import FORMAT, load_arrays, store_arrays
 from simkit.loaders.meshes.mesh_part import Floats, Ints
+from simkit.number_text import counted
 
 THRESHOLD: Final = 0.05
 """Concavity of CoACD, relative to the size of the mesh, below which a piece counts as convex."""
@@ -97,7 +98,7 @@ def _run(source: Path, target: Path, triangles: int, most: int) -> None:
     single_thread = {"OMP_NUM_THREADS": "1", "OMP_DYNAMIC": "false"}
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path)), **single_thread}
     rounds = most.bit_length() + 1  # each round divides all pieces that are not convex enough
-    with progress.task(f"decomposing {triangles} triangles into convex pieces", rounds, unit="%") as task:
+    with progress.task(f"decomposing {counted(triangles, 'triangle')} into convex pieces", rounds, unit="%") as task:
         try:
             done = ChildProcesses().run(
                 _SCRIPT,
@@ -217,7 +218,7 @@ def _decompose_mesh(vertices: Floats, faces: Ints, pieces: tuple[tuple[Floats, I
     volume = mesh_volume(vertices, faces)
     total = float_sum(hull_volume(points) for points, _ in pieces)
     share = f"together {total / volume:.2f} times its volume" if volume else "the mesh is not closed"
-    return "note", "SK-MESH-004", f"collides as {len(pieces)} convex pieces ({share})", ""
+    return "note", "SK-MESH-004", f"collides as {counted(len(pieces), 'convex piece')} ({share})", ""
 
 
 def _by_pieces(vertices: Floats, faces: Ints) -> ConvexBodies:
@@ -225,7 +226,7 @@ def _by_pieces(vertices: Floats, faces: Ints) -> ConvexBodies:
     sets = [points for points, _ in pieces if hull_volume(points) > 0.0] or [vertices]
     mesh_size = mesh_volume(vertices, faces)
     hulls_size = float_sum(hull_volume(points) for points in sets)
-    hulls = "its convex hull" if len(sets) == 1 else f"the convex hulls of its {len(sets)} pieces"
+    hulls = "its convex hull" if len(sets) == 1 else f"the convex hulls of its {counted(len(sets), 'piece')}"
     if mesh_size:
         ratio = hulls_size / mesh_size
         severity: Severity = "warning" if ratio > LARGEST_RATIO else "note"
@@ -261,8 +262,8 @@ def _surface(vertices: Floats, faces: Ints) -> ConvexBodies:
         kind = f"{sum(not p.is_solid for p in pieces)} prisms on"
         shapes = _hulls([p.points for p in pieces])
     closed = sum(p.is_solid for p in pieces) + len(copies)
-    fields = f", and {len(tiles)} height fields" if tiles else ""
-    text = f"is not convex: it collides as {closed} convex pieces and {kind} its surface{fields}"
+    fields = f", and {counted(len(tiles), 'height field')}" if tiles else ""
+    text = f"is not convex: it collides as {counted(closed, 'convex piece')} and {kind} its surface{fields}"
     findings.append(("note", "SK-MESH-006", text, ""))
     return ConvexBodies(shapes, False, tuple(findings), tuple(tiles), tuple(copies), tuple(boxes))
 

@@ -30,6 +30,7 @@ from simkit.loaders.meshes.mesh_part import (
     numbers_of,
     unique_rows,
 )
+from simkit.number_text import counted
 
 _DEEPEST: Final = 500  # levels of XML elements; a node has one level, its geometry has a few
 _PRIMITIVES: Final = ("triangles", "polylist", "polygons", "tristrips", "trifans")
@@ -336,7 +337,7 @@ def _rotation(axis: tuple[float, float, float], angle: float) -> Floats:
 def _exact_count(element: XmlElement, count: int) -> Floats:
     numbers = numbers_of(element.text or "", f"<{_local(element)}>")
     if len(numbers) != count or not np.isfinite(numbers).all():
-        raise MeshFileError(f"has <{_local(element)}> with {len(numbers)} numbers, it needs {count}")
+        raise MeshFileError(f"has <{_local(element)}> with {counted(len(numbers), 'number')}, it needs {count}")
     return numbers
 
 

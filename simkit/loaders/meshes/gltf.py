@@ -27,6 +27,7 @@ from simkit.loaders.meshes.mesh_part import (
     MeshPart,
     fan_triangles,
 )
+from simkit.number_text import counted
 
 if TYPE_CHECKING:
     from simkit.run_spec import JsonObject
@@ -180,7 +181,7 @@ class _Gltf:
         width, kind = _TYPES[accessor["type"]], np.dtype(_NUMBERS[accessor["componentType"]])
         count = int(accessor["count"])
         if not 0 <= count <= 3 * LARGEST_FACES:
-            raise MeshFileError(f"has an accessor of {count} elements")
+            raise MeshFileError(f"has an accessor of {counted(count, 'element')}")
         if accessor.get("bufferView") is None:
             rows = np.zeros((count, width), kind)
         else:
@@ -332,5 +333,5 @@ def _transform(node: JsonObject) -> Floats:
 def _finite(values: npt.ArrayLike, count: int) -> Floats:
     numbers = np.asarray(values, float).reshape(-1)
     if len(numbers) != count or not np.isfinite(numbers).all():
-        raise MeshFileError(f"has a node whose transform is not {count} numbers")
+        raise MeshFileError(f"has a node whose transform is not {counted(count, 'number')}")
     return numbers

@@ -36,6 +36,7 @@ from simkit.loaders.meshes.mesh_part import (
     report_once,
 )
 from simkit.loaders.meshes.obj import read_obj
+from simkit.number_text import counted
 from simkit.scene import Mesh
 
 SUFFIXES: Final = (".dae", ".stl", ".obj", ".gltf", ".glb", ".ply", ".off")
@@ -208,10 +209,14 @@ def read_stl(content: bytes, companions: Companions) -> list[MeshPart]:
     elif is_text and (b"facet" in content[:4096].lower() or b"endsolid" in content[-512:].lower()):
         corners = _ascii(content)
     elif 0 < declared <= present:
-        companions.note(f"has {len(content) - _HEADER - declared * _RECORD.itemsize} bytes after its last triangle")
+        companions.note(
+            f"has {counted(len(content) - _HEADER - declared * _RECORD.itemsize, 'byte')} after its last triangle"
+        )
         corners = _binary(content, declared)
     elif declared > 0:
-        raise MeshFileError(f"is truncated: its header declares {declared} triangles, it has {max(0, present)}")
+        raise MeshFileError(
+            f"is truncated: its header declares {counted(declared, 'triangle')}, it has {max(0, present)}"
+        )
     else:
         raise MeshFileError("has no triangles")
     return [MeshPart("", *merge_corners(corners))]

@@ -23,6 +23,7 @@ from simkit.loaders.meshes.mesh_part import (
     numbers_of,
     unique_rows,
 )
+from simkit.number_text import counted
 
 
 @dataclass
@@ -112,7 +113,7 @@ def _rows(lines: list[bytes], width: int, what: str) -> Floats:
         words = line.split(b"#")[0].split()[:width]
         words += [b"0"] * (width - len(words)) if what == "texture coordinates" else []
         if len(words) != width:
-            raise MeshFileError(f"has {what} with less than {width} numbers")
+            raise MeshFileError(f"has {what} with less than {counted(width, 'number')}")
         rows.append(words)
     return numbers_of(b" ".join(v for row in rows for v in row), what).reshape(-1, width)
 

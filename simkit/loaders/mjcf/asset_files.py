@@ -8,6 +8,7 @@ from typing import Final
 
 from simkit.diagnostics import Diagnostics, Where
 from simkit.input_file import read_input
+from simkit.number_text import counted
 
 MAX_BYTES: Final = 256 << 20
 MAX_PIXELS: Final = 64_000_000
@@ -83,7 +84,7 @@ def _stl_problem(data: bytes) -> str:
     if len(data) != 84 + 50 * count:
         if data.lstrip().startswith(b"solid"):
             return "an ASCII STL file; MuJoCo only reads binary STL files"
-        return f"the STL header declares {count} triangles, but the file has {(len(data) - 84) // 50}"
+        return f"the STL header declares {counted(count, 'triangle')}, but the file has {(len(data) - 84) // 50}"
     return ""
 
 
@@ -102,6 +103,6 @@ def _hfield_problem(data: bytes) -> str:
         return "the height field ends inside its header"
     rows, columns = struct.unpack("<2i", data[:8])
     if rows < 1 or columns < 1 or rows * columns > _MAX_CELLS:
-        return f"its header declares {rows} x {columns} heights"
+        return f"its header declares {rows} x {counted(columns, 'height')}"
     declared = 8 + 4 * rows * columns
     return "" if declared == len(data) else f"its header declares {declared} bytes, but the file has {len(data)}"

@@ -18,6 +18,7 @@ from simkit.loaders.mjcf.size_limits import MOST_ELEMENTS
 from simkit.loaders.resources.loader import MjcfText
 from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.loaders.resources.xml_reader import parse_file
+from simkit.number_text import counted
 from simkit.params import Params
 
 MAX_INCLUDE_DEPTH: Final = 32
@@ -95,7 +96,9 @@ class _FileGatherer:
                 children.append(self._with_includes(child, folder, depth))
         self.shared.count += 1
         if self.shared.count == MOST_ELEMENTS * 10:
-            self.shared.diagnostics.error("SK-MJCF-005", f"more than {self.shared.count} elements", element.where)
+            self.shared.diagnostics.error(
+                "SK-MJCF-005", f"more than {counted(self.shared.count, 'element')}", element.where
+            )
         return Params(element.name, "", dict(element.attributes), children, element.where, self.shared.diagnostics)
 
     def _included(self, include: Params, folder: Path | None, depth: int) -> list[Params]:

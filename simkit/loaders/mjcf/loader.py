@@ -18,6 +18,7 @@ from simkit.loaders.resources.uri_resolver import Resolver
 from simkit.loaders.resources.xml_reader import Document
 from simkit.loaders.sdf.load_context import IncludableLoader, IncludedModel, ModelDraft, Workspace
 from simkit.loaders.sdf.plugin import read_plugins
+from simkit.number_text import counted
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import Physics, Scene, SceneModel, ScenePlugin, SceneWorld, Surroundings
@@ -252,8 +253,9 @@ def _report_engine_elements(file: MjcfFile, diagnostics: Diagnostics) -> None:
     """Report the elements of the file that only MuJoCo itself uses."""
     model, where = file.content.model, file.content.source.root.where
     counts = (model.nsensor, model.ncam, model.ntendon, model.nflex, model.nskin, model.nkey)
-    kinds = ("sensors", "cameras", "tendons", "flexes", "skins", "keyframes")
-    left = [f"{count} {kind}" for kind, count in zip(kinds, counts, strict=True) if count]
+    kinds = ("sensor", "camera", "tendon", "flex", "skin", "keyframe")
+    plurals = {"flex": "flexes"}
+    left = [counted(count, kind, plurals.get(kind, "")) for kind, count in zip(kinds, counts, strict=True) if count]
     if left:
         message = f"{file.name}: {', '.join(left)} publish nothing; read them from mj_model and mj_data"
         diagnostics.note("SK-MJCF-010", message, where)

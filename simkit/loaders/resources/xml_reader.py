@@ -12,6 +12,7 @@ from xml.parsers import expat
 from simkit import progress
 from simkit.diagnostics import Diagnostics, Where, shorten
 from simkit.input_file import GIT_LFS_POINTER, GIT_LFS_TEXT, FileTooLargeError, read_input
+from simkit.number_text import counted
 from simkit.params import Params
 from simkit.scene.simkit_elements import PREFIX
 from simkit.template_texts import find_template_text, may_have_template_texts
@@ -224,7 +225,9 @@ def parse_text(
     """
     data = text.encode() if isinstance(text, str) else text
     if len(data) > MAX_BYTES:
-        diagnostics.error("SK-XML-002", f"the file has {len(data)} bytes; the limit is {MAX_BYTES}", Where(file))
+        diagnostics.error(
+            "SK-XML-002", f"the file has {counted(len(data), 'byte')}; the limit is {MAX_BYTES}", Where(file)
+        )
         return None
     if isinstance(text, str) and data.lstrip().startswith(b"<?xml"):
         declaration, _, rest = data.lstrip().partition(b"?>")

@@ -7,6 +7,7 @@ from collections.abc import Container
 from typing import Literal
 
 from simkit.diagnostics import Diagnostics
+from simkit.number_text import counted
 from simkit.params import Params
 
 LONGEST_NAME = 1000
@@ -28,7 +29,7 @@ def read_name(element: Params, diagnostics: Diagnostics, version: tuple[int, int
         return ""
     report, problem = diagnostics.error, ""
     if len(name) > LONGEST_NAME:
-        problem = f"<{element.name}> has a name of {len(name)} characters; the limit is {LONGEST_NAME}"
+        problem = f"<{element.name}> has a name of {counted(len(name), 'character')}; the limit is {LONGEST_NAME}"
     elif name.startswith("__") and name.endswith("__"):
         problem = f"<{element.name} name={name!r}>: names __like_this__ are reserved"
     elif name == "world" and element.name != "world":

@@ -9,6 +9,7 @@ from pathlib import Path
 from simkit.diagnostics import did_you_mean
 from simkit.float_sum import float_sum
 from simkit.loaders.sdf.load_context import SdfFile, Workspace
+from simkit.number_text import counted
 from simkit.params import Params
 from simkit.scene import geometry as shapes
 from simkit.scene.geometry import Geometry, Mesh, Vec3
@@ -161,7 +162,7 @@ def _outline(element: Params) -> tuple[tuple[float, float], ...] | None:
             continue
         points.append((x, y))
     if len(points) < 3:
-        element.error("SK-SDF-009", f"<polyline> has {len(points)} points; it needs at least 3")
+        element.error("SK-SDF-009", f"<polyline> has {counted(len(points), 'point')}; it needs at least 3")
         return None
     return tuple(points)
 

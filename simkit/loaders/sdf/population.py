@@ -17,6 +17,7 @@ from simkit.diagnostics import did_you_mean
 from simkit.linear_algebra import matmul
 from simkit.loaders.sdf.entity_names import read_name
 from simkit.loaders.sdf.load_context import MAX_MODELS, EntitySource, SdfFile, Workspace, read_pose
+from simkit.number_text import counted
 from simkit.params import Params
 from simkit.pose import Pose
 
@@ -81,7 +82,7 @@ def _points(population: Params, name: str, stream: str, pose: Pose) -> Points | 
         return _turn_points(_grid(population, rule, name), pose, np.zeros(3))
     count = population.integer("model_count", 1, minimum=1)
     if count > MAX_MODELS:
-        population.error(_CODE, f"population {name!r} has {count} models; the limit is {MAX_MODELS}")
+        population.error(_CODE, f"population {name!r} has {counted(count, 'model')}; the limit is {MAX_MODELS}")
         return None
     region = _region(population, name)
     if region is None:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from simkit.diagnostics import did_you_mean
+from simkit.number_text import counted
 from simkit.params import LARGEST, Params
 from simkit.pose import IDENTITY, Pose
 from simkit.scene.geometry import Vec3, vec3
@@ -93,7 +94,7 @@ def numbers_attribute(element: Params, attribute: str, count: int, allowed: str 
         return None
     parts = [parse_number(part) for part in text_attribute(element, attribute).split()]
     if len(parts) != count or any(p is None or not abs(p) <= LARGEST for p in parts):
-        report_bad_value(element, attribute, allowed or f"{count} numbers")
+        report_bad_value(element, attribute, allowed or counted(count, "number"))
         return None
     return tuple(p for p in parts if p is not None)
 
@@ -108,9 +109,9 @@ def leading_numbers(element: Params, attribute: str, count: int, allowed: str = 
     """Return the first `count` numbers, with a warning if there are more; otherwise like `numbers_attribute`."""
     parts = text_attribute(element, attribute).split()
     if len(parts) > count and all(parse_number(part) is not None for part in parts):
-        statement = f'<{element.name} {attribute}="{" ".join(parts[:8])}"> has {len(parts)} numbers'
+        statement = f'<{element.name} {attribute}="{" ".join(parts[:8])}"> has {counted(len(parts), "number")}'
         report_substitute(
-            element, statement, f"the first {count} are used", f"expected {allowed or f'{count} numbers'}"
+            element, statement, f"the first {count} are used", f"expected {allowed or counted(count, 'number')}"
         )
         element.attributes[attribute] = " ".join(parts[:count])
     return numbers_attribute(element, attribute, count, allowed)
@@ -154,7 +155,7 @@ def extension_numbers(element: Params, count: int) -> Sequence[float] | None:
     finite = [p for p in parts if p is not None and math.isfinite(p)]
     if len(finite) == len(parts) == count:
         return finite
-    allowed = "a number" if count == 1 else f"{count} numbers"
+    allowed = "a number" if count == 1 else counted(count, "number")
     hint = find_template_text(extension_text(element))[1]
     element.error("SK-URDF-013", f"<{element.name}> is {extension_text(element)!r}; expected {allowed}", hint)
     return None

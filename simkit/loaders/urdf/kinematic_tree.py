@@ -6,6 +6,7 @@ from simkit.diagnostics import did_you_mean
 from simkit.loaders.sdf.frames import Frame
 from simkit.loaders.urdf.element_attributes import read_origin, report_missing, skip_element, text_attribute
 from simkit.loaders.urdf.robot_draft import JointDraft, RobotDraft
+from simkit.number_text import counted
 from simkit.params import Params
 from simkit.pose import IDENTITY
 
@@ -140,7 +141,9 @@ def _check_tree(draft: RobotDraft) -> None:
     if len(unjoined) > 1 + len(draft.faulty_joints):  # each faulty joint may be the missing connection
         listed = ", ".join(f"{name!r} (line {draft.links[name].where.line})" for name in unjoined[:8])
         more = f" and {len(unjoined) - 8} more" if len(unjoined) > 8 else ""
-        message = f"robot {draft.name!r} has {len(unjoined)} root links, but can have only one: {listed}{more}"
+        message = (
+            f"robot {draft.name!r} has {counted(len(unjoined), 'root link')}, but can have only one: {listed}{more}"
+        )
         draft.diagnostics.error("SK-URDF-006", message, draft.links[unjoined[1]].where, "join them with a <joint>")
     _report_rings(draft, above)
 

@@ -11,6 +11,7 @@ from simkit.loaders.sdf.entity_names import scoped
 from simkit.loaders.sdf.frames import Scope
 from simkit.loaders.sdf.load_context import NamedElement, SdfFile, Workspace
 from simkit.loaders.urdf.gazebo_extensions import GazeboExtensions
+from simkit.number_text import counted
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 
@@ -61,7 +62,7 @@ class RobotFiles:
             first = problems[0]
             if len(problems) > 1:
                 lines = ", ".join(str(p.line) for p in problems[:12]) + (", ..." if len(problems) > 12 else "")
-                more = f"; {len(problems)} files of it are needed (lines {lines})"
+                more = f"; {counted(len(problems), 'file')} of it are needed (lines {lines})"
                 first = replace(first, message=first.message + more)
             self.diagnostics.extend([first])
 

@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from simkit.loaders.xacro.expansion_limits import MAX_BITS, MAX_ITEMS, MAX_TEXT, BoundError, Budget, ExpansionError
+from simkit.number_text import counted
 
 MAX_EXPRESSION = 20_000
 
@@ -266,7 +267,7 @@ class Evaluator:
 
         def call(*args: Value) -> Value:
             if len(args) != len(names):
-                raise ExpansionError(f"the lambda takes {len(names)} values, but is called with {len(args)}")
+                raise ExpansionError(f"the lambda takes {counted(len(names), 'value')}, but is called with {len(args)}")
             return self._visit(node.body, {**local, **dict(zip(names, args, strict=True))})
 
         return Function(call)
@@ -311,7 +312,7 @@ def _loop_variables(target: ast.expr, item: Value) -> dict[str, Value]:
     if isinstance(target, (ast.Tuple, ast.List)):
         items = list(item)
         if len(items) != len(target.elts):
-            raise ExpansionError(f"cannot assign {len(items)} values to {len(target.elts)} names")
+            raise ExpansionError(f"cannot assign {counted(len(items), 'value')} to {len(target.elts)} names")
         bound: dict[str, Value] = {}
         for name, value in zip(target.elts, items, strict=True):
             bound.update(_loop_variables(name, value))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from simkit.errors import InputError
+from simkit.number_text import counted
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.endpoints import listens
@@ -120,7 +121,7 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
         if len(positions) == len(self._names):
             self._set_joints(positions)
         else:
-            counts = f"{len(positions)} positions for {len(self._names)} joint names"
+            counts = f"{counted(len(positions), 'position')} for {len(self._names)} joint names"
             self._once.left_out(counts, f"point {self._index} of a trajectory has {counts}; the point is ignored")
         self._last = now
         self._due += time

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit.number_text import counted
 from simkit.plugins.world.service_entities import RequestRefused, colour_of, find_entity, pose_fields, require_finite
 from simkit.pose import Pose
 
@@ -64,7 +65,9 @@ def set_joint_properties(sim: Simulation, request: msgs.SetJointProperties_Reque
     for name, values in {"damping": damping, **stops}.items():
         if len(values) > len(dofs):
             count = f"{len(dofs)} degrees of freedom"
-            raise RequestRefused(f"found {len(values)} numbers in {name}; joint {joint.scoped!r} has {count}")
+            raise RequestRefused(
+                f"found {counted(len(values), 'number')} in {name}; joint {joint.scoped!r} has {count}"
+            )
     if any(stops.values()) and len(dofs) != 1:
         raise RequestRefused(f"joint {joint.scoped!r} has {len(dofs)} degrees of freedom; limits need exactly one")
     if damping:

@@ -139,7 +139,7 @@ class SolarSensor(ModelPlugin):
             return None
         listed = ", ".join(repr(n) for n in sorted(lights)) or "none"
         problem = f"there is no light {name!r}" if name else f"<{params.name}> has no <light_name>"
-        message = f"{problem}; this sensor publishes nothing; the lights are: {listed}"
+        message = f"plugin {self.name!r}: {problem}; this sensor publishes nothing; the lights are: {listed}"
         params.warning("SK-PLUGIN-094", message, did_you_mean(name, lights))
         self.log.error(message)
         return None

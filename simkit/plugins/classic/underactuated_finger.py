@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from simkit.number_text import counted
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.find_entities import find_joint
@@ -165,6 +166,8 @@ def _joint_with_one_axis(scene: SceneModel, named: Params) -> SceneJoint | None:
     """Return the joint that an element names; None after an error if the joint is missing or has several axes."""
     joint = find_joint(scene, named.value, named) if named.value else None
     if joint is not None and len(joint.axes) != 1:
-        named.error("SK-PLUGIN-003", f"joint {joint.name!r} has {len(joint.axes)} axes; expected one")
+        named.error(
+            "SK-PLUGIN-003", f"joint {joint.name!r} has {counted(len(joint.axes), 'axis', 'axes')}; expected one"
+        )
         return None
     return joint

@@ -12,6 +12,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import Diagnostic, Diagnostics
+from simkit.number_text import counted
 from simkit.scene import ScenePlugin, SceneSensor
 from simkit.scene.overrides import SOURCE_PREFIX
 
@@ -82,7 +83,7 @@ class LeftOutParts:
         return not (self.is_strict or file.startswith(SOURCE_PREFIX) or file in self._user_files)
 
     def _report(self, part: ScenePlugin | SceneSensor, count: int, diagnostics: Diagnostics) -> None:
-        errors = "an error" if count == 1 else f"{count} errors"
+        errors = "an error" if count == 1 else counted(count, "error")
         if isinstance(part, SceneSensor):
             text = f"sensor {part.scoped!r} ({part.kind}) is left out, because it has {errors}; it has no readings"
             text += " and its plugins do not run" if part.plugins else ""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from simkit.diagnostics import did_you_mean
+from simkit.number_text import counted
 from simkit.params import LARGEST, Params
 from simkit.plugins.find_entities import find_joint
 from simkit.plugins.not_deep_copied import SharedByCopies
@@ -119,8 +120,8 @@ def has_axis(joint: SceneJoint, axis: int, params: Params) -> bool:
     """Check whether a joint has the axis with this index, and report an error if not."""
     if axis < len(joint.axes):
         return True
-    count = len(joint.axes) or "no"
-    message = f"joint {joint.name!r} is {joint.type} and has {count} {'axis' if count == 1 else 'axes'}"
+    axes = counted(len(joint.axes), "axis", "axes") if joint.axes else "no axes"
+    message = f"joint {joint.name!r} is {joint.type} and has {axes}"
     params.error("SK-PLUGIN-003", f"{message}; the plugin needs a joint with axis number {axis}")
     return False
 

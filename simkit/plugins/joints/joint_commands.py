@@ -6,6 +6,7 @@ import abc
 from typing import TYPE_CHECKING, ClassVar, Final
 
 from simkit.msgs.topic_names import valid_topic
+from simkit.number_text import counted
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.joints.joint_axis import JointAxis, find_joints
@@ -155,7 +156,8 @@ class JointCommander(ControlledJoints, ModelPlugin):
         if self._number < len(values):
             self._aim(float(values[self._number]))
         else:
-            what = f"{self.actuator_field} of a message has {len(values)} numbers and none for actuator {self._number}"
+            numbers = counted(len(values), "number")
+            what = f"{self.actuator_field} of a message has {numbers} and none for actuator {self._number}"
             self._once.left_out("short", f"{what}; the message is ignored")
 
     def _aim(self, target: float) -> None:

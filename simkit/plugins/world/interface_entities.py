@@ -13,6 +13,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.linear_algebra import matmul, norm
+from simkit.number_text import counted
 from simkit.plugins.world.service_entities import (
     RequestRefused,
     find_entity,
@@ -252,7 +253,9 @@ def _bounds_test(bounds: msgs.Bounds) -> Callable[[Simulation, str], bool] | Non
     if kind == _HULL:
         raise Refusal(ResultCode.UNSUPPORTED, "bounds of the type convex hull are not supported; use a box or a sphere")
     if kind not in (_BOX, _SPHERE) or len(points) != 2:
-        raise Refusal(ResultCode.FAILED, f"found bounds of type {kind} with {len(points)} points; expected two points")
+        raise Refusal(
+            ResultCode.FAILED, f"found bounds of type {kind} with {counted(len(points), 'point')}; expected two points"
+        )
     if kind == _SPHERE:
         return lambda sim, name: _distance(sim, name, points[0]) <= points[1][0]
     low, high = np.minimum(*points), np.maximum(*points)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from simkit import msgs
 from simkit.errors import InputError
+from simkit.number_text import counted
 from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
 from simkit.plugins.world import interface_entities as entities
@@ -167,7 +168,7 @@ class SimulationInterfaces(WorldPlugin):
         if not sim.paused:
             raise Refusal(ResultCode.INCORRECT_STATE, "the simulation is running; pause it first")
         if steps < 1:
-            raise Refusal(ResultCode.FAILED, f"found {steps} steps; expected at least one")
+            raise Refusal(ResultCode.FAILED, f"found {counted(steps, 'step')}; expected at least one")
         sim.control.pausing.step(sim.engine.clock.checked_count(steps))
         sim.control.pausing.catch_up()
 

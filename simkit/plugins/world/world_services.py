@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from simkit import msgs
 from simkit.msgs.topic_names import valid_topic
+from simkit.number_text import counted
 from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
 from simkit.plugins.drives.wheel_slip import set_compliances
@@ -211,7 +212,9 @@ class WorldServices(WorldPlugin):
     def _set_pose_vector(self, request: msgs.SetEntityPoses_Request) -> None:
         if len(request.entities) != len(request.poses):
             raise RequestRefused(
-                f"found {len(request.entities)} entities and {len(request.poses)} poses; expected one pose per entity"
+                f"found {counted(len(request.entities), 'entity', 'entities')} "
+                f"and {counted(len(request.poses), 'pose')}; "
+                "expected one pose per entity"
             )
         poses = [pose_of(pose) for pose in request.poses]
         for entity in request.entities:  # check all entities before the first one moves

@@ -13,6 +13,8 @@ from io import BufferedReader
 from typing import Final, NamedTuple
 from zlib import crc32
 
+from simkit.number_text import counted
+
 MAGIC: Final = b"\x89MCAP0\r\n"
 LARGEST_RECORD: Final = 512 << 20  # [bytes] of a record, and of the content of a chunk; 4096 x 4096 points have 256 MiB
 LATEST_TIME: Final = (1 << 63) - 1  # [ns], largest time of ROS 2
@@ -106,7 +108,7 @@ class Fields:
         """Return numbers in the layout of the module `struct`."""
         layout = struct.Struct(layout) if isinstance(layout, str) else layout
         if layout.size > len(self._body) - self._at:
-            raise ValueError(f"a record of {len(self._body)} bytes is too short for its fields")
+            raise ValueError(f"a record of {counted(len(self._body), 'byte')} is too short for its fields")
         numbers: tuple[int, ...] = layout.unpack_from(self._body, self._at)
         self._at += layout.size
         return numbers
@@ -205,7 +207,7 @@ def read_record(file: BufferedReader, position: int, size: int) -> Record:
     if opcode == 0:
         raise DamagedRecord(position, "there is no record (opcode 0)")
     if length > size - position - HEAD_SIZE:
-        reason = f"the file ends inside a record of {length} bytes"
+        reason = f"the file ends inside a record of {counted(length, 'byte')}"
         raise DamagedRecord(position, reason, is_cut=True)
     return Record(position, opcode, length)
 

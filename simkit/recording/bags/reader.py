@@ -18,6 +18,7 @@ from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, MessageError
 from simkit.msgs import message_types
 from simkit.msgs.definition_parser import FieldNode
+from simkit.number_text import counted
 from simkit.recording.bags.bag_contents import BagMessage, BagTopic, unreadable
 from simkit.recording.bags.bag_files import bag_layout, open_files
 from simkit.recording.bags.mcap_records import LARGEST_RECORD, decompress
@@ -69,9 +70,8 @@ class BagReader:
         self._stores: dict[str, Typestore] = {}
 
     def __repr__(self) -> str:
-        return (
-            f"<BagReader {str(self.path)!r}: {len(self.topics)} topics, {self.count} messages, {self.duration:.6g} s>"
-        )
+        counts = f"{counted(len(self.topics), 'topic')}, {counted(self.count, 'message')}"
+        return f"<BagReader {str(self.path)!r}: {counts}, {self.duration:.6g} s>"
 
     def __enter__(self) -> BagReader:
         return self

@@ -11,6 +11,7 @@ from typing import Final
 
 from simkit.errors import InputError
 from simkit.input_file import read_failure
+from simkit.number_text import counted
 from simkit.progress import report_each
 from simkit.recording.bags.mcap_salvage import Loss, McapSalvage
 from simkit.recording.bags.writer import Channel, McapBag, check_target, open_bag
@@ -52,7 +53,7 @@ def _loss_text(loss: Loss) -> str:
     part = "a chunk of " if loss.is_chunk else ""
     times = "" if loss.start is None or loss.end is None else f", {loss.start * _NS:.9g} s to {loss.end * _NS:.9g} s"
     rest = f"; {loss.saved} of its messages are saved, and may be wrong" if loss.saved else ""
-    return f"lost {part}{loss.size} bytes at byte {loss.position}{times} ({loss.reason}){rest}"
+    return f"lost {part}{counted(loss.size, 'byte')} at byte {loss.position}{times} ({loss.reason}){rest}"
 
 
 def recover_bag(source: Path, target: Path, *, overwrite: bool = False) -> RecoveredBag:

@@ -14,6 +14,7 @@ from simkit.msgs.message_repr import with_readable_text
 from simkit.msgs.message_types import full_name
 from simkit.msgs.type_limits import check_size
 from simkit.msgs.wide_strings import with_wide_strings
+from simkit.number_text import counted
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -82,7 +83,7 @@ def _parsed(type_name: str, text: str) -> dict[str, MessageDefinition]:
     """
     text = "\n".join(line for line in text.split("\n") if line.strip() and not line.lstrip().startswith("#"))
     if len(text) > _LONGEST:
-        raise ValueError(f"it has {len(text)} characters; the longest allowed has {_LONGEST}")
+        raise ValueError(f"it has {counted(len(text), 'character')}; the longest allowed has {_LONGEST}")
     first, *rest = _SEPARATOR.split(text)
     parts_by_name = {}
     for name, definition in ((type_name, first), *zip(rest[::2], rest[1::2], strict=True)):

@@ -22,6 +22,7 @@ from simkit.msgs.definition_parser import ARRAY, BASE, NAME, SEQUENCE, FieldNode
 from simkit.msgs.image_arrays import image
 from simkit.msgs.message_text import NUMBER_CODES, field_nodes, field_value
 from simkit.msgs.message_types import FieldValue, Message
+from simkit.number_text import counted
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -170,7 +171,7 @@ class _FieldPath:
 
     def _count(self, numbers: Sequence[object]) -> None:
         if len(numbers) > MOST_CURVES:
-            raise self._path_error(f"means {len(numbers)} numbers; the limit is {MOST_CURVES}")
+            raise self._path_error(f"means {counted(len(numbers), 'number')}; the limit is {MOST_CURVES}")
 
     # ------------------------------------------------------------------ one step
 
@@ -208,7 +209,7 @@ class _FieldPath:
         if int(step.node[0]) == ARRAY:
             for number in numbers:
                 if not -size <= number < size:
-                    raise self._field_error(f"{step.path} has {size} items, found [{number}]")
+                    raise self._field_error(f"{step.path} has {counted(size, 'item')}, found [{number}]")
         return [self._item(step, inner, partial(_item, number), str(number)) for number in numbers]
 
     def _item(self, step: _PathStep, inner: FieldNode, read_item: Reader, index: str) -> _PathStep:

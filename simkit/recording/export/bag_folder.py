@@ -18,6 +18,7 @@ from simkit.errors import InputError
 from simkit.input_file import read_input_text
 from simkit.json_reader import parse_json
 from simkit.msgs.message_columns import TEXT, Column, columns_of
+from simkit.number_text import counted
 from simkit.recording.bags.bag_contents import matches_topic
 from simkit.recording.bags.reader import BagTopic, open_bag_to_read
 from simkit.recording.export.images import MessageWriter, NpzFile, PngFiles, VideoFile
@@ -212,7 +213,7 @@ def _selected_topics(bag: BagReader, options: ExportOptions) -> list[BagTopic]:
     chosen = [topic for topic in bag.topics if not options.topics or matches_topic(topic.name, options.topics)]
     selected = [topic for topic in chosen if not matches_topic(topic.name, options.skip)]
     if not selected:
-        raise InputError("SK-BAG-011", f"the options select none of the {len(names)} topics of {bag.path}")
+        raise InputError("SK-BAG-011", f"the options select none of the {counted(len(names), 'topic')} of {bag.path}")
     return selected
 
 

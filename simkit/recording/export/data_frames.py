@@ -11,6 +11,7 @@ from simkit.msgs import data_frames
 from simkit.msgs.data_frames import DataFrame
 from simkit.msgs.message_types import Message
 from simkit.msgs.topic_names import absolute_name
+from simkit.number_text import counted
 from simkit.recording.bags.reader import BagReader, open_bag_to_read
 from simkit.runtime import Subscription
 
@@ -44,7 +45,7 @@ def to_dataframe(
         if topic is None:
             names = list(dict.fromkeys(known.name for known in source.topics))
             if len(names) != 1:
-                text = f"{source.path} has {len(names)} topics; give one of them"
+                text = f"{source.path} has {counted(len(names), 'topic')}; give one of them"
                 raise InputError("SK-CLI-030", f"{text}: {', '.join(names) or 'none'}")
             topic = names[0]
         check_text(topic, "the topic")

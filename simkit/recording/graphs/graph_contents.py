@@ -7,6 +7,7 @@ from typing import Final
 
 from simkit.msgs.topic_names import is_hidden
 from simkit.msgs.transform_tree import TransformTree
+from simkit.number_text import counted
 from simkit.recording.graphs.graph_svg import GraphBox, GraphEdge
 from simkit.run_spec import JsonObject
 
@@ -57,7 +58,7 @@ def _listed(kind: str, names: Iterable[str]) -> list[str]:
     sorted_names = sorted(names)
     lines = [f"{kind} {name}" for name in sorted_names[:_LISTED]]
     more = len(sorted_names) - _LISTED
-    return lines + ([f"and {more} more {kind}{'s' if more > 1 else ''}"] if more > 0 else [])
+    return lines + ([f"and {counted(more, f'more {kind}')}"] if more > 0 else [])
 
 
 def frame_graph(frames: TransformTree) -> tuple[list[GraphBox], list[GraphEdge]]:

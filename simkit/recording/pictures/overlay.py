@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simkit.float_sum import float_sum
+from simkit.number_text import counted
 from simkit.recording.pictures.camera import MARGIN, Camera
 
 if TYPE_CHECKING:
@@ -219,10 +220,10 @@ def _legend(marks: Marks) -> list[tuple[str, Colour, str]]:
     if len(names) <= _MOST_PATHS:
         entries += [("line", _PATHS[n], f"path of {name}") for n, name in enumerate(names)]
     else:
-        entries.append(("line", _PATHS[0], f"paths of {len(names)} models"))
+        entries.append(("line", _PATHS[0], f"paths of {counted(len(names), 'model')}"))
     scans = [topic for topic, points in marks.scans.items() if len(points)]
     if scans:
-        entries.append(("dots", _SCAN, f"scan {scans[0]}" if len(scans) == 1 else f"{len(scans)} scans"))
+        entries.append(("dots", _SCAN, f"scan {scans[0]}" if len(scans) == 1 else counted(len(scans), "scan")))
     entries += [("ring", _GOAL, f"goal {topic}") for topic in itertools.islice(marks.goals, 3)]
     return entries
 

@@ -11,6 +11,7 @@ from simkit.in_process import InProcess
 from simkit.msgs import Message
 from simkit.msgs.message_arguments import checked_message
 from simkit.msgs.message_types import M
+from simkit.number_text import counted
 from simkit.runtime.communication.journal import JournalKeeper
 from simkit.runtime.communication.subscription import Callback, LazyMessage, PendingWork
 
@@ -224,7 +225,7 @@ class Publisher(InProcess, Generic[M]):
                 receive(message.get() if isinstance(message, LazyMessage) else message)
 
     def __repr__(self) -> str:
-        heard = f"{self.subscribers} subscriber{'' if self.subscribers == 1 else 's'}"
+        heard = counted(self.subscribers, "subscriber")
         return f"<Publisher {self.topic!r} {self.type_name}, {heard}>"
 
 

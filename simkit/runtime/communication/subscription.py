@@ -22,6 +22,7 @@ from simkit.msgs import Message
 from simkit.msgs.cdr_template import PACKERS
 from simkit.msgs.data_frames import DataFrame, to_dataframe
 from simkit.msgs.message_types import M
+from simkit.number_text import counted
 from simkit.runtime.communication.journal import JournalKeeper
 from simkit.runtime.engine.plugin_faults import is_guarded
 
@@ -235,7 +236,7 @@ class Subscription(InProcess, Generic[M]):
     def __repr__(self) -> str:
         self._bus.gather(self.topic)
         count = len(self._messages)
-        return f"<{type(self).__name__} {self.topic!r}, {count} message{'' if count == 1 else 's'}>"
+        return f"<{type(self).__name__} {self.topic!r}, {counted(count, 'message')}>"
 
 
 class StreamSubscription(Subscription):
@@ -290,6 +291,8 @@ class TopicFailures:
 
     def report_dropped(self, topic: str, depth: int) -> None:
         """Warn that a plugin's input received more messages for one step than its queue can keep."""
-        message = f"more than {depth} messages on {topic!r} came for one step: the oldest are dropped from now on"
+        message = (
+            f"more than {counted(depth, 'message')} on {topic!r} came for one step: the oldest are dropped from now on"
+        )
         hint = "send less often; sim.communication.bus.dropped counts them"
         self._reports.warning("SK-TOPIC-004", message, hint=hint)

@@ -12,6 +12,7 @@ import numpy as np
 from simkit.argument_checks import checked_integer, checked_number, checked_vector, wrong_value
 from simkit.errors import InputError
 from simkit.linear_algebra import matmul
+from simkit.number_text import counted
 from simkit.pose import Pose, Vector, quat_conjugate, quat_rotate
 from simkit.runtime.engine.physics_state import CONTROL, STALE, VELOCITY
 from simkit.runtime.handles import joined_models
@@ -31,7 +32,7 @@ def _checked_limits(value: JointValue, name: str, count: int) -> list[float]:
     """Return one limit for each axis, from one number or a number for each axis."""
     limits = [value] * count if np.ndim(value) == 0 else list(value)  # type: ignore[arg-type]  # a number or numbers
     if len(limits) != count:
-        raise wrong_value(name, f"one number or {count} numbers", value)
+        raise wrong_value(name, f"one number or {counted(count, 'number')}", value)
     return [checked_number(limit, name, 0.0, finite=False) for limit in limits]
 
 

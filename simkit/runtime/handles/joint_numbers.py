@@ -8,6 +8,7 @@ import numpy as np
 
 from simkit.argument_checks import checked_number, wrong_value
 from simkit.errors import InputError
+from simkit.number_text import counted
 from simkit.pose import Vector
 from simkit.runtime.handles.handle import Handle
 
@@ -85,7 +86,7 @@ class TunableJoint(Handle):
         count = len(self._dofs)
         entries = [value] * count if np.ndim(value) == 0 else list(value)  # type: ignore[arg-type]  # a number or numbers
         if len(entries) != count:
-            raise wrong_value(name, f"one number or {count} numbers", value)
+            raise wrong_value(name, f"one number or {counted(count, 'number')}", value)
         numbers = [checked_number(number, name, 0.0) for number in entries]
         if count:
             self._engine.numbers.write(field, self._dofs, numbers)

@@ -7,6 +7,8 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from simkit.number_text import counted
+
 if TYPE_CHECKING:
     from simkit.pose import Pose
     from simkit.runtime.handles.model import Model
@@ -56,4 +58,4 @@ def _numbers(value: float | Sequence[float]) -> str:
 
 
 def _count(count: int, name: str) -> str:
-    return f"{count} {name}{'' if count == 1 else 's'}"
+    return counted(count, name)

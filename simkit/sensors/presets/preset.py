@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
+from simkit.number_text import counted
 from simkit.packs import pack_folders
 
 Settings = Mapping[str, Any]
@@ -130,9 +131,9 @@ def _outline_items(settings: Settings) -> list[str]:
             text = f" ({', '.join(children)})" if len(children) > 1 else f" {children[0]}".rstrip()
             names.setdefault(text, []).append(name)
         elif isinstance(value, list) and value and isinstance(value[0], (Mapping, list)):
-            names[f"{len(value)} elements {name}"] = []
+            names[f"{counted(len(value), 'element')} {name}"] = []
         elif len(format_value(value).split()) > _LONGEST_LIST:
-            names[f"{name} of {len(format_value(value).split())} numbers"] = []
+            names[f"{name} of {counted(len(format_value(value).split()), 'number')}"] = []
         else:
             names[f"{name} {format_value(value)}".removeprefix("@")] = []
     return ["/".join(merged_names) + text for text, merged_names in names.items()]

@@ -15,6 +15,7 @@ from simkit.compiler import Compiled
 from simkit.compiler.geom_groups import DRAWN_COLLISION, SEEN_AS_COLLISIONS, VISUAL
 from simkit.diagnostics import Diagnostics
 from simkit.linear_algebra import matmul
+from simkit.number_text import counted
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.runtime.array_rules import Ids, SensorRule, Ticks
@@ -193,7 +194,7 @@ class LidarMeasurement(Sensor["msgs.LaserScan"]):
         vertical = _read_angle_range(scan.block("vertical"), 1)
         if horizontal.samples * vertical.samples > _MAX_RAYS:
             rays = horizontal.samples * vertical.samples
-            scan.error("SK-PARAM-002", f"found {rays} rays; expected at most {_MAX_RAYS}")
+            scan.error("SK-PARAM-002", f"found {counted(rays, 'ray')}; expected at most {_MAX_RAYS}")
             horizontal = vertical = AngleRange(1, 0.0, 0.0)
         noise, mask = read_noise(block, "gaussian"), read_visibility_mask(block)
         fan = horizontal.samples, vertical.samples, horizontal.high - horizontal.low

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from simkit.diagnostics import did_you_mean
+from simkit.number_text import counted
 from simkit.runtime.array_rules import CannotBatchError
 from simkit.testing.conditions import syntax_tree as syntax
 from simkit.testing.conditions.bound_expression import (
@@ -178,7 +179,7 @@ class Binder:
             )
         count = len(node.arguments)
         if not function.least <= count <= function.most:
-            message = f"{node.name} does not take {count} argument{'' if count == 1 else 's'}"
+            message = f"{node.name} does not take {counted(count, 'argument')}"
             raise self.fault("SK-COND-003", message, node.span, f"write {function.usage}")
         return function.make(self, node)
 
@@ -319,7 +320,9 @@ class Binder:
         def value() -> object:
             x, y = a(), b()
             if both and x.shape[-1] != y.shape[-1]:
-                raise syntax.UndecidedValue(f"{source} combines lists of {x.shape[-1]} and {y.shape[-1]} numbers")
+                raise syntax.UndecidedValue(
+                    f"{source} combines lists of {x.shape[-1]} and {counted(y.shape[-1], 'number')}"
+                )
             return act(x, y)
 
         kind = next(part.kind for part in (left, right) if is_vector_like(part.kind))
@@ -358,14 +361,14 @@ class Binder:
         if fixed is not None and not float(fixed).is_integer():
             raise self.fault("SK-COND-004", "an index must be an integer", node.index.span)
         if fixed is not None and length is not None and not -length <= fixed < length:
-            raise self.fault("SK-COND-007", f"index out of range: there are {length} items", node.index.span)
+            raise self.fault("SK-COND-007", f"index out of range: there are {counted(length, 'item')}", node.index.span)
         source = node.span.text(self.source)
         is_number = item is NUMBER
 
         def value() -> object:
             items, place = get(), at()
             if not (-len(items) <= place < len(items)) or place != int(place):
-                raise syntax.UndecidedValue(f"{source} is out of range: there are {len(items)} items")
+                raise syntax.UndecidedValue(f"{source} is out of range: there are {counted(len(items), 'item')}")
             item_value = items[int(place)]
             return float(item_value) if is_number else bool(item_value) if item is TRUTH else item_value
 

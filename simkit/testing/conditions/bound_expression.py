@@ -11,6 +11,7 @@ import numpy as np
 
 from simkit.errors import InputError
 from simkit.msgs import Message
+from simkit.number_text import counted
 from simkit.pose import Pose, Vector, rpy_of_quaternions
 from simkit.testing.conditions import syntax_tree as syntax
 from simkit.testing.conditions import value_types as kinds
@@ -62,7 +63,7 @@ def value_text(value: Any) -> str:
     if hasattr(value, "rpy"):
         return f"({_join_texts(value.position)}; {_join_texts(value.rpy)})"
     if hasattr(value, "__len__"):
-        return f"({_join_texts(value)})" if len(value) <= _MAX_SHOWN else f"{len(value)} values"
+        return f"({_join_texts(value)})" if len(value) <= _MAX_SHOWN else counted(len(value), "value")
     return f"a {getattr(value, '__msgtype__', type(value).__name__)}"
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final, Literal
 
+from simkit.number_text import counted
 from simkit.testing.conditions import syntax_tree as syntax
 
 TokenKind = Literal["number", "name", "text", "sign", "end"]
@@ -47,7 +48,7 @@ def tokenize(source: str) -> list[Token]:
         InputError: SK-COND-001 the text has an invalid character; SK-COND-008 the text is too long.
     """
     if len(source) > MAX_LENGTH:
-        message = f"the expression has {len(source)} characters; the limit is {MAX_LENGTH}"
+        message = f"the expression has {counted(len(source), 'character')}; the limit is {MAX_LENGTH}"
         span = syntax.Span(MAX_LENGTH, MAX_LENGTH + 1)
         raise syntax.expression_error("SK-COND-008", message, source, span, "split it into several checks")
     tokens: list[Token] = []

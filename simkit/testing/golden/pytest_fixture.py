@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Final, cast
 import pytest
 
 from simkit.errors import InputError
+from simkit.number_text import counted
 from simkit.run_spec import EMPTY_SPACE, JsonMapping, JsonObject, LoadOptions, RunSpec, Tolerance, run_fields
 from simkit.testing.golden.cause import explain
 from simkit.testing.golden.compare.difference import Verdict
@@ -262,7 +263,7 @@ class SensorRegression:
                 verdict.explanation = explain(*both, rerun=None)
         lines = text_report(verdict, 100, most=8, mark="")
         if len(lines) > _LINES:
-            lines = [*lines[:_LINES], f"  … and {len(lines) - _LINES} more lines"]
+            lines = [*lines[:_LINES], f"  … and {counted(len(lines) - _LINES, 'more line')}"]
         command = f"pytest {shlex.quote(self._place.test)} --simkit-update-golden"
         command += ' --simkit-golden-reason "reason for the change"'
         if self._place.pages is not None:

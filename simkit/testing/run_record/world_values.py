@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from simkit.diagnostics import Where
 from simkit.input_file import open_input, read_input_text
+from simkit.number_text import counted
 from simkit.params import Params
 from simkit.pose import Pose
 from simkit.run_spec import JsonObject
@@ -224,7 +225,7 @@ def _element_value(text: str) -> object:
 def file_content_text(path: Path) -> str:
     """Return a short text for the content of a file: 16 characters of its SHA-256, and its size."""
     digest, size = file_hash(path)
-    return f"{digest[:16]} ({size} bytes)" if digest else "missing"
+    return f"{digest[:16]} ({counted(size, 'byte')})" if digest else "missing"
 
 
 def file_hash(path: Path) -> tuple[str, int]:

@@ -99,7 +99,7 @@ def test_an_invalid_trajectory_is_ignored_and_reported() -> None:
     assert positions(sim) == [0.0, 0.0]
     send(sim, [(0.0, [1.0])])
     sim.run(0.1)
-    assert any("1 positions for 2 joint names" in m for m in codes(sim.diagnostics, "SK-PLUGIN-041"))
+    assert any("1 position for 2 joint names" in m for m in codes(sim.diagnostics, "SK-PLUGIN-041"))
     with pytest.raises(LoadError, match="at least 0"):
         load(ARM, poses("<update_rate>-5</update_rate>"))
 

@@ -174,7 +174,7 @@ def test_several_poses_are_set_or_none() -> None:
         assert "did you mean 'arm'?" in response.status_message
         assert sim.model("box").pose.position[2] == 4
         response = ask(sim, "set_pose_vector", entities=entities, poses=poses[:1])
-        assert response.status_message == "found 2 entities and 1 poses; expected one pose per entity"
+        assert response.status_message == "found 2 entities and 1 pose; expected one pose per entity"
 
 
 def test_every_service_except_control_has_a_blocking_variant() -> None:

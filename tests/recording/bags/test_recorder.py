@@ -163,6 +163,17 @@ def test_an_existing_recording_is_not_overwritten(tmp_path: Path) -> None:
     assert record(path, overwrite=True).stat().st_size > 1000
 
 
+def test_a_recording_that_replaces_one_still_being_written_is_complete(tmp_path: Path) -> None:
+    path = tmp_path / "run.mcap"
+    with simkit.load(WORLD) as first, simkit.load(WORLD) as second, Recorder(first, path):
+        first.run(1.5)
+        with Recorder(second, path, overwrite=True):
+            second.run(0.5)
+            first.run(1.0)
+    with AnyReader([path]) as reader:
+        assert {c.topic: c.msgcount for c in reader.connections}["/imu"] == 51
+
+
 def test_a_folder_that_is_not_a_bag_is_not_replaced_even_with_overwrite(tmp_path: Path) -> None:
     (tmp_path / "notes").mkdir()
     (tmp_path / "notes" / "diary.txt").write_text("dear diary")

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, ClassVar, Final
 import numpy as np
 
 from simkit import Params, msgs
-from simkit.extend import Vector
+from simkit.extend import Vector, counted
 from simkit.plugins.one_time_warnings import are_usable
 from simkit.plugins.ros_parameter_block import read_names
 from simkit_control.plugins.ros2_control.controller import Controller
@@ -209,9 +209,13 @@ class _LoopController(Controller):
             self._target = values
             return
         description = (
-            f"a command of {len(values)} numbers" if len(values) != len(self._joints) else f"{values.tolist()}"
+            f"a command of {counted(len(values), 'number')}"
+            if len(values) != len(self._joints)
+            else f"{values.tolist()}"
         )
-        message = f"controller {self.name!r}: found {description}; expected {len(self._joints)} finite numbers"
+        message = (
+            f"controller {self.name!r}: found {description}; expected {counted(len(self._joints), 'finite number')}"
+        )
         self.sim.engine.reports.warning("SK-CONTROL-016", f"{message}; the command is ignored", self.params.where)
 
     def update(self, now_ns: int, period: float) -> None:

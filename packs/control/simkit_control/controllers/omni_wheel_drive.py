@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from simkit import Params
+from simkit.extend import counted
 from simkit.linear_algebra import matmul
 from simkit.matrix_decompositions import pinv
 from simkit.plugins.drives.odometry import Motion
@@ -33,7 +34,9 @@ class OmniWheelDrive(ReferenceDrive):
         self._joints = read_names(params, "wheel_names", required=True, code="SK-CONTROL-041")
         count = len(self._joints)
         if 0 < count < _FEWEST_WHEELS:
-            params.error("SK-CONTROL-040", f"wheel_names names {count} joints; this controller needs at least 3")
+            params.error(
+                "SK-CONTROL-040", f"wheel_names names {counted(count, 'joint')}; this controller needs at least 3"
+            )
         self.topics = ("~/cmd_vel", "~/odom", "/tf")
         self.publish_rate = params.number("publish_rate", 50.0, minimum=0)
         self._feedback = "position" if params.boolean("position_feedback", True) else "velocity"

@@ -8,7 +8,7 @@ from typing import Annotated
 from simkit.cli.run_options import NONE_GIVEN
 from simkit.cli.terminal import options
 from simkit.cli.terminal.output import print_diagnostics, stdout_console
-from simkit.extend import Diagnostics, GivenOptions, add_to_report, argument, report_errors, with_run_options
+from simkit.extend import Diagnostics, GivenOptions, add_to_report, argument, counted, report_errors, with_run_options
 
 LISTED_AFTER = "convert"
 
@@ -30,4 +30,4 @@ def vendor(
     main, count = write(file, folder, describe, diagnostics=problems, **given.source_options())
     print_diagnostics(problems, verbose=verbose)
     add_to_report(main=str(folder / main), files=count, problems=[problem.as_dict() for problem in problems])
-    stdout_console().print(f"{folder / main} and {count - 1} other files")
+    stdout_console().print(f"{folder / main} and {counted(count - 1, 'other file')}")

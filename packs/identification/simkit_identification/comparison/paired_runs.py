@@ -14,6 +14,7 @@ from typing import Any, Final
 import numpy as np
 
 from simkit.errors import InputError
+from simkit.extend import counted
 from simkit.input_file import read_failure, read_input_text
 from simkit.recording import matches_topic
 from simkit_identification.comparison.row import Row
@@ -93,7 +94,9 @@ def compare_sets(a: Any, b: Any, confidence: float, tolerances: list[Tolerance])
     if not rows:
         raise InputError(_UNPAIRED, f"{names[0]} and {names[1]} have no metric in common that varies")
     left = len(first) + len(second) - 2 * len(common)
-    notes = [f"{len(common)} pairs of runs" + (f"; {left} runs without a partner are left out" if left else "")]
+    notes = [
+        f"{counted(len(common), 'pair')} of runs" + (f"; {left} runs without a partner are left out" if left else "")
+    ]
     return Comparison(*names, with_verdicts(rows, confidence), confidence, notes)
 
 

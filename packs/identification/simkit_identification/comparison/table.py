@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from simkit.errors import InputError
-from simkit.extend import did_you_mean
+from simkit.extend import counted, did_you_mean
 from simkit.install_command import install_command
 from simkit_identification.comparison.page import PageContents, write_page
 from simkit_identification.comparison.row import DIFFERING, Row, cells_of, headings, html_table
@@ -173,4 +173,4 @@ def summary(comparison: Comparison) -> str:
     counts = comparison.counts()
     verdicts = ("differs", "only in a", "only in b", "within tolerance", "same", "not tested")
     parts = [f"{counts[verdict]} {verdict}" for verdict in verdicts if counts[verdict]]
-    return f"{len(comparison.rows)} rows: " + ", ".join(parts) if parts else "no rows"
+    return f"{counted(len(comparison.rows), 'row')}: " + ", ".join(parts) if parts else "no rows"

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from simkit import RunSpec, progress
 from simkit.argument_checks import shown
 from simkit.errors import InputError
-from simkit.extend import Diagnostics
+from simkit.extend import Diagnostics, counted
 from simkit.testing import open_scenario
 from simkit_identification.fitting.codes import (
     AT_BOUND,
@@ -193,7 +193,7 @@ def _describe_task(parameters: Sequence[Parameter], recordings: Sequence[Repeate
     count = len(recordings)
     return (
         f"{len(parameters)} parameter{'s' * (len(parameters) != 1)}, {count} recording{'s' * (count != 1)}, "
-        f"{size} readings of {names}"
+        f"{counted(size, 'reading')} of {names}"
     )
 
 

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from simkit.elementary_functions import arctan2
 from simkit.errors import InputError
+from simkit.extend import counted
 from simkit.linear_algebra import dot, norm
 from simkit.pose import Pose, quat_rotate
 from simkit.recording import open_bag_to_read
@@ -64,7 +65,7 @@ class Motion:
             object.__setattr__(self, field, values)
         times = np.asarray(self.times, dtype=np.float64)
         if count < _FEWEST or not np.all(np.diff(times) > 0):
-            text = f"{self.name}: found {count} samples; expected at least {_FEWEST} with ascending times"
+            text = f"{self.name}: found {counted(count, 'sample')}; expected at least {_FEWEST} with ascending times"
             raise InputError(INVALID_MOTION, text)
         object.__setattr__(self, "times", times - times[0])
         norms = np.sqrt(_products(self.quaternions, self.quaternions))

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit import Diagnostic, RunSpec
+from simkit.extend import counted
 from simkit.scene.overrides import override_texts
 from simkit.writers.atomic_output import write_atomically
 from simkit_identification.fitting.fitted_values import ComparedTopic, FitCurve, FittedParameter, interval_text
@@ -180,7 +181,7 @@ class FitResult:
     def _fold_lines(self) -> list[str]:
         if not self.folds:
             return []
-        lines = [f"cross-validation, {len(self.folds)} parts held out in turn:"]
+        lines = [f"cross-validation, {counted(len(self.folds), 'part')} held out in turn:"]
         for path in self.folds[0].values:
             found = [fold.values[path] for fold in self.folds]
             lines.append(f"  {path}: {min(found):.6g} to {max(found):.6g}")

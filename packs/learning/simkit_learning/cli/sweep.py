@@ -15,7 +15,7 @@ from simkit.cli.terminal import options
 from simkit.cli.terminal.json_report import add_to_report, report_errors_and_json
 from simkit.cli.terminal.output import print_status, stdout_console
 from simkit.errors import InputError
-from simkit.extend import argument, option
+from simkit.extend import argument, counted, option
 
 if TYPE_CHECKING:
     from simkit_learning.sweeps.sweep import SweepOutcome
@@ -137,7 +137,9 @@ def _print_outcome(outcome: SweepOutcome, folder: Path, *, quiet: bool) -> None:
     console = stdout_console()
     factor = outcome.simulated / outcome.wall_time if outcome.wall_time > 0 else 0.0
     before = f", {outcome.skipped} of them before" if outcome.skipped else ""
-    console.print(f"{outcome.count} runs{before}: {outcome.count - outcome.failed} ok, {outcome.failed} failed")
+    console.print(
+        f"{counted(outcome.count, 'run')}{before}: {outcome.count - outcome.failed} ok, {outcome.failed} failed"
+    )
     if made:
         console.print(f"{outcome.wall_time:.1f} s, {made / outcome.wall_time:.3g} runs/s, {factor:.3g} × real time")
     for path in outcome.tables:

@@ -12,6 +12,7 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space, create_empty_array
 
 from simkit.diagnostics import shorten
+from simkit.extend import counted
 from simkit.runtime.array_rules import CannotBatchError
 from simkit.sensors.cameras.rendering.render_thread import usable_cores
 from simkit_learning.environments.array_bindings import (
@@ -171,7 +172,9 @@ class BatchVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
         elif len(seed) == self.num_envs:
             seeds = list(seed)
         else:
-            raise invalid(f"seed: found {len(seed)} seeds; expected one number, or {self.num_envs} seeds")
+            raise invalid(
+                f"seed: found {counted(len(seed), 'seed')}; expected one number, or {counted(self.num_envs, 'seed')}"
+            )
         infos: Info = {}
         for row in np.flatnonzero(mask).tolist():
             infos = self._reset_row(row, infos, seeds[row], options)

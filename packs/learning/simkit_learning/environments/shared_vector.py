@@ -18,6 +18,7 @@ import numpy.typing as npt
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 from gymnasium.vector.utils import CloudpickleWrapper, batch_space, concatenate, create_empty_array, iterate
 
+from simkit.extend import counted
 from simkit_learning.environments.message_arrays import Array
 from simkit_learning.environments.shared_simulation import SharedSimulation, TurnEnv
 from simkit_learning.environments.specification import EnvironmentSpec, Info, ResetOptions, invalid
@@ -111,7 +112,9 @@ class SharedVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
         elif len(seed) == self.num_envs:
             seeds = seed
         else:
-            raise invalid(f"seed: found {len(seed)} seeds; expected one number, or {self.num_envs} seeds")
+            raise invalid(
+                f"seed: found {counted(len(seed), 'seed')}; expected one number, or {counted(self.num_envs, 'seed')}"
+            )
         mask = None if options is None else options.get("reset_mask")
         calls: list[dict[str, Any] | None] = []
         for place in self._places:
@@ -133,7 +136,8 @@ class SharedVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
         values = np.asarray(actions)
         if values.shape[:1] != (self.num_envs,):
             raise invalid(
-                f"found actions of the shape {values.shape}; expected {self.num_envs} rows", code="SK-GYM-004"
+                f"found actions of the shape {values.shape}; expected {counted(self.num_envs, 'row')}",
+                code="SK-GYM-004",
             )
         results = self._call("step", [{"actions": values[place]} for place in self._places])
         self._store([result[0] for result in results])

@@ -27,7 +27,7 @@ import numpy as np
 
 from simkit.argument_checks import shown
 from simkit.diagnostics import shorten
-from simkit.extend import did_you_mean
+from simkit.extend import counted, did_you_mean
 from simkit.float_sum import float_sum
 from simkit.linear_algebra import matmul
 from simkit.matrix_decompositions import cholesky
@@ -211,7 +211,7 @@ def _choice(names: Names, description: Description, value: object) -> ParameterS
         raise InvalidSpace(f"found {shorten(repr(value), 60)}; expected a list of values to choose from")
     choices = [plain_value(item) for item in items]
     weights = description.get("weights", [1.0] * len(items))
-    parts = _numbers(weights, len(items), f"{len(items)} weights, one for each value")
+    parts = _numbers(weights, len(items), f"{counted(len(items), 'weight')}, one for each value")
     if min(parts) < 0 or float_sum(parts) <= 0:
         raise InvalidSpace(f"found the weights {weights!r}; expected numbers of at least 0, not all of them 0")
     sums = [float_sum(parts[: count + 1]) / float_sum(parts) for count in range(len(parts))]
@@ -250,7 +250,9 @@ def _correlated(names: Names, description: Description, value: object) -> Parame
     count = len(names)
     rows = list(value) if isinstance(value, (list, tuple)) else []
     if len(rows) != 2:
-        raise InvalidSpace(f"expected two lists for {count} parameters: the means and the standard deviations")
+        raise InvalidSpace(
+            f"expected two lists for {counted(count, 'parameter')}: the means and the standard deviations"
+        )
     means, deviations = (_numbers(row, count, f"{count} numbers, one for each parameter") for row in rows)
     if "limits" in description:
         raise InvalidSpace("limits are possible only for one parameter")

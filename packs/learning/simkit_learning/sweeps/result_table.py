@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TypeAlias, cast
 
 from simkit.errors import InputError
+from simkit.extend import counted
 from simkit.input_file import read_failure, read_input_text
 from simkit.install_command import install_command
 from simkit.msgs.data_frames import DataFrame
@@ -142,7 +143,7 @@ def read_parameters(path: Path) -> tuple[Values, ...]:
         raise _bad_list(path, "expected a line of parameter names and a line for each run")
     names = [name.strip() for name in lines[0]]
     problems = [
-        f"{path}:{number}: found {len(line)} cells, expected {len(names)}"
+        f"{path}:{number}: found {counted(len(line), 'cell')}, expected {len(names)}"
         for number, line in enumerate(lines[1:], 2)
         if line and len(line) != len(names)
     ]

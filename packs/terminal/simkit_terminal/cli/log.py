@@ -14,7 +14,7 @@ from simkit.cli.terminal.options import validate_word
 from simkit.cli.terminal.output import print_json, print_line, print_note, without_interrupt_message
 from simkit.cli.terminal.topic_sources import open_source
 from simkit.errors import InputError
-from simkit.extend import argument, option, report_errors
+from simkit.extend import argument, counted, option, report_errors
 from simkit_terminal.cli.terminal.live_command import Ros2Command
 from simkit_terminal.cli.terminal.named_endpoints import find_topic
 
@@ -60,7 +60,9 @@ def log(
             if wanted(message):
                 _print(message, json_)
             if feed.lost > lost:
-                print_note(f"note: {feed.lost - lost} messages were lost, because they came faster than they were read")
+                print_note(
+                    f"note: {counted(feed.lost - lost, 'message')} lost, because they came faster than they were read"
+                )
                 lost = feed.lost
 
 

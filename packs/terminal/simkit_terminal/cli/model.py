@@ -11,7 +11,7 @@ from typer import Option
 from simkit.cli.terminal import options
 from simkit.cli.terminal.output import JsonObject, not_found_error, print_json, print_line, without_interrupt_message
 from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name
-from simkit.extend import argument, report_errors
+from simkit.extend import argument, counted, report_errors
 from simkit_terminal.cli.terminal import completion
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def list_(
 
 
 def _count_text(items: Sequence[object], noun: str) -> str:
-    return f"{len(items)} {noun}{'' if len(items) == 1 else 's'}"
+    return counted(len(items), noun)
 
 
 @model.command()

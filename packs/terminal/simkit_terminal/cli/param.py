@@ -22,7 +22,7 @@ from simkit.cli.terminal.output import (
 )
 from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name
 from simkit.errors import InputError
-from simkit.extend import argument, option, report_errors
+from simkit.extend import argument, counted, option, report_errors
 from simkit_terminal.cli.terminal import completion
 from simkit_terminal.cli.terminal.global_parameters import GlobalParameters, read_parameter_tree
 from simkit_terminal.cli.terminal.live_command import Ros2Command, live_command
@@ -138,7 +138,7 @@ def set_(
             if name not in parameters.nodes:
                 return _report_global([(name, plain_yaml(pairs[0]))], parameters, json_)
     if len(pairs) % 2:
-        text = f"found {len(pairs)} words; expected pairs: name value [name value ...]"
+        text = f"found {counted(len(pairs), 'word')}; expected pairs: name value [name value ...]"
         raise InputError("SK-CLI-031", f"the parameters: {text}")
     values = list(zip(pairs[::2], [parse_parameter_value(text) for text in pairs[1::2]], strict=True))
     with connect_to_simulation(sim) as client:

@@ -23,7 +23,7 @@ from simkit.cli.terminal.output import (
 )
 from simkit.cli.terminal.topic_sources import open_source
 from simkit.errors import InputError, TransformError
-from simkit.extend import option, report_errors
+from simkit.extend import counted, option, report_errors
 from simkit_terminal.cli.terminal import completion
 
 if TYPE_CHECKING:
@@ -97,7 +97,7 @@ def draw_frames(
         edges = len([child for child, parent in parents.items() if parent])
         print_json({"output": str(output), "frames": len(parents), "edges": edges})
     else:
-        print_line(f"{output}: {len(parents)} frame{'' if len(parents) == 1 else 's'}")
+        print_line(f"{output}: {counted(len(parents), 'frame')}")
 
 
 @tf.command()

@@ -12,7 +12,7 @@ from simkit.cli.terminal import options
 from simkit.cli.terminal.output import JsonObject, print_json, print_line, print_name
 from simkit.cli.terminal.topic_sources import TopicEndpoint, TopicEntry, open_source
 from simkit.errors import MessageError
-from simkit.extend import argument
+from simkit.extend import argument, counted
 from simkit.msgs.topic_names import is_hidden
 from simkit_terminal.cli.terminal import completion
 from simkit_terminal.cli.terminal.live_command import live_command
@@ -58,7 +58,7 @@ def list_(
                 number = len(entry.publishers if end == "publisher" else entry.subscribers)
                 if number:
                     types = ", ".join(entry.types)
-                    print_name(f" * {entry.name} [{types}] {number} {end}{'s' if number > 1 else ''}")
+                    print_name(f" * {entry.name} [{types}] {counted(number, end)}")
             print_line()
     else:
         for entry in entries:

@@ -12,7 +12,7 @@ from simkit.cli.terminal import options
 from simkit.cli.terminal.json_report import add_diagnostics
 from simkit.cli.terminal.output import print_diagnostics, print_message, stdout_console
 from simkit.errors import InputError, SimkitError
-from simkit.extend import GivenOptions, add_to_report, option, report_errors, with_run_options
+from simkit.extend import GivenOptions, add_to_report, counted, option, report_errors, with_run_options
 from simkit.writers.atomic_output import check_file
 
 
@@ -70,4 +70,6 @@ def bundle(
         add_to_report(bundle=str(output), bytes=size, state=state, time=sim.time, commands=recorder.journal.count)
         add_to_report(failure=None if failure is None else failure.text)
         stdout_console().print(f"state {state}")
-        stdout_console().print(f"{output}: {sim.time:g} s, {recorder.journal.count} commands, {size / 1000:.0f} kB")
+        stdout_console().print(
+            f"{output}: {sim.time:g} s, {counted(recorder.journal.count, 'command')}, {size / 1000:.0f} kB"
+        )

@@ -13,7 +13,7 @@ from typer import Option
 from simkit.cli.terminal import options
 from simkit.cli.terminal.output import JsonObject, print_json, printable, stdout_console
 from simkit.errors import InputError
-from simkit.extend import add_to_report, argument, option, report_errors
+from simkit.extend import add_to_report, argument, counted, option, report_errors
 from simkit.writers.atomic_output import current_umask, remove_abandoned, unfinished_folder
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def _print_result(result: ReplayResult, seconds: float) -> None:
     manifest = result.manifest
     print_ = stdout_console().print
     title = f"{manifest.name}: replayed {result.time:g} s"
-    print_(printable(f"{title} with {manifest.commands} commands in {seconds:.1f} s"))
+    print_(printable(f"{title} with {counted(manifest.commands, 'command')} in {seconds:.1f} s"))
     for text in manifest.missing:
         print_(printable(f"note: {text}"), style="yellow")
     for name, (recorded, current) in result.machine.items():
@@ -78,12 +78,13 @@ def _print_result(result: ReplayResult, seconds: float) -> None:
     if result.is_same:
         print_(f"state {result.state}")
         print_(
-            f"identical: state, and {result.messages} messages of the last seconds on {len(manifest.streams)} topics"
+            f"identical: state, and {counted(result.messages, 'message')} of the last seconds "
+            f"on {counted(len(manifest.streams), 'topic')}"
         )
     else:
         for text in result.refused[:5]:
             print_(printable(f"refused: {text}"), style="yellow")
-        print_(f"not identical: {len(result.differences)} differences", style="bold red")
+        print_(f"not identical: {counted(len(result.differences), 'difference')}", style="bold red")
 
 
 def _result_dict(result: ReplayResult) -> JsonObject:
@@ -110,7 +111,7 @@ def _extract(bundle: Bundle, folder: Path) -> None:
         raise InputError("SK-CLI-016", f"cannot write {folder}: {error.strerror or error}") from None
     world, count = folder / bundle.manifest.run.world, len(bundle.manifest.files)
     add_to_report(world=str(world), files=count)
-    stdout_console().print(printable(f"{world} and {count - 1} other files"))
+    stdout_console().print(printable(f"{world} and {counted(count - 1, 'other file')}"))
 
 
 def _extract_whole(bundle: Bundle, folder: Path) -> None:
@@ -148,14 +149,14 @@ def _print_contents(bundle: Bundle, *, json_: bool) -> None:
         print_(printable(f"failed: {end.failure.text}"), style="red")
     for text in manifest.missing:
         print_(printable(f"note: {text}"), style="yellow")
-    print_(f"{len(manifest.files)} files, {sum(f['size'] for f in manifest.files.values()) / 1000:.0f} kB")
+    print_(f"{counted(len(manifest.files), 'file')}, {sum(f['size'] for f in manifest.files.values()) / 1000:.0f} kB")
     for name in manifest.code:
-        print_(printable(f"code  {name}  ({manifest.files[name]['size']} bytes)"), style="yellow")
+        print_(printable(f"code  {name}  ({counted(manifest.files[name]['size'], 'byte')})"), style="yellow")
     for topic, stream in manifest.streams.items():
         print_(printable(f"last seconds  {topic}  {stream['count']} × {stream['type']}"))
     for number, entry in enumerate(bundle.commands()):
         if number == _MOST:
-            print_(f"… {manifest.commands - _MOST} more commands")
+            print_(f"… {counted(manifest.commands - _MOST, 'more command')}")
             break
         arguments = {k: v for k, v in entry.items() if k not in ("steps", "tick", "do", "served")}
-        print_(printable(f"after {entry['steps']} steps  {entry['do']}  {json.dumps(arguments):.160}"))
+        print_(printable(f"after {counted(entry['steps'], 'step')}  {entry['do']}  {json.dumps(arguments):.160}"))

@@ -69,7 +69,7 @@ def test_a_scenario_is_packed_and_repeated(folder: Path) -> None:
     )
     assert simkit("bundle", "slide.yaml", "-o", "run.zip").exit_code == 0
     listed = simkit("replay", "run.zip", "--list").stdout
-    assert "slide: 0.3 s, seed 4, 1 commands" in listed
+    assert "slide: 0.3 s, seed 4, 1 command" in listed
     assert "sled.self_collide=true" in listed
     assert "/model/sled/cmd_vel" in listed
     assert simkit("replay", "run.zip").exit_code == 0

@@ -10,6 +10,7 @@ import numpy as np
 
 from simkit import Pose
 from simkit.errors import SimkitError
+from simkit.extend import counted
 from simkit.msgs import Message
 from simkit.pose import IDENTITY
 from simkit_view.displays.drawing import Arrays, Colour, Drawing, Floats
@@ -141,7 +142,7 @@ def pose_of(message: Message, drawing: Drawing) -> Pose | None:
 def pose_rows(poses: Sequence[Message], most: int, drawing: Drawing) -> tuple[Floats, Floats]:
     """Return positions, shape (n, 3), and rotation matrices, shape (n, 3, 3), of poses; of too many, every n-th."""
     if (step := 1 + (len(poses) - 1) // most) > 1:
-        drawing.tell(f"of {len(poses)} poses every {step}th is drawn")
+        drawing.tell(f"of {counted(len(poses), 'pose')} every {step}th is drawn")
         poses = poses[::step]
     rows = np.array(
         [(p.position.x, p.position.y, p.position.z, q.w, q.x, q.y, q.z) for p in poses for q in (p.orientation,)],

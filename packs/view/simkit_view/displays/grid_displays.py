@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit import Pose
+from simkit.extend import counted
 from simkit.msgs import Message
 from simkit_view.displays.display import DisplayTools, NewestMessage, pose_of
 from simkit_view.displays.drawing import Drawing
@@ -43,7 +44,7 @@ class GridDisplay(NewestMessage):
         cells = np.asarray(grid.data, np.int8).reshape(-1)
         self._cells, self._problem = None, ""
         if cells.size != rows * columns:
-            self._problem = f"the grid has {cells.size} cells; its size is {columns} x {rows}"
+            self._problem = f"the grid has {counted(cells.size, 'cell')}; its size is {columns} x {rows}"
         elif not (math.isfinite(grid.info.resolution) and grid.info.resolution > 0):
             self._problem = f"the resolution {grid.info.resolution:g} is not above 0"
         else:
@@ -72,7 +73,9 @@ class GridDisplay(NewestMessage):
             return
         factor = -(-max(cells.shape) // _LARGEST)
         if factor > 1:
-            drawing.tell(f"the grid of {cells.shape[1]} x {cells.shape[0]} cells is drawn {factor} times coarser")
+            drawing.tell(
+                f"the grid of {cells.shape[1]} x {counted(cells.shape[0], 'cell')} is drawn {factor} times coarser"
+            )
             cells = _coarser(cells, factor)
         colours = "costmap" if "costmap" in self.topic else "map"
         drawing.grid(at, cells, message.info.resolution * factor, Pose((0.0, 0.0, _LIFT)) @ origin, colours)
@@ -96,7 +99,7 @@ class GridCellsDisplay(NewestMessage):
         size = float(message.cell_width), float(message.cell_height), 0.002
         cells = message.cells[:_MOST_CELLS]
         if len(cells) < len(message.cells):
-            drawing.tell(f"only {_MOST_CELLS} of {len(message.cells)} cells are drawn")
+            drawing.tell(f"only {_MOST_CELLS} of {counted(len(message.cells), 'cell')} drawn")
         rows = np.zeros((len(cells), 14))
         rows[:, :3] = np.array([(c.x, c.y, c.z + _LIFT) for c in cells], np.float64).reshape(-1, 3)
         rows[:, 3], rows[:, 7:10], rows[:, 10:] = 1.0, size, _CELLS

@@ -11,6 +11,7 @@ import numpy as np
 
 from simkit import Pose
 from simkit.errors import SimkitError
+from simkit.extend import counted
 from simkit.linear_algebra import norm
 from simkit.msgs import Message
 from simkit.pose import IDENTITY
@@ -215,7 +216,7 @@ def _draw_triangles(
 ) -> None:
     points = _points(message)
     if len(points) % 3:
-        drawing.tell(f"a triangle list has {len(points)} points, which is not a multiple of 3")
+        drawing.tell(f"a triangle list has {counted(len(points), 'point')}, which is not a multiple of 3")
         return
     colours = _colours(message, colour, len(points))
     if 3 * len(message.colors) == len(message.points):

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit import Pose
+from simkit.extend import counted
 from simkit.linear_algebra import det, dot, norm
 from simkit.matrix_decompositions import eigh
 from simkit.msgs import Message
@@ -56,7 +57,7 @@ class PathDisplay(NewestMessage):
 def _thinned(poses: Sequence[Message], drawing: Drawing) -> Sequence[Message]:
     step = 1 + (len(poses) - 1) // _MOST_PATH
     if step > 1:
-        drawing.tell(f"of {len(poses)} poses every {step}th is drawn")
+        drawing.tell(f"of {counted(len(poses), 'pose')} every {step}th is drawn")
     return poses[::step]
 
 

@@ -12,6 +12,7 @@ from simkit import Pose, msgs
 from simkit.bridges.live.request_fields import RequestRefused, checked_value, find_handler, read_field
 from simkit.bridges.live.requests import make_steps, set_pace, set_parameter
 from simkit.compiler.standing_models import TOLERANCE, standing_lift
+from simkit.extend import counted
 from simkit.msgs import absolute_name
 from simkit_view.displays.interactive_marker_display import InteractiveMarkerDisplay
 from simkit_view.view.camera_pointing import point_camera
@@ -92,7 +93,7 @@ class Call:
         """Return an argument that is a list of finite numbers."""
         values = self.arg(name, list)
         if len(values) != count:
-            raise RequestRefused(f"{name!r} must be a list of {count} finite numbers, got {len(values)}")
+            raise RequestRefused(f"{name!r} must be a list of {counted(count, 'finite number')}, got {len(values)}")
         return [checked_value(value, f"{name}[{number}]", float) for number, value in enumerate(values)]
 
     def value(self, name: str) -> object:

@@ -25,6 +25,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.errors import MessageError
+from simkit.extend import counted
 from simkit.msgs import type_store
 from simkit.msgs.definition_parser import ARRAY, BASE, NAME, FieldNode
 from simkit.msgs.message_text import NUMBER_CODES, field_nodes
@@ -57,7 +58,7 @@ def read_values(data: bytes, type_name: str, *, is_binary: bool = False) -> dict
     except (struct.error, UnicodeDecodeError, ValueError) as error:
         raise MessageError(f"{type_name}: the data are damaged: {error}") from None
     if not 0 <= len(data) - end <= _MOST_PADDING:
-        raise MessageError(f"{type_name}: found {len(data)} bytes; expected {end}")
+        raise MessageError(f"{type_name}: found {counted(len(data), 'byte')}; expected {end}")
     return values
 
 

@@ -17,6 +17,7 @@ from simkit.bridges.bridge_program import begin, run_until_end, tell
 from simkit.bridges.live.protocol import LARGEST_IN, JsonObject, LiveClosed, LiveError
 from simkit.bridges.live.request_fields import CODE, client_text
 from simkit.bridges.simulation_link import DEPTH, Failed, SimulationLink, Then
+from simkit.extend import counted
 from simkit_view.web.access import has_token, is_known_origin, is_token, quiet_logger, split_address
 from simkit_view.web.web_process import TOKEN_VARIABLE
 
@@ -147,7 +148,7 @@ class WebLink(SimulationLink):
         if self._closed is not None:
             raise self._closed
         if len(frame) > LARGEST_IN:
-            raise LiveError("SK-LIVE-008", f"the message has {len(frame)} bytes; the limit is {LARGEST_IN}")
+            raise LiveError("SK-LIVE-008", f"the message has {counted(len(frame), 'byte')}; the limit is {LARGEST_IN}")
         self._outbox += frame
         if len(self._outbox) == len(frame):
             self._flush()

@@ -205,7 +205,7 @@ NAN = float("nan")
 INVALID = [
     ("nav_msgs/msg/Path", {"header": MAP, "poses": [{"pose": {"position": {"x": NAN}}}] * 2}, "NaN"),
     ("nav_msgs/msg/Path", {"header": {"frame_id": ""}, "poses": []}, "names no frame"),
-    ("nav_msgs/msg/OccupancyGrid", {"header": MAP, "info": {"width": 3, "height": 2}, "data": [1]}, "1 cells"),
+    ("nav_msgs/msg/OccupancyGrid", {"header": MAP, "info": {"width": 3, "height": 2}, "data": [1]}, "1 cell"),
     ("nav_msgs/msg/OccupancyGrid", {"header": MAP, "info": {"width": 1, "height": 1}, "data": [1]}, "resolution"),
     ("visualization_msgs/msg/Marker", marker(1, color={"r": 1.0}), "transparent"),
     ("visualization_msgs/msg/Marker", marker(1, scale={"x": 1.0, "y": 0.0, "z": 1.0}), "has a 0"),

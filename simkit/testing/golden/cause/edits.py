@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TypeGuard
 
+from simkit.number_text import counted
 from simkit.testing.golden.cause.first_tick import distinct_digits
 from simkit.testing.golden.cause.moved_bodies import Motion, find_motions, local_path
 from simkit.testing.golden.compare.difference import CauseKind
@@ -111,7 +112,9 @@ def _components(golden: list[object], run: list[object], last: str, unit: str) -
     differing = [i for i, (a, b) in enumerate(zip(golden, run, strict=True)) if a != b]
     if len(differing) > 6:
         first = differing[0]
-        return f"{len(differing)} of {len(golden)} numbers, the first {_pair(golden[first], run[first], unit)}"
+        return (
+            f"{len(differing)} of {counted(len(golden), 'number')}, the first {_pair(golden[first], run[first], unit)}"
+        )
     return ", ".join(f"{names[i] if i < len(names) else f'[{i}]'} {_pair(golden[i], run[i], unit)}" for i in differing)
 
 
@@ -351,7 +354,7 @@ def _group_equal_changes(edits: list[Edit], golden: WorldValues, run: WorldValue
             continue
         every = tuple(e for c in alike for e in c.edits)
         shown = list_names([c.words for c in alike], 3)
-        words = f"{key[0]} × {key[1]:g} in {len(every)} places: {shown}"
+        words = f"{key[0]} × {key[1]:g} in {counted(len(every), 'place')}: {shown}"
         grouped.append(replace(alike[0], words=words, edits=every))
     return grouped
 
@@ -479,7 +482,7 @@ def _change(units: list[list[Edit]], run: WorldValues) -> Change:
     words = ", ".join(inner)
     owners = list(dict.fromkeys(u[0].owner for u in units))
     if len(owners) > 1:
-        words = f"{words} in {len(owners)} places: {list_names([entity_title(o) for o in owners])}"
+        words = f"{words} in {counted(len(owners), 'place')}: {list_names([entity_title(o) for o in owners])}"
     else:
         same = list_names([attribute_name(u[0].attribute) for u in units[1:]])
         words = head + words + (f"; the same for {same}" if same else "")

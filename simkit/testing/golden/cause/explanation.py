@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from simkit import progress
+from simkit.number_text import counted
 from simkit.packs import is_shipped_file
 from simkit.run_spec import RunSpec
 from simkit.testing.golden.cause.edits import Change, find_changes, list_names, single_value_text, values_text
@@ -144,7 +145,7 @@ def _engine_change(several: list[Edit]) -> Change:
     if len(several) == 1:
         words = f"{part}: {words}"
     else:
-        words += f", in {len(several)} places: {list_names([e.path.rpartition(' ')[0] for e in several])}"
+        words += f", in {counted(len(several), 'place')}: {list_names([e.path.rpartition(' ')[0] for e in several])}"
     # no edits: the compiled model is built again for every run, so its fields cannot be restored
     return Change("model", words, first.path, a, b, "", ())
 

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from simkit.elementary_functions import arctan2
 from simkit.linear_algebra import norm
+from simkit.number_text import counted
 from simkit.run_spec import Tolerance
 from simkit.testing.golden.compare.difference import Difference
 from simkit.testing.golden.compare.tolerances import (
@@ -140,7 +141,7 @@ def _duration_text(
         return f" at {time_text(terms.time(first))}, in that message only"
     words = f" {'at' if rest == 1 else 'from'} {time_text(terms.time(first))}"
     if number < rest:
-        words += f", in {number} of {rest} messages"
+        words += f", in {number} of {counted(rest, 'message')}"
     if at > first and abs(largest) > 1.5 * abs(typical):
         words += f", up to {quantity_text(largest, terms.unit, error=error)} at {time_text(terms.time(at))}"
     return words

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from simkit.number_text import counted
 from simkit.run_spec import Tolerance
 from simkit.testing.golden.compare.difference import Difference
 from simkit.testing.golden.compare.number_columns import compare_column
@@ -182,7 +183,7 @@ def _changed_part_text(changed: npt.NDArray[np.bool_], mine: Pictures) -> str:
     box = [int(x.min()) * TILE, int(y.min()) * TILE]
     box += [min(mine.shape[1], (int(x.max()) + 1) * TILE), min(mine.shape[0], (int(y.max()) + 1) * TILE)]
     place = f"x {box[0]} to {box[2]}, y {box[1]} to {box[3]} px"
-    return f"{number} of {total} tiles changed ({place})"
+    return f"{number} of {counted(total, 'tile')} changed ({place})"
 
 
 def _brightness(pair: _CommonPictures, row: int) -> str:

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.diagnostics import Where
+from simkit.number_text import counted
 from simkit.testing.golden.compare.difference import Comparison, Difference, DifferenceKind
 from simkit.testing.golden.compare.streams import StreamPair, begin_time, compare_stream
 from simkit.testing.golden.compare.tolerances import joint_unit, quantity_text, time_text, tolerance_of
@@ -286,14 +287,14 @@ def _compare_topics(
             notes += result.notes
             comparison.topics += 1
             comparison.messages += len(mine.times_ns)
-    more = [f"{len(notes) - _NOTES} more notes"] if len(notes) > _NOTES else []
+    more = [counted(len(notes) - _NOTES, "more note")] if len(notes) > _NOTES else []
     comparison.notes += notes[:_NOTES] + more
 
 
 def _missing_topic(stream: Stream, is_new: bool, golden: RunRecord, run: RunRecord) -> Difference:
     """Describe a topic that only one of the two runs has."""
     number = len(stream.times_ns)
-    messages = f"{number} message{'' if number == 1 else 's'} of {stream.type_name}"
+    messages = f"{counted(number, 'message')} of {stream.type_name}"
     kind: DifferenceKind = "extra" if is_new else "missing"
     words = f"{stream.topic}: is new, {messages}" if is_new else f"{stream.topic}: is gone, {messages} are missing"
     renamed = [s.topic for t, s in run.streams.items() if t not in golden.streams and s.type_name == stream.type_name]
@@ -324,7 +325,7 @@ def _compare_ends(golden: RunRecord, run: RunRecord, comparison: Comparison) -> 
         words += f"; the golden run with “{golden.end}” at t = {ticks[0] * golden.states.timestep:g} s"
         comparison.differences.append(Difference("", "", "end", time, math.nan, "", words, "the same end"))
     elif ticks[0] != ticks[1] and golden.states.timestep == run.states.timestep:
-        words = f"the run took {ticks[1]} steps, the golden run {ticks[0]}"
+        words = f"the run took {counted(ticks[1], 'step')}, the golden run {ticks[0]}"
         size = float(abs(ticks[1] - ticks[0]))
         comparison.differences.append(Difference("", "", "end", time, size, "steps", words, "as many steps"))
 
@@ -336,7 +337,7 @@ def _compare_worlds(golden: RunRecord, run: RunRecord, found: Comparison) -> Non
     leaves = sorted(path for path in common if not _is_same_value(golden.leaves[path], run.leaves[path]))
     alone = sorted(golden.leaves.keys() ^ run.leaves.keys()) if golden.leaves and run.leaves else []
     if other_version and alone:
-        words = f"{len(alone)} values of the world exist in only one version of simkit: {_listed(alone)}"
+        words = f"{counted(len(alone), 'value')} of the world exist in only one version of simkit: {_listed(alone)}"
         found.notes.append(words)
         alone = []
     names = sorted(golden.sources.keys() | run.sources.keys())
@@ -353,8 +354,7 @@ def _compare_worlds(golden: RunRecord, run: RunRecord, found: Comparison) -> Non
 
 
 def _unrecorded_difference(what: str, count: int, path: str, text: str) -> Difference:
-    places = "place" if count == 1 else "places"
-    words = f"{what} changed in {count} {places}, but no recorded output differs: {text}"
+    words = f"{what} changed in {counted(count, 'place')}, but no recorded output differs: {text}"
     return Difference("", path, "model", 0.0, math.nan, "", words, "the same world (model: false allows changes)")
 
 

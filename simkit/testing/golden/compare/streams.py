@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from simkit.diagnostics import shorten
 from simkit.msgs.field_units import unit_of
+from simkit.number_text import counted
 from simkit.run_spec import RunSpec, Tolerance
 from simkit.testing.golden.compare.difference import Difference, DifferenceKind
 from simkit.testing.golden.compare.number_columns import compare_column, compare_orientation, quaternion_paths
@@ -63,7 +64,11 @@ def _first_time_difference(
     golden: Stream, run: Stream, same: int, rates: tuple[float | None, float | None]
 ) -> Difference:
     a, b, topic = golden.times_ns, run.times_ns, run.topic
-    counts = f"{len(a)} messages became {len(b)}" if len(a) != len(b) else f"{len(a)} messages as before"
+    counts = (
+        f"{counted(len(a), 'message')} became {len(b)}"
+        if len(a) != len(b)
+        else f"{counted(len(a), 'message')} as before"
+    )
     kind: DifferenceKind = "count" if len(a) != len(b) else "time"
     size = float(abs(len(b) - len(a))) if kind == "count" else abs(float(b[same] - a[same])) * 1e-9
     unit = "messages" if kind == "count" else "s"
@@ -71,7 +76,7 @@ def _first_time_difference(
         words = f"{rates[0]:.4g} Hz became {rates[1]:.4g} Hz: {counts}"
         kind, size, unit = "count", abs(rates[1] - rates[0]), "Hz"
     elif not len(b) or not len(a):
-        words = f"{'no messages' if not len(b) else f'{len(b)} messages'} instead of {len(a) or 'none'}"
+        words = f"{counted(len(b), 'message') if len(b) else 'no messages'} instead of {len(a) or 'none'}"
     elif same == len(b):
         words = f"ends at {_time_text(b[-1])}: {counts}"
     elif same == len(a):
@@ -312,7 +317,7 @@ def _compare_texts(pair: StreamPair, count: int) -> Ranked:
         time = float(run.times_ns[first]) * 1e-9
         words += f" {'at' if len(apart) == 1 else 'from'} {time_text(time)}"
         if len(apart) < rest:
-            words += f", in {len(apart)} of {rest} messages"
+            words += f", in {len(apart)} of {counted(rest, 'message')}"
         difference = Difference(run.topic, path, "text", time, math.nan, "", words, "the same text", first)
         ranked.append((math.inf, difference))
     return ranked
@@ -376,8 +381,9 @@ def statistic_text(
     """
     unit = unit_of(run.type_name, path)
     place = f"[{deviance.component}]" if golden.mean.size > 1 else ""
-    counts = f"{other.count}" if other.count == golden.count else f"{golden.count} and {other.count}"
-    samples = f"in {counts} samples"
+    samples = f"in {counted(other.count, 'sample')}"
+    if other.count != golden.count:
+        samples = f"in {golden.count} and {other.count} samples"
     a, b = value_text(deviance.golden, unit, 4), value_text(deviance.run, unit, 4)
     size, allowed = abs(deviance.run - deviance.golden), ""
     if deviance.what == "count":

@@ -10,6 +10,7 @@ from typing import Final, TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from simkit.number_text import counted
 from simkit.recording.charts.page_chart import PageChart
 from simkit.recording.charts.series import Series
 from simkit.testing.golden.compare.difference import Difference, Verdict
@@ -202,7 +203,9 @@ def _noise_figure(difference: Difference, golden: NoiseStatistics, run: NoiseSta
         label = f"Allan deviation{unit}"
         parts.append(PageChart(lines, label, "averaging time [s]", label, is_log=True))
     heads = ["component", f"golden mean ± deviation{unit}", "run"]
-    return PlotFigure(difference.words, f"{golden.count} and {run.count} samples of the noise", parts, heads, rows)
+    return PlotFigure(
+        difference.words, f"{golden.count} and {counted(run.count, 'sample')} of the noise", parts, heads, rows
+    )
 
 
 def _worst_component(golden: NoiseStatistics, run: NoiseStatistics) -> int | None:
@@ -331,7 +334,11 @@ def _tile_text(golden: Pictures, run: Pictures, index: int) -> str:
     if index >= min(len(golden.tiles), len(run.tiles)) or golden.tiles.shape[1:] != run.tiles.shape[1:]:
         return ""
     differing = golden.tiles[index] != run.tiles[index]
-    return f"; {int(differing.sum())} of {differing.size} tiles of the whole picture differ" if differing.size else ""
+    return (
+        f"; {int(differing.sum())} of {counted(differing.size, 'tile')} of the whole picture differ"
+        if differing.size
+        else ""
+    )
 
 
 def _downsample(image: Array) -> Array:

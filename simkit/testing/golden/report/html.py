@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import shorten
 from simkit.msgs.field_units import unit_of
+from simkit.number_text import counted
 from simkit.recording.charts.page_chart import PageChart, page_chart_svg
 from simkit.testing.golden.compare.difference import Cause, Comparison, Verdict
 from simkit.testing.golden.compare.tolerances import allowed_text as tolerance_text
@@ -114,7 +115,7 @@ def report_page(verdicts: Sequence[Verdict], *, bless: str = _BLESS) -> str:
     """Return the page as HTML text that is valid XML too."""
     ordered = sorted(verdicts, key=lambda verdict: verdict.passed)
     failed = sum(not verdict.passed for verdict in verdicts)
-    all_ = f"{len(verdicts)} golden run" + ("" if len(verdicts) == 1 else "s")
+    all_ = counted(len(verdicts), "golden run")
     title = f"{failed} of {all_} differ" + ("s" if failed == 1 else "") if failed else f"{all_} unchanged"
     views, plots = [], _ALL_PLOTS
     for number, verdict in enumerate(ordered):
@@ -167,14 +168,16 @@ def _compared_rows(verdict: Verdict) -> Iterator[_ComparedRow]:
     is_exact = verdict.comparison.tier == "exact"
     states = golden.states
     count = f"{len(states.ticks)} stored"
-    quantities = f"{len(states.names)} quantities" + (", and the hash of the last state" if states.digest else "")
+    quantities = counted(len(states.names), "quantity", "quantities") + (
+        ", and the hash of the last state" if states.digest else ""
+    )
     tolerance = "the same bits" if is_exact else "tolerances by unit"
     allowed_states = tolerance if run.scenario.state else "not compared (state: false)"
     yield _ComparedRow("physics states", "", count, quantities, allowed_states)
     for topic in sorted(golden.streams.keys() & run.streams.keys()):
         stream = golden.streams[topic]
         fields = [*stream.columns, *stream.words, *stream.statistics]
-        what = f"{len(fields)} field{'' if len(fields) == 1 else 's'}" + (" and images" if stream.pictures else "")
+        what = counted(len(fields), "field") + (" and images" if stream.pictures else "")
         allowed = "the same bits" if is_exact else _tolerances(verdict, stream)
         yield _ComparedRow(topic, stream.type_name, str(len(stream.times_ns)), what, allowed)
 

@@ -7,6 +7,7 @@ import textwrap
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Final
 
+from simkit.number_text import counted
 from simkit.testing.golden.compare.difference import Cause, Comparison, Difference, Explanation, Verdict
 from simkit.testing.junit import JunitCase
 
@@ -188,7 +189,7 @@ def _wrap_lines(label: str, text: str, width: int, indent: int) -> list[str]:
 
 
 def _count(number: int, what: str) -> str:
-    return f"{number} {what}" + ("" if number == 1 else "s")
+    return counted(number, what)
 
 
 def junit_cases(verdicts: Verdict | Iterable[Verdict]) -> list[JunitCase]:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from simkit import Params
-from simkit.extend import SharedByCopies, Vector
+from simkit.extend import SharedByCopies, Vector, counted
 from simkit.plugins.ros_parameter_block import read_numbers
 
 _INFINITY = math.inf
@@ -168,7 +168,7 @@ def _wheels(params: Params, is_ros_1: bool) -> tuple[tuple[str, ...], tuple[str,
             hint = f"list its joints: {key}: [wheel_{key.split('_')[0]}_joint]"
             params.error("SK-CONTROL-040", f"{key} names no wheel", hint)
     if left and right and len(left) != len(right):
-        message = f"{keys[0]} has {len(left)} and {keys[1]} has {len(right)} wheels; both sides need the same number"
+        message = f"{keys[0]} has {len(left)} and {keys[1]} has {counted(len(right), 'wheel')}; both sides need as many"
         params.error("SK-CONTROL-040", message)
     all_names = left + right
     for name in dict.fromkeys(n for n in all_names if all_names.count(n) > 1):

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, ClassVar, cast
 import numpy as np
 
 from simkit import Params, Pose, msgs
+from simkit.extend import counted
 from simkit.float_sum import float_sum
 from simkit.plugins.drives.odometry import COMMAND_TYPES, DeadReckoning, Motion
 from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, BodyTwist, odometry_message, transforms
@@ -160,7 +161,7 @@ def read_joints(params: Params, names: Sequence[str], counts: Sequence[int]) -> 
     joints = read_names(params, name, required=True, code="SK-CONTROL-041")
     if joints and len(joints) not in counts:
         allowed = " or ".join(map(str, counts))
-        params.error("SK-CONTROL-040", f"{name} names {len(joints)} joints; this controller needs {allowed}")
+        params.error("SK-CONTROL-040", f"{name} names {counted(len(joints), 'joint')}; this controller needs {allowed}")
     return joints
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit.extend import SharedByCopies, Vector
+from simkit.extend import SharedByCopies, Vector, counted
 
 if TYPE_CHECKING:
     from simkit_control.plugins.ros2_control.controller import Controller
@@ -57,7 +57,7 @@ class StiffLoops(SharedByCopies):
         if reduced:
             name, p, d, used_p, used_d, _ = reduced[0]
             needed = min(entry[-1] for entry in reduced)
-            others = f"; so would the gains of {len(reduced) - 1} other joints" if len(reduced) > 1 else ""
+            others = f"; so would the gains of {counted(len(reduced) - 1, 'other joint')}" if len(reduced) > 1 else ""
             message = (
                 f"controller {controller.name!r}: the gains p = {p:g} and d = {d:g} of joint {name!r} would oscillate "
                 f"at a step of {step * 1e3:g} ms{others}; p = {used_p:.3g} and d = {used_d:.3g} are used"

@@ -10,7 +10,7 @@ import numpy as np
 
 from simkit import Pose, msgs
 from simkit.errors import InputError
-from simkit.extend import Vector
+from simkit.extend import Vector, counted
 from simkit.pose import IDENTITY
 from simkit_control.plugins.ros2_control.head_pointing import frame_pose
 from simkit_motion.plugins.move_group.error_codes import Code, PlanningFailed
@@ -86,7 +86,9 @@ def goal_positions(planner: Planner, group: Group, constraints: Message, frames:
     if len(joints) and not len(positions) and not len(turns):
         return [planner.joint_positions(joints)]
     if len(joints) or len(positions) > 1 or len(turns) > 1 or not (len(positions) or len(turns)):
-        counts = f"found {len(joints)} joint, {len(positions)} position and {len(turns)} orientation constraints"
+        counts = (
+            f"found {len(joints)} joint, {len(positions)} position and {counted(len(turns), 'orientation constraint')}"
+        )
         needed = "a goal needs joint constraints, or at most one position and one orientation constraint"
         raise PlanningFailed(Code.INVALID_GOAL_CONSTRAINTS, f"{needed}; {counts}")
     if len(positions):

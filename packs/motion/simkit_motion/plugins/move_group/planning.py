@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from simkit import msgs
-from simkit.extend import Vector, did_you_mean
+from simkit.extend import Vector, counted, did_you_mean
 from simkit.linear_algebra import matmul
 from simkit_motion.plugins.move_group.error_codes import Code, PlanningFailed
 from simkit_motion.plugins.move_group.group_model import GroupModel, Obstacle
@@ -118,7 +118,7 @@ def start_positions(robot: Model, state: Message) -> dict[str, float]:
     """
     names, values = list(state.joint_state.name), list(state.joint_state.position)
     if len(names) != len(values):
-        text = f"the robot state has {len(names)} names and {len(values)} positions"
+        text = f"the robot state has {len(names)} names and {counted(len(values), 'position')}"
         raise PlanningFailed(Code.INVALID_ROBOT_STATE, text)
     positions: dict[str, float] = {}
     for name, value in zip(names, values, strict=True):
@@ -347,5 +347,5 @@ def _checked_factor(factor: float, name: str) -> float:
 
 def _touching(pairs: Collection[tuple[str, str]]) -> str:
     listed = [" and ".join(pair) for pair in pairs]
-    more = f" and {len(listed) - 3} more pairs" if len(listed) > 3 else ""
+    more = f" and {counted(len(listed) - 3, 'more pair')}" if len(listed) > 3 else ""
     return ", ".join(listed[:3]) + more + " touch or are too close"

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from simkit import Pose, msgs
-from simkit.extend import SharedByCopies, did_you_mean
+from simkit.extend import SharedByCopies, counted, did_you_mean
 from simkit.linear_algebra import norm
 from simkit.pose import IDENTITY
 from simkit_motion.plugins.move_group.collision_shapes import shape_of_primitive, triangle_mesh, voxels
@@ -59,7 +59,7 @@ class SceneObject(SharedByCopies):
             ("planes", m.planes, m.plane_poses),
         ):
             if len(poses) not in (0, len(shapes)):
-                text = f"object {m.id!r} has {len(shapes)} {kind} and {len(poses)} poses"
+                text = f"object {m.id!r} has {len(shapes)} {kind} and {counted(len(poses), 'pose')}"
                 raise PlanningFailed(Code.INVALID_OBJECT_NAME, text)
             places = [pose_of_message(pose) for pose in poses] or [IDENTITY] * len(shapes)
             items = list(zip(shapes, places, strict=True))

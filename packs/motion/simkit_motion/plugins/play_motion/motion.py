@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from simkit import msgs
-from simkit.extend import SharedByCopies, Vector, Where
+from simkit.extend import SharedByCopies, Vector, Where, counted
 
 LARGEST_NUMBER: Final = 1e15
 """Largest time [s], position and velocity of a motion; the sums and quotients of larger ones would be infinite."""
@@ -115,8 +115,8 @@ def motion_fault(
     if not times:
         return "it has no points"
     if len(flat) != len(joints) * len(times):
-        counts = f"{len(joints)} joints at {len(times)} times"
-        return f"it has {len(flat)} positions, but {counts} need {len(joints) * len(times)}"
+        counts = f"{counted(len(joints), 'joint')} at {len(times)} times"
+        return f"it has {counted(len(flat), 'position')}, but {counts} need {len(joints) * len(times)}"
     bad = next((v for v in (*flat, *times, *velocities) if not math.isfinite(v)), None)
     if bad is not None:
         return f"it has a NaN or infinite number ({bad})"

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Final
 
 from simkit import Diagnostic
-from simkit.extend import Diagnostics, Where, did_you_mean
+from simkit.extend import Diagnostics, Where, counted, did_you_mean
 from simkit.plugins.ros_parameter_files import Entry, ParameterFile, read_parameter_file
 from simkit_motion.plugins.play_motion.motion import LARGEST_NUMBER, Motion, motion_fault, point_rows
 
@@ -180,7 +180,7 @@ def _points(
         _report_unknown(f"motion {key!r}, point {k}", point, _POINT_KEYS, diagnostics)
         positions = _numbers(point, "positions", f"point {k}")
         if len(positions) != width:
-            raise ValueError(f"point {k} has {len(positions)} positions for {width} joints")
+            raise ValueError(f"point {k} has {counted(len(positions), 'position')} for {width} joints")
         if "time_from_start" not in point:
             raise ValueError(f"point {k} needs 'time_from_start'")
         times.append(_number(point["time_from_start"], "time_from_start"))
@@ -188,7 +188,7 @@ def _points(
         if "velocities" in point:
             row = tuple(_numbers(point, "velocities", f"point {k}"))
             if len(row) != width:
-                raise ValueError(f"point {k} has {len(row)} velocities for {width} joints")
+                raise ValueError(f"point {k} has {counted(len(row), 'velocity', 'velocities')} for {width} joints")
             velocities.append(row)
     if velocities and len(velocities) != len(times):
         raise ValueError(f"{len(velocities)} of {len(times)} points have velocities; expected all or none")

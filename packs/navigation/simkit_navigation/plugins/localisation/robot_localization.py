@@ -12,7 +12,19 @@ import numpy as np
 
 from simkit import Params, Plugin, Pose, msgs
 from simkit.errors import ArgumentValueError, TransformError
-from simkit.extend import Options, OptionsOf, Vector, boolean, listens, number, offers, publishes, text, without_effect
+from simkit.extend import (
+    Options,
+    OptionsOf,
+    Vector,
+    boolean,
+    counted,
+    listens,
+    number,
+    offers,
+    publishes,
+    text,
+    without_effect,
+)
 from simkit.number_text import number_or_nan
 from simkit.plugins.drives.odometry_messages import ODOMETRY, TRANSFORMS, BodyTwist, odometry_message, transforms
 from simkit.pose import quat_from_rpy, quat_multiply
@@ -145,7 +157,7 @@ class EkfNode(Plugin):
         words = " ".join(item.value for item in items).replace(",", " ").split()
         if items and len(words) not in counts:
             expected = " or ".join(map(str, counts))
-            items[0].error("SK-PARAM-002", f"found {len(words)} values in {name!r}; expected {expected}")
+            items[0].error("SK-PARAM-002", f"found {counted(len(words), 'value')} in {name!r}; expected {expected}")
             return items[0], []
         return (items[0] if items else None), words
 

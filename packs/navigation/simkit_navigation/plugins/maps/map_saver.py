@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from simkit import WorldPlugin
 from simkit.errors import SimkitError
-from simkit.extend import Options, OptionsOf, SharedByCopies, listens, number, offers, text
+from simkit.extend import Options, OptionsOf, SharedByCopies, counted, listens, number, offers, text
 from simkit.input_file import open_input
 from simkit.save_path import SAVE_PATH_VARIABLE, allowed_folder
 from simkit_navigation.plugins.navigation.planar_pose import yaw_of
@@ -152,7 +152,7 @@ def _cells(message: msgs.OccupancyGrid) -> npt.NDArray[np.int8]:
     info, origin = message.info, message.info.origin
     data = np.asarray(message.data, np.int8)
     if not data.size or data.size != info.height * info.width:
-        raise MapNotSaved(f"the map has {data.size} cells; its size is {info.width} × {info.height}")
+        raise MapNotSaved(f"the map has {counted(data.size, 'cell')}; its size is {info.width} × {info.height}")
     numbers = (info.resolution, origin.position.x, origin.position.y, yaw_of(origin.orientation))
     if not np.isfinite(numbers).all() or info.resolution <= 0.0:
         raise MapNotSaved(f"resolution {info.resolution:g} and origin must be finite, the resolution above 0 [m]")

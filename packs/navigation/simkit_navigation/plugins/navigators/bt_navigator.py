@@ -17,6 +17,7 @@ from simkit.extend import (
     Options,
     OptionsOf,
     SharedByCopies,
+    counted,
     did_you_mean,
     integer,
     number,
@@ -377,7 +378,7 @@ class BtNavigator(NodeParameters):
         code, reason = task.tree.failure
         count = task.tree.recoveries
         if count:
-            tried = "1 recovery" if count == 1 else f"{count} recoveries"
+            tried = "1 recovery" if count == 1 else counted(count, "recovery", "recoveries")
             reason = f"{reason or 'the behaviour tree has failed'}; {tried} did not help"
         self._abort(task, reason or "the behaviour tree has failed", self._error_code(task.tree) or code)
 

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from simkit import Params, msgs
-from simkit.extend import Options, OptionsOf, block, boolean, did_you_mean
+from simkit.extend import Options, OptionsOf, block, boolean, counted, did_you_mean
 from simkit.plugins.one_time_warnings import are_usable
 from simkit.plugins.ros_parameter_files import Entry, ParameterFile
 from simkit_control.plugins.ros2_control.control_plugin import ControlOptions, GazeboRosControl
@@ -300,7 +300,7 @@ class BaxterControl(GazeboRosControl):
         if self._is_disabled("a joint command"):
             return
         if len(names) != len(values):
-            what = f"a joint command with {len(names)} names and {len(values)} values is ignored"
+            what = f"a joint command with {len(names)} names and {counted(len(values), 'value')} is ignored"
             self._once.left_out("length", what, "give one value for each name")
             return
         if not are_usable(*values):

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from simkit.cli.terminal.output import JsonObject, JsonValue
 from simkit.errors import InputError, MessageError
+from simkit.extend import counted
 from simkit.yaml_reader import NotYaml, read_yaml
 from simkit_terminal.cli.terminal.message_arguments import parse_fields
 
@@ -62,7 +63,9 @@ def _assign(
     """Give the fields of a template their values in order; a text field has the word as it was typed."""
     if len(values) != len(template):
         names = ", ".join(template) or "none"
-        text = f"{what}: found {len(values)} values; {type_name} has {len(template)} fields: {names}"
+        text = (
+            f"{what}: found {counted(len(values), 'value')}; {type_name} has {counted(len(template), 'field')}: {names}"
+        )
         raise InputError("SK-CLI-031", text, help="give one value for each field, or a mapping '{field: value}'")
     fields: JsonObject = {}
     for number, ((name, default), value) in enumerate(zip(template.items(), values, strict=True)):

@@ -18,7 +18,7 @@ from simkit.cli.terminal import options
 from simkit.cli.terminal.output import JsonObject, print_json, print_line, print_note
 from simkit.cli.terminal.topic_sources import ReceivedMessage, Source, open_source
 from simkit.errors import InputError
-from simkit.extend import option
+from simkit.extend import counted, option
 from simkit.float_sum import float_sum
 from simkit_terminal.cli.terminal.named_endpoints import find_topic
 from simkit_terminal.cli.terminal.topic_echo import MessageFilter, compile_filter
@@ -122,7 +122,8 @@ class Bandwidth:
         rate, mean, low, high = (
             f"{n / size:.{digits}f} {unit}" for n in (per_second, *(statistics[k] for k in _SIZES))
         )
-        return f"{rate}/s from {statistics['messages']} messages\n\tMessage size mean: {mean} min: {low} max: {high}"
+        messages = counted(statistics["messages"], "message")
+        return f"{rate}/s from {messages}\n\tMessage size mean: {mean} min: {low} max: {high}"
 
 
 class Delays:
@@ -174,7 +175,9 @@ def _measure(
                 _print_values(meter, json_)
                 any_came = False
         if feed.lost > lost:
-            print_note(f"note: {feed.lost - lost} messages were dropped: they arrived faster than they were counted")
+            print_note(
+                f"note: {counted(feed.lost - lost, 'message')} dropped: they arrived faster than they were counted"
+            )
             lost = feed.lost
     if any_came or not feed.is_live:
         _print_values(meter, json_)

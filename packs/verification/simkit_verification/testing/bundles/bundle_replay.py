@@ -15,7 +15,7 @@ from typing import Final
 
 from simkit import Simulation
 from simkit.errors import InputError, PluginError, SimkitError
-from simkit.extend import SceneModel
+from simkit.extend import SceneModel, counted
 from simkit.recording import Recorder
 from simkit.recording.bags.reader import open_bag_to_read
 from simkit.runtime.engine.snapshot import state_hash
@@ -259,7 +259,7 @@ class _Replay:
         where = f"equal up to {same * step:g} s" if same else "no equal state is known"
         where += f", differs at {first * step:g} s" if first is not None else ", differs at the end"
         if sim.engine.steps != end.steps:
-            where += f"; the replay made {sim.engine.steps} steps, the run made {end.steps} steps"
+            where += f"; the replay made {counted(sim.engine.steps, 'step')}, the run made {counted(end.steps, 'step')}"
         return [f"state {state_hash(sim)[:16]}…, in the bundle {end.state[:16]}… ({where})"]
 
     def _streams(self, window: MessageWindow) -> tuple[list[str], int]:
@@ -308,4 +308,4 @@ def _first_difference(there: list[WindowMessage], here: list[WindowMessage]) -> 
             )
     last = min(len(there), len(here))
     rest = (there if len(there) > len(here) else here)[last:]
-    return (rest[0].time_ns if rest else 0), f"{len(here)} messages, in the bundle {len(there)}"
+    return (rest[0].time_ns if rest else 0), f"{counted(len(here), 'message')}, in the bundle {len(there)}"

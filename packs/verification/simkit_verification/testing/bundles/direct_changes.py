@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from simkit import Simulation
 from simkit.errors import MessageError
+from simkit.extend import counted
 from simkit.runtime.engine.physics_step import STALE
 from simkit.testing.run_record.record import Array
 from simkit_verification.testing.bundles.journal_values import decode_array, encode_value
@@ -157,7 +158,7 @@ def _apply_fields(sim: Simulation, changes: object) -> None:
 def _indices_and_values(changes: object, size: int) -> tuple[npt.NDArray[np.int64], Numbers]:
     """Decode the indices and values of changes to an array of a given size."""
     if not isinstance(changes, dict) or changes.get("size") != size:
-        raise MessageError(f"the recorded change does not fit this world, whose array has {size} numbers")
+        raise MessageError(f"the recorded change does not fit this world, whose array has {counted(size, 'number')}")
     indices, numbers = decode_array(changes.get("at")).astype(np.int64), decode_array(changes.get("values"))
     if indices.shape != numbers.shape or (indices < 0).any() or (indices >= size).any():
         raise MessageError("the recorded change has an index outside the array")

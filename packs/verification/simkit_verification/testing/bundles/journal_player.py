@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from simkit import DeferredResponse, Pose
 from simkit.errors import InputError, MessageError, SimkitError
+from simkit.extend import counted
 from simkit.msgs.goal_status import GoalStatus
 from simkit.run_spec import JsonMapping
 from simkit.runtime.communication.parameter import Parameter
@@ -105,7 +106,7 @@ class JournalPlayer:
         except (InputError, KeyError, ValueError, TypeError, AttributeError) as error:
             # the run may have raised the same error, caught it and continued
             text = str(error) if isinstance(error, SimkitError) else repr(error)
-            self.refused.append(f"{entry['do']} after {entry['steps']} steps: {text:.300}")
+            self.refused.append(f"{entry['do']} after {counted(entry['steps'], 'step')}: {text:.300}")
         finally:
             self._sim.control.pausing.is_served = was_served
 

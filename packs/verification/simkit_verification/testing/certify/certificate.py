@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
+from simkit.extend import counted
 from simkit.run_spec import JsonObject
 from simkit_verification.testing.certify.code_hints import CodeHint
 from simkit_verification.testing.certify.outcome import RunOutcome
@@ -182,7 +183,10 @@ def conclusion_text(certificate: Certificate) -> list[str]:
         lines += _difference_text(difference, also, is_first=number == 0)
     if certificate.passed:
         messages = sum(len(heard.digests) for heard in first.heard.values())
-        size = f"{first.ticks} steps ({certificate.duration:g} s), {messages} messages on {len(first.heard)} topics"
+        size = (
+            f"{counted(first.ticks, 'step')} ({certificate.duration:g} s), "
+            f"{counted(messages, 'message')} on {counted(len(first.heard), 'topic')}"
+        )
         lines.append(f"the same bits in {len(certificate.rows)} runs: {size}, seed {certificate.seed}")
         if first.end:
             lines.append(f"every run ended with: {first.end}")

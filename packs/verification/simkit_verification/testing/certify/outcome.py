@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.errors import SimkitError
+from simkit.extend import counted
 from simkit.testing import newly_left_out
 
 STACK_FILE: Final = "stack"
@@ -231,7 +232,7 @@ def _topic_differences(one: RunOutcome, other: RunOutcome) -> list[OutcomeDiffer
         if index is not None:
             words = f"{topic}: message {index + 1}" + (f" at {tick_text(tick, one)}" if tick is not None else "")
             if len(mine.digests) != len(theirs.digests) and not other.heard_from:
-                words += f"; {len(mine.digests)} messages became {len(theirs.digests)}"
+                words += f"; {counted(len(mine.digests), 'message')} became {len(theirs.digests)}"
             unequal.append(OutcomeDifference(words, tick, mine.owner))
     return unequal
 
@@ -258,7 +259,7 @@ def _ending_differences(one: RunOutcome, other: RunOutcome) -> list[OutcomeDiffe
         text = f"ended with: {other.end}" if other.end else f"ended regularly; the first run ended with: {one.end}"
         return [OutcomeDifference(text, min(one.ticks, other.ticks))]
     if one.ticks != other.ticks:
-        return [OutcomeDifference(f"ended after {other.ticks} steps, the first run after {one.ticks}", None)]
+        return [OutcomeDifference(f"ended after {counted(other.ticks, 'step')}, the first run after {one.ticks}", None)]
     return []
 
 

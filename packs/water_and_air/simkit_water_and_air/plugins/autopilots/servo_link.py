@@ -6,6 +6,7 @@ import socket
 from contextlib import suppress
 from typing import TYPE_CHECKING, Final
 
+from simkit.extend import counted
 from simkit_water_and_air.plugins.autopilots.autopilot_link import Address, AutopilotLink
 from simkit_water_and_air.plugins.autopilots.bounded_wait import WaitLimit
 from simkit_water_and_air.plugins.autopilots.servo_packet import LONGEST, ServoPacket, decode_servo_packet
@@ -102,7 +103,7 @@ class ServoLink(AutopilotLink):
             packet, newest = newest, self._receive(self.limit(0.0))
         self._misses = 0 if packet is not None else self._misses + 1
         if self._misses > self._most_misses:
-            self.lose(f"no packet in {self._misses} steps")
+            self.lose(f"no packet in {counted(self._misses, 'step')}")
         return packet
 
     def send(self, state: bytes) -> None:

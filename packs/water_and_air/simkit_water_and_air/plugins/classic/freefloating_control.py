@@ -17,6 +17,7 @@ from simkit.extend import (
     Options,
     OptionsOf,
     blocks,
+    counted,
     find_link,
     listens,
     number,
@@ -166,7 +167,7 @@ class FreefloatingControl(ModelPlugin):
         values = message.effort if len(message.effort) else message.position
         numbers = [float(value) for value in values]
         if len(names) != len(numbers):
-            text = f"{what} with {len(names)} names and {len(numbers)} numbers is ignored"
+            text = f"{what} with {len(names)} names and {counted(len(numbers), 'number')} is ignored"
             self._once.left_out(f"length {what}", text)
             return {}
         if not are_usable(*numbers):
@@ -250,7 +251,9 @@ def _read_map(element: Params) -> Vector:
     words = element.text("map").split()
     numbers = np.array([number_or_nan(word) for word in words])
     if len(numbers) != 6 or not np.isfinite(numbers).all():
-        message = f"found <map> with {len(words)} values; expected 6 finite numbers: force and torque for each newton"
+        message = (
+            f"found <map> with {counted(len(words), 'value')}; expected 6 finite numbers: force and torque per newton"
+        )
         element.block("map").error("SK-PARAM-002", message)
         return np.zeros(6)
     return numbers

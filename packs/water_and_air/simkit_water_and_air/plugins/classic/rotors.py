@@ -15,6 +15,7 @@ from simkit.extend import (
     Options,
     OptionsOf,
     boolean,
+    counted,
     find_named_link,
     listens,
     number,
@@ -73,7 +74,8 @@ class RotorsMotorModel(MulticopterMotorModel):
         if self.motor_number < len(speeds):
             self.command(float(speeds[self.motor_number]))
         else:
-            what = f"a message has {len(speeds)} angular velocities and none for motor {self.motor_number}"
+            velocities = counted(len(speeds), "angular velocity", "angular velocities")
+            what = f"a message has {velocities} and none for motor {self.motor_number}"
             self._once.left_out("short", f"{what}; the message is ignored")
 
 

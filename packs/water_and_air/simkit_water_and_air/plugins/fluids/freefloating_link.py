@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit.extend import Vector
+from simkit.extend import Vector, counted
 from simkit.linear_algebra import matmul
 from simkit.number_text import number_or_nan
 from simkit_water_and_air.plugins.fluids.added_mass import SmoothedAcceleration, own_inertia
@@ -174,7 +174,7 @@ def _read_added_mass(block: Params, density: float) -> Vector | None:
         return None
     numbers = [number_or_nan(word) for word in block.text("added_mass").split()]
     if len(numbers) != 36 or not all(map(math.isfinite, numbers)):
-        message = f"found <added_mass> with {len(numbers)} values; expected 36 finite numbers, row by row"
+        message = f"found <added_mass> with {counted(len(numbers), 'value')}; expected 36 finite numbers, row by row"
         block.block("added_mass").error("SK-PARAM-002", message)
         return None
     return density * np.array(numbers).reshape(6, 6)
@@ -185,7 +185,7 @@ def _numbers(block: Params, name: str, count: int = 3) -> Vector:
     words = block.attribute(name).split()
     numbers = np.array([number_or_nan(word) for word in words[:count]])
     if len(numbers) < count or not np.isfinite(numbers).all():
-        message = f'found <{block.name} {name}="{block.attribute(name)}">; expected {count} finite numbers'
+        message = f'found <{block.name} {name}="{block.attribute(name)}">; expected {counted(count, "finite number")}'
         block.error("SK-PARAM-002", message)
         return np.zeros(count)
     return numbers

@@ -23,6 +23,7 @@ from simkit.extend import (
     Options,
     OptionsOf,
     choice,
+    counted,
     find_named_joint,
     find_named_link,
     integer,
@@ -119,7 +120,7 @@ class MulticopterMotorModel(ModelPlugin):
     def _on_command(self, message: Actuators) -> None:
         speeds = message.velocity
         if self._number >= len(speeds):
-            what = f"a message has {len(speeds)} velocities and none for motor {self._number}"
+            what = f"a message has {counted(len(speeds), 'velocity', 'velocities')} and none for motor {self._number}"
             self._once.left_out("short", f"{what}; the message is ignored")
         elif not are_usable(speeds[self._number]):
             self._once.left_out("finite", f"the command {speeds[self._number]} is ignored; expected a finite number")

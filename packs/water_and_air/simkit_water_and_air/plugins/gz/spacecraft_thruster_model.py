@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from simkit import ModelPlugin, Params
-from simkit.extend import LARGEST, Options, OptionsOf, find_named_link, integer, listens, number, text
+from simkit.extend import LARGEST, Options, OptionsOf, counted, find_named_link, integer, listens, number, text
 from simkit.msgs import valid_topic
 from simkit.plugins.joints.joint_commands import ACTUATORS
 from simkit_water_and_air.plugins.fluids.link_forces import PushedLinks, moving_data
@@ -63,7 +63,7 @@ class SpacecraftThrusterModel(ModelPlugin):
     def _on_command(self, message: Actuators) -> None:
         shares, number = message.normalized, self.options.actuator_number
         if number >= len(shares):
-            what = f"a message has {len(shares)} normalized values and none for actuator {number}"
+            what = f"a message has {counted(len(shares), 'normalized value')} and none for actuator {number}"
             self._once.left_out("short", f"{what}; the message is ignored")
         elif math.isnan(shares[number]):
             self._once.not_finite()

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit.extend import Vector
+from simkit.extend import Vector, counted
 from simkit.linear_algebra import matmul
 from simkit.number_text import number_or_nan
 from simkit_water_and_air.plugins.fluids.added_mass import SmoothedAcceleration, own_inertia
@@ -237,7 +237,9 @@ def _matrix(block: Params, name: str, *, only_full: bool = False) -> Vector:
         return np.zeros((6, 6))
     if len(numbers) not in sizes or not all(abs(value) <= _MOST for value in numbers):
         expected = " or ".join(str(size) for size in sizes)
-        block.error("SK-PARAM-002", f"found {len(numbers)} words in <{name}>; expected {expected} finite numbers")
+        block.error(
+            "SK-PARAM-002", f"found {counted(len(numbers), 'word')} in <{name}>; expected {expected} finite numbers"
+        )
         return np.zeros((6, 6))
     values = np.array(numbers)
     return np.diag(values) if len(numbers) == 6 else values.reshape(6, 6)
