@@ -68,6 +68,8 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
         page.meta["search"] = {"boost": 0.5}  # most queries are English
     if path == "docs/troubleshooting.md":
         page.meta["search"] = {"boost": 2}  # who searches for a symptom wants its remedy
+    if path == "docs/robots.md":
+        page.meta["search"] = {"boost": 2}  # the first page about worlds with robots; "robot" is in 100 other titles
     if path.startswith(("reference/python/", "reference/messages/", "reference/diagnostics/", "reference/plugins/")):
         page.meta["search"] = {"boost": 0.5}  # each of their 2000 names is a title
     if not path.startswith("reference/"):

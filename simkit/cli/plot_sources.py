@@ -258,10 +258,13 @@ def _in_order(
     from simkit.recording.charts.series import Series
 
     groups: list[list[Series]] = []
-    rest, rest_counts, values = iter(of_messages), iter(counts), iter(of_expressions.values())
+    rest, rest_counts = iter(of_messages), iter(counts)
+    expressions = zip(of_expressions.values(), of_expressions.units(), strict=True)
     for field in fields:
         if is_expression(field):
-            groups.append([Series(field, times=of_expressions.times, values=next(values))])
+            values, unit = next(expressions)
+            is_angle = unit == "rad" and not field.endswith("pitch")
+            groups.append([Series(field, unit, is_angle, times=of_expressions.times, values=values)])
         else:
             groups.append(list(islice(rest, next(rest_counts))))
     return [series for group in groups for series in group], [len(group) for group in groups]

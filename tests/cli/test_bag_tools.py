@@ -73,6 +73,7 @@ def test_expressions_of_conditions_are_curves_beside_fields(here: Path, simkit_l
     assert done.exit_code == 0, done.stderr
     distance, field, same, late = json.loads(done.stdout)["curves"]
     assert [row["label"] for row in (distance, field)] == list(fields)
+    assert (distance["unit"], field["unit"], same["unit"], late["unit"]) == ("m", "m", "", "")
     assert distance["count"] == 501  # the start, and each step of 2 ms
     assert same["last"] == field["last"] > 0.2
     assert (late["min"], late["max"], late["mean"]) == (0.0, 1.0, pytest.approx(0.5, abs=0.001))

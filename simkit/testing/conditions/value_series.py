@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,12 +12,15 @@ from numpy.typing import NDArray
 from simkit.errors import InputError
 from simkit.testing.conditions.binder import bind_value
 from simkit.testing.conditions.bound_expression import BoundNode
-from simkit.testing.conditions.syntax_tree import UndecidedValue
-from simkit.testing.conditions.value_types import NUMBER, TRUTH
+from simkit.testing.conditions.syntax_tree import Attribute, Call, UndecidedValue
+from simkit.testing.conditions.value_types import NUMBER, TRUTH, is_pose_like
 from simkit.testing.conditions.world_view import WorldView
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
+
+
+_POSE_UNITS: Final = {**dict.fromkeys("xyz", "m"), **dict.fromkeys(("roll", "pitch", "yaw"), "rad")}
 
 
 class ValueSeries:
@@ -71,6 +74,10 @@ class ValueSeries:
         """Return the values of each expression at these times, shape (n,); NaN for an unknown value."""
         return [np.array(values) for values in self._values]
 
+    def units(self) -> list[str]:
+        """Return the SI unit of each expression; empty if it is unknown."""
+        return [_unit(part) for part in self._parts]
+
     def _take(self) -> None:
         self._times.append(self._sim.time)
         for part, values in zip(self._parts, self._values, strict=True):
@@ -78,3 +85,11 @@ class ValueSeries:
                 values.append(float(part.get()))
             except UndecidedValue:
                 values.append(math.nan)
+
+
+def _unit(part: BoundNode) -> str:
+    """Return the unit of a coordinate or an angle of a pose, or of a length; empty for others."""
+    node = part.node
+    if isinstance(node, Attribute) and is_pose_like(part.below[0].kind):
+        return _POSE_UNITS.get(node.name, "")
+    return "m" if isinstance(node, Call) and node.name in ("distance", "path_length") else ""
