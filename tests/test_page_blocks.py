@@ -79,14 +79,15 @@ SHORTER: Final = {
     "samples: 64": "samples: 3", "duration: 10\n": "duration: 4\n", "--trials 200": "--trials 2",
     "--duration 10 --video": "--duration 0.1 --video", "--duration 10 --gif": "--duration 0.2 --gif",
     "--duration 10 --record drive.mcap --skip": "--duration 0.1 --record drive.mcap --skip",
+    "sensor_bench --duration 5": "sensor_bench --duration 1", "--duration 36 --picture": "--duration 1 --picture",
     "bench turtlebot3_world": "bench turtlebot3_world --rounds 1",
-    "golden check golden --html": "golden check golden/drive --html",  # the command before checks all golden runs
+    ".venv/bin/simkit golden check golden": ".venv/bin/simkit golden check golden/drive",  # CI checks the others
     "hits --steps 1,0.25": "hits --steps 4 --quick", "stepping.py": "stepping.py --rounds 1",
     "--rounds 20": "--rounds 1", "--jobs 8": "--jobs 2", "motion play wave home": "motion play home",
     "certify turtlebot3_world": "certify turtlebot3_world --runs 2",
     "--foxglove --rosbridge": "--foxglove 0 --rosbridge 0",  # free ports: other programs may use 8765 and 9090
 }  # fmt: skip
-LONGEST: Final = 1.0  # [s] of simulated time
+LONGEST: Final = 3.0  # [s] of simulated time
 LIMIT: Final = 900.0  # [s] of wall time for a command: a busy machine needs ten times the time of a free one
 IN_CLONE: Final = re.compile(r"(?<!\S)(?:\.venv|benchmarks|examples|packs|tests|worlds)/")
 WRITES_FILES: Final = re.compile(r"write_text\(|Recorder\(")

@@ -12,7 +12,10 @@ from typing import Any
 
 from site_pages import ROOT, github_anchor, outside_fences, repository_pages
 
-_MOMENT = ("moment.Moment", *(f"moment_contents.{name}" for name in ("TouchingPair", "JointLoad", "ConstraintError")))
+_MOMENT = (
+    "moment.Moment",
+    *(f"moment_contents.{name}" for name in ("MomentContents", "TouchingPair", "JointLoad", "ConstraintError")),
+)
 
 _HANDLES = {
     "Simulation": ("A running simulation, which `simkit.load` returns.", ("simkit.Simulation",)),

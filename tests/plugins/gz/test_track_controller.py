@@ -65,6 +65,17 @@ def test_a_held_crate_gets_the_friction_force_at_any_speed() -> None:
             assert np.mean(pushes) == pytest.approx(0.5 * 2.0 * G, rel=0.035)
 
 
+def test_the_slip_on_a_belt_counts_from_its_surface() -> None:
+    """A crate that is carried does not slip; one that a wall holds slips at the speed of the belt."""
+    for models, slip in ((), 0.0), ((wall(0.051),), 0.5):
+        with opened(conveyor(), crate(), *models) as sim:
+            sim.publish(BELT, {"data": 0.5})
+            sim.run(1.0)
+            (pair,) = (pair for pair in sim.why("crate").contacts if pair.second == "conveyor::belt::c")
+            assert pair.slip_speed == pytest.approx(slip, abs=1e-5)
+            assert pair.slides == (slip > 0.0)
+
+
 def test_the_result_of_gazebos_conveyor_test_is_reproduced() -> None:
     """A belt with 0.5 m/s and 0.25 m/s² for 2 s moves 0.125 m in one second, 0.5 m in two, 0.875 m in three."""
     inner = (

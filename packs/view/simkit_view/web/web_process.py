@@ -82,6 +82,11 @@ class WebBridge(BridgeProcess):
         settings = {"host": options.host, "port": options.port, "token": options.token}
         super().__init__(_TITLES[kind], _CODES, f"simkit_view.web.{kind}_server", settings, report)
 
+    def _start_help(self, reason: str) -> str:
+        if "cannot be used" not in reason:
+            return ""
+        return f"choose another port, such as --{self._options.kind} 0 for a free one"
+
     def _ready_text(self, line: Any) -> str:
         host = f"[{self._options.host}]" if ":" in self._options.host else self._options.host
         token = f"/?token={self._options.token}" if self._options.token else ""

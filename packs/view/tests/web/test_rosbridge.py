@@ -190,6 +190,7 @@ def test_a_port_in_use_ends_the_command_with_the_reason(running: Any) -> None:
     found = subprocess.run(command, capture_output=True, text=True)
     assert found.returncode == 2
     assert f"SK-WEB-002 the rosbridge server cannot start: 127.0.0.1:{port}" in found.stderr.replace("\n", " ")
+    assert "choose another port, such as --rosbridge 0" in found.stderr
 
 
 def test_addresses_are_ports_with_an_optional_host(monkeypatch: pytest.MonkeyPatch) -> None:
