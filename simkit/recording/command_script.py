@@ -252,7 +252,8 @@ def script_items(path: Path) -> list[JsonObject]:
     try:
         text = read_input_text(path)
     except (OSError, UnicodeDecodeError) as error:
-        raise _script_error(str(path), f"cannot be read: {read_failure(error)}") from None
+        wanted = "commands are a list of {at, topic, message}, or a YAML file with it"
+        raise _script_error(str(path), f"cannot be read: {read_failure(error)}; {wanted}") from None
     try:
         root = compose_nodes(text)
     except NotYaml as error:
