@@ -341,10 +341,16 @@ def test_the_first_view_of_a_house_is_open_above_the_robots(session: Callable[..
 
 
 def test_one_file_opens_without_simkit_and_seeks(browser: Any, tmp_path: Path) -> None:
+    lidar = {"topic": "/scan", "count": 3, "low": -0.1, "step": 0.1}
+    scan = {
+        "lidar0.times": np.array([0.002]),
+        "lidar0.poses": np.array([[0, 0, 0.2, 1, 0, 0, 0]], np.float32),
+        "lidar0.ranges": np.full((1, 3), 1500, np.uint16),
+    }
     with simkit.load(YARD) as sim:
         poses = make_packet(
-            {"kind": "recording", "name": "drive.mcap", "begin": 0.0, "lidars": []},
-            {"times": np.arange(31) / 15, "poses": _moving_poses(sim)},
+            {"kind": "recording", "name": "drive.mcap", "begin": 0.0, "lidars": [lidar]},
+            {"times": np.arange(31) / 15, "poses": _moving_poses(sim), **scan},
         )
         text = html_file("drive", make_scene_packet(sim, 1, {"recording": True, "seed": 0}), poses)
     path = tmp_path / "drive.html"
@@ -357,6 +363,8 @@ def test_one_file_opens_without_simkit_and_seeks(browser: Any, tmp_path: Path) -
     end = time.monotonic() + TIMEOUT / 1000
     while _colours_of_the_scene(page) <= 12:  # the first pictures of a slow browser may be empty
         assert time.monotonic() < end
+    scanned = "simkitView.sensors.points.geometry.attributes.position.array[0]"
+    assert page.evaluate(scanned) == pytest.approx(1.5 * np.cos(0.1), abs=1e-3)  # of the first step, at the start
     page.locator("#seek").fill("1.5")
     page.locator("#time", has_text="1.500 s").wait_for(timeout=TIMEOUT)
     assert page.evaluate("simkitView.world.bodies[simkitView.bodyOf.get('rover')].elements[12]") == pytest.approx(1.5)

@@ -4,6 +4,8 @@ import { element } from './dom.js';
 import { readPacket } from './packet.js';
 import { readPose } from './world.js';
 
+const STEP = 0.005; // [s]: the first scan of a world comes one step after its start
+
 export class Player {
   constructor(app, recording) {
     this.app = app;
@@ -96,7 +98,7 @@ export class Player {
     const m = new T.Matrix4(), point = new T.Vector3(), lidars = [], points = [], origins = [];
     this.recording.lidars.forEach((lidar, number) => {
       const { [`lidar${number}.times`]: times, [`lidar${number}.poses`]: poses, [`lidar${number}.ranges`]: ranges } = this.recording.arrays;
-      let i = times.findLastIndex(time => time <= this.time + 1e-6);
+      let i = times.findLastIndex(time => time <= this.time + STEP);
       if (i < 0) return;
       readPose(poses, 7 * i, m);
       origins.push(poses[7 * i], poses[7 * i + 1], poses[7 * i + 2]);
