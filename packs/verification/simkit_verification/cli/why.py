@@ -1,4 +1,4 @@
-"""Explain a moment of a run: contacts, joints, constraints and wheels, with their forces and limits."""
+"""Explain a moment of a run: what slides or has a limit, and all contacts, joints, constraints and wheels."""
 
 from __future__ import annotations
 
