@@ -7,6 +7,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from simkit.number_text import counted
 from simkit.runtime.moment.moment_contents import MomentContents
 from simkit.runtime.moment.sentences import findings, report
 
@@ -39,9 +40,9 @@ class Moment(MomentContents):
 
     def __repr__(self) -> str:
         counts = {"contact": self.contacts, "joint": self.joints, "constraint": self.constraints, "wheel": self.wheels}
-        texts = (f"{len(items)} {noun}{'' if len(items) == 1 else 's'}" for noun, items in counts.items() if items)
-        found = len(self.findings)
-        return f"<Moment t={self.time:g} s: {', '.join((*texts, f'{found} finding' + 's' * (found != 1)))}>"
+        texts = [counted(len(items), noun) for noun, items in counts.items() if items]
+        found = counted(len(self.findings), "finding")
+        return f"<Moment t={self.time:g} s: {', '.join((*texts, found))}>"
 
 
 def _row(item: object) -> dict[str, object]:
