@@ -209,6 +209,7 @@ def write(files: dict[str, str]) -> None:
         path.write_text(text)
 
 
+@pytest.mark.slow
 def test_a_folder_is_a_table_with_a_summary() -> None:
     write(
         {

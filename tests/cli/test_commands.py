@@ -178,6 +178,7 @@ def test_a_plugin_that_raises_shows_its_traceback_and_the_recording_up_to_there(
         assert {c.topic: c.msgcount for c in reader.connections}["/imu"] == 151
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are sent otherwise there")
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_an_interrupt_leaves_everything_readable(world: Path, number: signal.Signals, code: int) -> None:

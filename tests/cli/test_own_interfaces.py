@@ -89,6 +89,7 @@ def test_a_run_a_bag_and_a_bundle_know_the_types_and_later_commands_need_no_fold
     assert "identical" in line("replay", "run.zip", "--allow-code")
 
 
+@pytest.mark.slow
 def test_a_client_knows_what_the_run_knows_and_the_run_what_a_client_defines(
     line: Line, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

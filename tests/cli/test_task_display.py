@@ -51,6 +51,7 @@ def test_a_long_task_is_shown_and_removed(tmp_path: Path) -> None:
         assert "loading" not in terminal.seen.rpartition("\x1b[2K")[2]
 
 
+@pytest.mark.slow
 def test_ctrl_c_removes_the_display(tmp_path: Path) -> None:
     with check_in_terminal(tmp_path) as terminal:
         terminal.wait_for("loading plugins")

@@ -52,6 +52,7 @@ def problem(reader: Reader, target: Target, index: object, folder: Path, only: i
     return "" if answer["outcome"] in FINE else f"{command}: {complaint(one, files, answer, folder)}"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_readers_accept_the_intact_input(kind: str, reader: Reader) -> None:
     for target in of_kind(kind):

@@ -65,6 +65,7 @@ def lab(*arguments: object) -> Any:
     return CliRunner().invoke(app, ["lab", *map(str, arguments)])
 
 
+@pytest.mark.slow
 def test_an_edited_exercise_or_world_is_told_and_not_used(teacher: Path, student: Path) -> None:
     (student / "exercise.yaml").write_text(EXERCISE.replace("> 0.1", "> -1"))
     (student / "cart.sdf").write_text(CART.replace("<pose>0 0", "<pose>5 0"))

@@ -59,6 +59,7 @@ def python(installed: Path, *arguments: str) -> str:
     return done.stdout
 
 
+@pytest.mark.slow
 def test_the_tests_of_a_new_pack_pass(installed: Path) -> None:
     """They use its world, sensor, plugin, command and code."""
     assert "4 passed" in python(installed, "-m", "pytest", "-q", "-p", "no:cacheprovider", "tests")

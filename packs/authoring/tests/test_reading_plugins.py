@@ -180,6 +180,7 @@ def test_systems_of_gz_are_read_in_configure() -> None:
     ]
 
 
+@pytest.mark.slow
 def test_every_plugin_can_be_scanned() -> None:
     for cls in dict.fromkeys(plugin_kinds().values()):
         facts = facts_of(cls)

@@ -60,6 +60,7 @@ def send(sim: simkit.Simulation, **commands: float) -> None:
         command(sim, name, value)
 
 
+@pytest.mark.slow
 def test_a_joint_follows_its_spring_and_damper(tmp_path: Path) -> None:
     with opened(tmp_path, QUADRUPED, ROS_2) as sim:
         codes = [d.code for d in sim.diagnostics]

@@ -78,6 +78,7 @@ def test_a_pendulum_gives_its_damping_and_its_centre_of_mass(tmp_path: Path) -> 
     assert list(result.values.values()) == pytest.approx([0.08, -0.4], rel=1e-3)
 
 
+@pytest.mark.slow
 def test_gains_of_a_controller_come_back(tmp_path: Path) -> None:
     bag = record(servo(35.0, 3.0), tmp_path / "turn.mcap", turn)
     with open_scenario(RunSpec(servo())) as sim:
@@ -108,6 +109,7 @@ def test_the_same_seed_gives_the_same_result_in_several_processes(pushed: Path) 
     assert fits[0].as_dict() | {"wall_time": 0} == fits[1].as_dict() | {"wall_time": 0}
 
 
+@pytest.mark.slow
 def test_several_recordings_validate_each_other(tmp_path: Path) -> None:
     world = slider(2.0, 1.5)
     bags = [record(world, tmp_path / f"{n}.mcap", partial(push, duration=0.4 + 0.2 * n)) for n in range(3)]

@@ -95,6 +95,7 @@ def test_an_expression_of_an_xml_file_computes_with_numbers_and_texts(read: Read
     assert read("a.launch.xml", text).log == ["[INFO] [launch.user]: 5"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("ending", "node"), [(".launch", '<node pkg="a" type="b" name="$(anon c)"/>'), (".launch.xml", "")]
 )

@@ -52,6 +52,7 @@ def test_limits_of_jerk_and_speed_four_wheels_and_truth_have_the_bits_of_single_
     assert assert_same_bits(source, 40, 2, terminated=AWAY, time_limit=2.0, observation=observation) >= 2
 
 
+@pytest.mark.slow
 def test_four_robots_on_one_topic_of_commands_have_the_bits_of_single_worlds() -> None:
     robots = "".join(rover(f"r{k}", k, f"<topic>cmd_vel</topic>{RATE.format(20 + k)}{ACCELERATION}") for k in range(4))
     observation = {f"odom{k}": f"/model/r{k}/odometry" for k in range(4)}

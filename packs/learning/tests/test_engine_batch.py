@@ -196,6 +196,7 @@ def test_what_a_batch_cannot_do_is_named(world: str, options: dict[str, Any], re
         simkit.gym.make_vec(world, num_envs=2, batch=True, **{**rest, **options})
 
 
+@pytest.mark.slow
 def test_processes_start_anew_where_the_present_one_has_other_threads() -> None:
     """A copy of a process has the locks of its threads, but not the threads."""
     ended = threading.Event()
@@ -209,6 +210,7 @@ def test_processes_start_anew_where_the_present_one_has_other_threads() -> None:
     envs.close()
 
 
+@pytest.mark.slow
 def test_processes_take_over_and_say_why() -> None:
     envs = simkit.gym.make_vec(
         CART, num_envs=1, observation=SLIDE, action=SLIDE, reward="2 * 3", success="age('/eye') > 9"

@@ -72,6 +72,7 @@ def test_drives_without_array_rules_have_the_bits_of_single_robots(drive: str) -
     assert assert_same_bits(with_drive(drive), 5, 2, vector=TURNS, time_limit=0.2, **options) >= 2
 
 
+@pytest.mark.slow
 def test_two_processes_have_the_bits_of_one() -> None:
     source = world(rover("rover", 0, COMMAND_AND_ODOMETRY))
     options: dict[str, Any] = {
@@ -94,6 +95,7 @@ def test_drawn_variables_of_expressions_belong_to_their_environments() -> None:
     assert found[0] == found[1] and len({round(value) for value in found[0][0]} | {*found[0][0]}) > 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("autoreset", ["same_step", "disabled"])
 def test_the_modes_of_autoreset_and_infos_are_those_of_one_process(autoreset: str) -> None:
     options: dict[str, Any] = {"observation": SLIDE, "action": SLIDE, "time_limit": 0.2, "autoreset": autoreset}
@@ -113,6 +115,7 @@ def test_the_modes_of_autoreset_and_infos_are_those_of_one_process(autoreset: st
         assert np.array_equal(mine[-1]["time"], other[-1]["time"])
 
 
+@pytest.mark.slow
 def test_more_environments_than_processes_share_them_if_they_are_no_batch() -> None:
     envs: Any = simkit.gym.make_vec(CART, num_envs=50, observation=SLIDE, action=SLIDE, reward=lambda env: env.time)
     assert "Batched" in envs.not_batched
@@ -135,6 +138,7 @@ def test_what_cannot_take_turns_is_named(options: dict[str, Any], reason: str) -
         simkit.gym.make_vec(CART, num_envs=2, processes=2, observation=SLIDE, action=SLIDE, **options)
 
 
+@pytest.mark.slow
 def test_an_error_in_a_process_is_raised_with_its_code() -> None:
     envs = simkit.gym.make_vec(CART, num_envs=2, processes=2, observation=SLIDE, action=SLIDE)
     with pytest.raises(InputError, match="SK-GYM-005"):
@@ -142,6 +146,7 @@ def test_an_error_in_a_process_is_raised_with_its_code() -> None:
     envs.close()
 
 
+@pytest.mark.slow
 def test_a_process_that_has_ended_is_named_in_each_call() -> None:
     envs: Any = simkit.gym.make_vec(CART, num_envs=2, processes=2, observation=SLIDE, action=SLIDE)
     envs.reset(seed=1)
@@ -153,6 +158,7 @@ def test_a_process_that_has_ended_is_named_in_each_call() -> None:
     envs.close()
 
 
+@pytest.mark.slow
 def test_a_call_after_an_interrupted_one_gets_its_own_answer(monkeypatch: pytest.MonkeyPatch) -> None:
     envs = simkit.gym.make_vec(CART, num_envs=2, processes=2, observation=SLIDE, action=SLIDE)
     first, _ = envs.reset(seed=1)

@@ -62,6 +62,7 @@ def test_the_robot_drives_around_a_wall_and_touches_nothing(tmp_path: Path) -> N
         assert feedback[50].estimated_time_remaining.sec > 5
 
 
+@pytest.mark.slow
 def test_a_restore_in_the_middle_gives_the_same_bits(tmp_path: Path) -> None:
     with simkit.load(world(tmp_path)) as sim:
         sim.run(1.3)

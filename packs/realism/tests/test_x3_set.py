@@ -73,6 +73,7 @@ def test_a_quarter_of_the_rays_has_no_return_and_a_scan_comes_one_turn_late() ->
         assert found[-1][1].time_increment == pytest.approx(0.0001245, abs=1e-7)
 
 
+@pytest.mark.slow
 def test_clouds_have_the_gaps_of_the_real_robot() -> None:
     with near("rgbd_camera", "cloud", CAMERA, 2.0) as sim:
         stamps: list[float] = []

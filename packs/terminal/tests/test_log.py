@@ -7,10 +7,13 @@ import re
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 import simkit
 from simkit.recording import Recorder
 
 
+@pytest.mark.slow
 def test_messages_of_a_running_simulation_are_selected_by_level_node_and_text(start: Any, simkit_line: Any) -> None:
     log = start().sim.engine.structure.all_plugins()[-1].log
     node = log._owner.name

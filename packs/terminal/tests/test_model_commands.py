@@ -28,6 +28,7 @@ def test_models_have_poses_and_joints(start: Any, simkit_line: Any) -> None:
     assert "SK-CLI-038" in simkit_line("model", "joint", "rover", "lft_wheel").stderr
 
 
+@pytest.mark.slow
 def test_frames_hang_on_each_other(yard: Any, simkit_line: Any) -> None:
     assert simkit_line("tf", "tree", "--time", "1").stdout == "odom\n  base\n    rover::base::imu (static)\n"
     told = simkit_line("tf", "echo", "odom", "base", "--once").stdout.splitlines()

@@ -114,6 +114,7 @@ def test_a_rejected_or_cancelled_goal_is_reported(yard: Any, simkit_line: Any) -
     assert "Canceling goal...\nGoal canceled.\n" in off and off.endswith("Goal finished with status: CANCELED\n")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "code", "hint"),
     [

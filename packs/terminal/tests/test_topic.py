@@ -84,6 +84,7 @@ def test_echo_prints_only_messages_that_match_the_filter(yard: Any, simkit_line:
     assert wrong.exit_code == 2 and "SK-CLI-033" in wrong.stderr
 
 
+@pytest.mark.slow
 def test_rates_are_those_of_the_simulations_clock(yard: Any, simkit_line: Any) -> None:
     """An IMU of 50 Hz has 50 Hz, however fast the simulation runs."""
 

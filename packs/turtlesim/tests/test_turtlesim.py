@@ -161,6 +161,7 @@ def test_requests_without_a_meaning_are_refused_in_the_log(
     assert set(sim.models) == {"square", "turtle1"}
 
 
+@pytest.mark.slow
 def test_the_background_changes_at_once_below_the_trails_of_pens_which_clear_wipes(sim: simkit.Simulation) -> None:
     assert colours(sim) - {BACKGROUND} and PEN not in colours(sim)  # the turtle is drawn, too
     drive(sim, x=2.0)

@@ -14,6 +14,7 @@ PAGE = (Path(__file__).resolve().parents[1] / "docs" / "certify.md").read_text(e
 BLOCKS = re.findall(r"^```python\n(.*?)^```", PAGE, re.MULTILINE | re.DOTALL)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", BLOCKS)
 def test_a_block_runs(text: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     in_this_process = functools.partial(

@@ -296,6 +296,7 @@ def test_many_hulls_get_the_same_forces_as_each_alone() -> None:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "shape", ["<box><size>1 1 1</size></box>", "<capsule><radius>.3</radius><length>1</length></capsule>"]
 )

@@ -107,6 +107,7 @@ def test_coriolis_forces_do_no_work_and_can_be_disabled() -> None:
     assert water @ np.array([1.0, 0.5, -0.4, *turning]) == pytest.approx(0, abs=0.01)
 
 
+@pytest.mark.slow
 def test_a_current_takes_a_body_along() -> None:
     with simkit.load(world("<xU>-50</xU><yV>-50</yV><default_current>0.4 0 0</default_current>")) as sim:
         sim.run(5.0)

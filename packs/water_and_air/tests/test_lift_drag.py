@@ -140,6 +140,7 @@ def test_classic_acts_at_the_centre_of_pressure_from_the_centre_of_mass_and_make
     assert torque[1] == pytest.approx(0.8 * force[2], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_it_glides_at_the_ratio_of_lift_to_drag() -> None:
     """A level wing descends at the ratio of drag to lift once both balance its weight."""
     text = world("<area>1</area><a0>0.1</a0><cla>5</cla><cda>0.5</cda>").replace("<gravity>0 0 0", "<gravity>0 0 -9.8")

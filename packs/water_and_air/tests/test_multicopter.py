@@ -112,6 +112,7 @@ def test_wind_drags_the_rotors_along() -> None:
         assert gained == pytest.approx(4 * drag * speed * (2 - start) * 0.1 / MASS, rel=0.01)
 
 
+@pytest.mark.slow
 def test_the_controller_reaches_velocity_and_turning_rate() -> None:
     with simkit.load(world(controller(), NO_DRAG)) as sim:
         base = sim.link("quad::base")

@@ -23,6 +23,7 @@ def world(shape: str, mass: float, drag: str = "") -> str:
         <enable>raft::hull</enable><hydrodynamics>{drag}</hydrodynamics></plugin></model></world></sdf>"""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", SHAPES)
 def test_a_raft_floats_at_the_draught_of_archimedes(shape: str) -> None:
     mass, area = 200.0, SHAPES[shape][1]
@@ -34,6 +35,7 @@ def test_a_raft_floats_at_the_draught_of_archimedes(shape: str) -> None:
         assert hull.pose.rpy == pytest.approx((0.0, 0.0, 0.0), abs=1e-6)
 
 
+@pytest.mark.slow
 def test_a_heeled_raft_comes_upright() -> None:
     with simkit.load(world("box", 200.0, "<cDampL1>400</cDampL1><cDampR1>400</cDampR1>")) as sim:
         sim.model("raft").set_pose(simkit.Pose.from_rpy(0, 0, 0.15, 0.2, 0.1, 0))
@@ -41,6 +43,7 @@ def test_a_heeled_raft_comes_upright() -> None:
         assert sim.link("raft::hull").pose.rpy[:2] == pytest.approx((0.0, 0.0), abs=1e-2)
 
 
+@pytest.mark.slow
 def test_drag_stops_a_raft() -> None:
     with simkit.load(world("box", 200.0)) as sim:
         hull = sim.link("raft::hull")

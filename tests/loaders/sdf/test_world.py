@@ -143,6 +143,7 @@ def test_a_population_line_begins_at_one_side_of_the_box(load, axis, step):
     np.testing.assert_allclose(found[0], first, atol=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["random", "uniform"])
 def test_random_points_are_inside_the_region(load, kind):
     rest = f"<model_count>40</model_count><distribution><type>{kind}</type></distribution>"

@@ -94,6 +94,7 @@ def test_other_spellings_of_a_package_uri_are_accepted(load, write, uri):
     assert bool(with_code(found, "SK-URI-010")) == uri.startswith("file:///opt")
 
 
+@pytest.mark.slow
 def test_a_missing_package_is_reported_once_with_all_searched_folders_and_the_option(write):
     meshes = "".join(
         f'<collision><geometry><mesh filename="package://nope/m{i}.stl"/></geometry></collision>\n' for i in range(3)

@@ -95,6 +95,7 @@ def robots() -> list[Path]:
 SMALL = [p for p in robots() if p.name in ("panda.urdf", "ur3_robot.urdf", "solo12.urdf", "tiago_no_hand.urdf")]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not SMALL, reason="example-robot-data is not installed")
 @pytest.mark.parametrize("file", SMALL, ids=lambda p: p.stem)
 def test_poses_agree_with_yourdfpy_at_any_configuration(file):

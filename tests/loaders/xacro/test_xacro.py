@@ -390,6 +390,7 @@ def test_expressions_cannot_access_python_internals(text):
         evaluate(text)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text",
     [

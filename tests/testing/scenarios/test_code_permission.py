@@ -142,6 +142,7 @@ def command_line(folder: Path, name: str) -> tuple[str, ...]:
     return ("golden", "check", "g", "--no-causes")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ()) for name in (*COMMANDS, *GOLDEN)],

@@ -136,6 +136,7 @@ def test_a_specification_made_in_python_may_name_any_file(stranger: Path) -> Non
         assert sim.models
 
 
+@pytest.mark.slow
 def test_the_runs_of_an_exercise_spawn_no_model_from_elsewhere(stranger: Path) -> None:
     file = stranger / "e.yaml"
     file.write_text(

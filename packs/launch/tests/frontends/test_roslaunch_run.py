@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 import simkit
 from simkit.testing import open_scenario
 
@@ -35,6 +37,7 @@ LAUNCH = """
 """
 
 
+@pytest.mark.slow
 def test_a_node_gets_its_parameters_names_words_variables_and_delay(tmp_path: Path) -> None:
     script = tmp_path / "scripts" / "talk.py"
     script.parent.mkdir()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
 from typer.testing import CliRunner
 
 from simkit import RunSpec
@@ -41,6 +42,7 @@ def test_known_nodes_stay_in_the_run() -> None:
     assert [node["program"] for node in part.nodes] == ["talk.py"]
 
 
+@pytest.mark.slow
 def test_a_process_that_fails_fails_the_run(tmp_path: Path) -> None:
     """The run goes on to its end, as it does for a node in lock-step."""
     program, file = tmp_path / "ends.py", tmp_path / "ends.launch.py"

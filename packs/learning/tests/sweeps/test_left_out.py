@@ -53,6 +53,7 @@ MODEL = """<sdf version="1.9"><model name="m"><link name="base"/><link name="whe
 filename="gz-sim-joint-controller-system"><joint_name>axle</joint_name></plugin></model></sdf>"""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("first", "then", "words"), [("axle", "axel", "is now without"), ("axel", "axle", "now has")])
 def test_a_sweep_continues_only_with_the_plugins_of_its_stored_runs(
     first: str, then: str, words: str, tmp_path: Path

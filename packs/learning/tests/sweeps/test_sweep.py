@@ -41,6 +41,7 @@ def test_the_table_has_parameters_metrics_and_ends() -> None:
     assert table["state_hash"][0] == table["state_hash"][1] != table["state_hash"][2]
 
 
+@pytest.mark.slow
 def test_a_world_that_stays_loaded_has_the_bits_of_a_fresh_load() -> None:
     names = {
         "box::l.inertial.mass": {"uniform": [0.5, 2.0]},
@@ -63,6 +64,7 @@ def test_a_world_that_stays_loaded_has_the_bits_of_a_fresh_load() -> None:
     assert max(found) >= 1
 
 
+@pytest.mark.slow
 def test_one_and_three_processes_give_equal_tables(tmp_path: Path) -> None:
     parameters = {"box::l.inertial.mass": {"uniform": [-0.2, 1]}, "world.gravity": [[0, 0, -1], [1, 0, -2]]}
     tables = [

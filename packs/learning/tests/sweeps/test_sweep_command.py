@@ -42,6 +42,7 @@ def command(*words: str, code: int = 0) -> str:
     return result.stdout if "--json" in words else result.output
 
 
+@pytest.mark.slow
 def test_a_sweep_is_run_reported_and_replayed(folder: Path) -> None:
     assert "64 runs: 64 ok, 0 failed" in command("sweep.yaml", "--jobs", "1")
     assert (folder / "sweep_sweep" / "results.csv").read_text().count("\n") == 65

@@ -42,6 +42,7 @@ for node in nodes:
 """
 
 
+@pytest.mark.slow
 def test_another_process_with_another_hash_seed_prints_the_same(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -171,6 +171,7 @@ def test_a_program_of_ros_1_is_known_by_its_imports(sim: Any, add: Any, tmp_path
     assert ros2.error is None
 
 
+@pytest.mark.slow
 def test_a_program_without_rospy_in_a_catkin_package_is_one_of_ros_1(sim: Any, tmp_path: Path) -> None:
     text = "<package format='2'><name>robot</name><buildtool_depend>catkin</buildtool_depend></package>"
     (tmp_path / "package.xml").write_text(text)

@@ -111,6 +111,7 @@ def test_direct_changes_are_repeated(tmp_path: Path) -> None:
         assert found.is_same, found.differences
 
 
+@pytest.mark.slow
 def test_changed_masses_and_dynamics_are_repeated(tmp_path: Path) -> None:
     """The start of a robot repeats bit for bit although its mass and its wheels change, also after a kept reset."""
     with simkit.load("turtlebot3_world") as sim, keep(sim):

@@ -202,6 +202,7 @@ def test_an_error_in_every_run_does_not_stop_the_steps_before_a_reset(tmp_path: 
     assert made.passed and made.rows[1].streams == made.rows[0].streams != ""
 
 
+@pytest.mark.slow
 def test_a_process_that_exits_is_a_difference_with_its_code_position(tmp_path: Path) -> None:
     made = certified(tmp_path, "if not self.out.wanted:\n    os._exit(7)", "not received", apart=True)
     (found,) = made.differences

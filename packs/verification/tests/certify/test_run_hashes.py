@@ -9,6 +9,7 @@ from collections import deque
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from simkit_verification.testing.certify.run_hashes import short_value_text, value_hash
 
@@ -44,6 +45,7 @@ def test_an_object_that_contains_itself_has_a_hash() -> None:
     assert value_hash(thing) == value_hash(thing)
 
 
+@pytest.mark.slow
 def test_hashes_do_not_depend_on_set_order_or_hash_seed() -> None:
     script = "from simkit_verification.testing.certify.run_hashes import value_hash as digest\n"
     script += "print(digest({'x': {'alpha', 'beta', 'gamma'}, 'y': object()}))"

@@ -87,6 +87,7 @@ def test_json_of_a_bundle_is_on_standard_output(folder: Path) -> None:
     assert extracted["files"] == sum(path.is_file() for path in Path("new").rglob("*"))
 
 
+@pytest.mark.slow
 def test_a_failed_run_leaves_a_bundle_that_fails_in_the_same_way(folder: Path) -> None:
     run = simkit(
         *("run", "sled.sdf", "--duration", "1", "--plugin-path", "plugins", "--script", "drive.yaml", "-q"),

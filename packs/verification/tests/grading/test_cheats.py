@@ -116,6 +116,7 @@ def test_a_cheat_gets_no_points(cheat, place, graded):
     assert found.points == 0.0, [mark.message for mark in found.outcomes[0].marks]
 
 
+@pytest.mark.slow
 def test_the_hand_in_that_replaced_the_function_of_the_grader_gets_no_points(graded):
     found = graded(REPLACED_RUN.strip(), one=ONE_RUN)
     (outcome,) = found.outcomes
@@ -123,6 +124,7 @@ def test_the_hand_in_that_replaced_the_function_of_the_grader_gets_no_points(gra
     assert outcome.marks[0].message == "was not reached by t = 0.3 s: pose('cart').x was 0"
 
 
+@pytest.mark.slow
 def test_an_honest_hand_in_gets_all_points(graded):
     found = graded(before="self.cart.set_velocity((1, 0, 0))")
     assert (found.points, found.passed) == (4.0, True)

@@ -73,6 +73,7 @@ def keep_one_run(folder: Path) -> None:
     (folder / "push.yaml").write_text(EXERCISE.partition("    - {name: slowly")[0])
 
 
+@pytest.mark.slow
 def test_each_run_and_check_gets_its_points_and_the_reason(folder):
     graded = grade(read_exercise(folder / "push.yaml"), folder / "push.py")
     first, second = graded.outcomes
@@ -99,6 +100,7 @@ def test_a_plugin_that_raises_is_reported_with_its_line(folder):
     assert "hint:" not in text and "required:" not in text  # they are not about the exception
 
 
+@pytest.mark.slow
 def test_a_failed_check_tells_the_value_and_the_condition(folder):
     keep_one_run(folder)
     hand_in(folder, "pass")

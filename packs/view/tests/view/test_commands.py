@@ -41,6 +41,7 @@ def started(folder: Path, *arguments: str, **streams: int) -> Iterator[subproces
             process.terminate()
 
 
+@pytest.mark.slow
 def test_a_run_prints_the_address_first_and_serves_the_page(folder: Path) -> None:
     with started(folder, "run", "yard.sdf", "--web", "--no-open") as run:
         address = run.stdout.readline()

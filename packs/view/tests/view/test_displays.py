@@ -227,6 +227,7 @@ def test_what_cannot_be_drawn_is_told(stage: Stage, type_name: str, message: dic
     assert state_hash(stage.sim) == before
 
 
+@pytest.mark.slow
 def test_large_messages_are_drawn_coarser(stage: Stage) -> None:
     info = {"resolution": 0.05, "width": 5000, "height": 100}
     cells = np.zeros(500_000, np.int8)

@@ -69,6 +69,7 @@ def untagged(value: Any) -> Any:
     return (value.tag, value.value) if hasattr(value, "tag") else value
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("special", [0.5, math.nan, -math.inf])
 def test_the_values_of_every_type_are_those_of_the_decoded_message(special: float) -> None:
     pytest.importorskip("cbor2")

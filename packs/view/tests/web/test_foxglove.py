@@ -104,6 +104,7 @@ def test_services_are_called(client: Any, encoding: str) -> None:
     assert client.until_op("serviceCallFailure")["callId"] == 12
 
 
+@pytest.mark.slow
 def test_parameters_are_read_set_and_watched(client: Any) -> None:
     name = "/Counter.gain"
     client.send("getParameters", parameterNames=[], id="all")
@@ -154,6 +155,7 @@ def test_invalid_data_have_a_status_and_the_connection_stays(client: Any) -> Non
     _subscribe(client, "/imu", 2)
 
 
+@pytest.mark.slow
 def test_a_robot_in_urdf_has_its_description(court: Path, start_run: Callable[..., Any], connect: Connect) -> None:
     robot = court.parent / "robot.urdf"
     robot.write_text(

@@ -71,6 +71,7 @@ def test_the_page_refuses_malformed_requests(capfd: pytest.CaptureFixture[str]) 
     assert not out and not errors
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["rosbridge", "foxglove"])
 def test_the_web_servers_refuse_malformed_requests(kind: str, court: Path, start_run: Callable[..., Any]) -> None:
     with start_run(court, "--rtf", "1", f"--{kind}=0") as run:
