@@ -57,6 +57,21 @@ def test_a_usage_error_of_every_command_is_one_json_object(
     assert report["exit_code"] == result.exit_code == 2
 
 
+FLOATS = [
+    (name, option.opts[0])
+    for name, command in LEAVES.items()
+    for option in command.get_params(command.make_context(name, ["--help"], resilient_parsing=True))
+    if option.type.name in ("float", "float range") and option.opts[0].startswith("--")
+]
+
+
+@pytest.mark.parametrize(("name", "option"), FLOATS)
+def test_no_number_of_an_option_is_nan(name: str, option: str, simkit_line: Callable[..., Any]) -> None:
+    result = simkit_line(*name.split(), option, "nan")
+    assert result.exit_code == 2
+    assert "found nan; expected" in result.stdout + result.stderr or "'nan' is not a" in result.stdout + result.stderr
+
+
 LINES = """
 check w.sdf
 check w.sdf --score

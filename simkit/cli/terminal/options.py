@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Annotated
 
-from typer import Argument, Option
+from typer import Argument, BadParameter, Option
 from typer.models import ArgumentInfo, OptionInfo
 
 from simkit.cli.terminal import completion
@@ -46,8 +47,17 @@ def option(
         show_default=show_default,
         autocompletion=complete,
         parser=parser,
+        callback=_refuse_nan,
     )
     return info
+
+
+def _refuse_nan(value: object) -> object:
+    """Return the value of an option; NaN is within all limits of numbers, since each comparison with it is false."""
+    for number in value if isinstance(value, (list, tuple)) else [value]:
+        if isinstance(number, float) and math.isnan(number):
+            raise BadParameter("found nan; expected a number")
+    return value
 
 
 def argument(help: str, metavar: str | None = None, complete: completion.Completer | None = None) -> ArgumentInfo:

@@ -105,10 +105,7 @@ def play(
     skip_planning: Annotated[
         bool, Option("--skip-planning", help="Do not check for collisions on the way to the first point.")
     ] = False,
-    speed: Annotated[
-        float,
-        Option("--speed", help="Speed scale of all trajectories, 0.01 to 1.", min=0.01, max=1.0, metavar="FACTOR"),
-    ] = 1.0,
+    speed: Annotated[float, option("Speed scale of all trajectories, 0.01 to 1.", "FACTOR", min=0.01, max=1.0)] = 1.0,
     record: Annotated[Path | None, option("Bag to write: NAME.mcap, else a rosbag2 folder.", "OUT")] = None,
     force: options.Force = False,
     picture: Annotated[Path | None, option("Picture of the scene at the end, to write.", "OUT.png")] = None,
