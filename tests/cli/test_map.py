@@ -138,7 +138,7 @@ def test_free_cells_behind_walls_are_unknown_unless_everywhere_is_asked(tmp_path
         (["--start", "100,0"], "the start (100, 0) is occupied or outside"),
         (["--start", "0,0.5", "--everywhere"], "exclude each other"),
         (["--output", ".."], "is a folder"),
-        (["--height", "nan"], "expected a finite number"),
+        (["--height", "inf"], "expected a finite number"),
     ],
 )
 def test_a_map_that_cannot_be_made_is_an_error_and_writes_nothing(
