@@ -92,6 +92,7 @@ def test_only_a_plugin_that_blocks_too_long_is_reported() -> None:
     assert lines[0].startswith("waiting for plugin 'Waiter'") and "in after_step, at " in lines[0]
 
 
+@pytest.mark.slow
 def test_after_a_requested_stop_a_blocking_plugin_is_reported_sooner() -> None:
     told, lines = threading.Event(), []
 

@@ -101,6 +101,7 @@ def test_names_that_are_no_tuple_of_texts_are_a_warning(packs: Packs) -> None:
     assert code == 0 and f"{folder}/sensors/height.py:4: Height.kinds: found 5; expected a tuple of texts" in output
 
 
+@pytest.mark.slow
 def test_the_import_error_of_a_plugin_and_of_a_sensor_is_the_reason_in_the_diagnostic(packs: Packs) -> None:
     files: dict[str, str | bytes] = {
         "plugins/sprinkler.py": "import no_such_module\n" + PLUGIN.format(name="garden_sprinkler"),

@@ -141,6 +141,7 @@ def test_a_warning_is_an_error_only_with_strict(strict: bool, code: int) -> None
     assert run("robot.sdf", "--score", *(["--strict"] if strict else [])).exit_code == code
 
 
+@pytest.mark.slow
 def test_the_page_is_valid_xml_without_code_and_with_escaped_names() -> None:
     evil = "&lt;script&gt;alert(1)&lt;/script&gt;&quot;"
     text = ROBOT.replace('name="imu" type="imu"', f'name="{evil}" type="{evil}"')
@@ -324,6 +325,7 @@ def test_a_folder_without_files_is_an_error() -> None:
     assert "SK-CLI-062" in result.output
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no named pipes")
 def test_links_pipes_and_hostile_names_are_harmless() -> None:
     Path("secret.sdf").write_text(MODEL)

@@ -262,6 +262,7 @@ def test_bag_recover_completes_a_bag(world: Path) -> None:
     assert simkit("bag", "recover", "missing.mcap").exit_code == 2
 
 
+@pytest.mark.slow
 def test_doctor_names_versions_and_the_renderer_with_its_speed() -> None:
     result = simkit("doctor")
     assert result.exit_code == 0
@@ -298,6 +299,7 @@ def test_a_missing_opengl_is_a_note_of_doctor_and_a_problem_only_if_it_is_reques
     assert "SK-RENDER-001" in result.stdout and "problems found; see the lines above" in result.stdout
 
 
+@pytest.mark.slow
 def test_doctor_names_the_folders_of_its_variables(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name, folder in (("SIMKIT_SAVE_PATH", tmp_path), ("SIMKIT_RESOURCE_PATH", tmp_path / "gone")):
         monkeypatch.setenv(name, str(folder))

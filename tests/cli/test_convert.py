@@ -406,6 +406,7 @@ OWN = """<sdf version="1.9"><world name="w"><gazebo_quirks>1</gazebo_quirks>
 <module_name>absent</module_name><shadow_gz>true</shadow_gz></plugin></world></sdf>"""
 
 
+@pytest.mark.slow
 def test_elements_of_our_own_come_out_with_their_prefix_and_mean_the_same(here: Path) -> None:
     Path("own.sdf").write_text(OWN)
     broadcaster = "joint_state_broadcaster/JointStateBroadcaster"

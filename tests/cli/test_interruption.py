@@ -84,6 +84,7 @@ def test_an_interrupt_during_a_long_call_of_a_library_ends_the_process(tmp_path:
     assert interrupt_loading(tmp_path, code) == (130, "interrupted\n")
 
 
+@pytest.mark.slow
 def test_files_and_clean_up_code_are_finished_before_the_end(tmp_path: Path) -> None:
     code = """
         try:

@@ -63,6 +63,7 @@ def test_the_readers_accept_the_intact_input(kind: str, reader: Reader) -> None:
         assert expected in (None, answer.get("code")), (command, answer)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_broken_inputs_are_accepted_or_refused(kind: str, reader: Reader, tmp_path: Path) -> None:
     found = [problem(reader, t, index, tmp_path, 0) for t in of_kind(kind)[:3] for index in range(QUICK)]

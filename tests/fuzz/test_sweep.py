@@ -37,6 +37,7 @@ def swept(reader: Reader, place: Place, values: tuple[str, ...], folder) -> list
     return problems
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", documents())
 def test_a_document_of_the_sweep_loads(name: str, reader: Reader) -> None:
     main = f"input.{name.rpartition('.')[2]}"

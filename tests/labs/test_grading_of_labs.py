@@ -79,6 +79,7 @@ def test_an_edited_exercise_or_world_is_told_and_not_used(teacher: Path, student
     assert report[0]["points"] == 0.0
 
 
+@pytest.mark.slow
 def test_the_hand_in_of_the_student_is_used_with_its_further_modules(teacher: Path, student: Path) -> None:
     (student / "push.py").write_text("import helper\n" + SOLUTION.replace("(1, 0, 0)", "helper.velocity"))
     (student / "helper.py").write_text("import tools\nvelocity = (1.0 - tools.speed, 0, 0)\n")
@@ -86,6 +87,7 @@ def test_the_hand_in_of_the_student_is_used_with_its_further_modules(teacher: Pa
     assert (found.exit_code, "note:" in found.output) == (0, False)
 
 
+@pytest.mark.slow
 def test_a_further_module_replaces_none_of_the_lab(teacher: Path, student: Path) -> None:
     (student / "push.py").write_text("import tools\n" + SOLUTION.replace("(1, 0, 0)", "(tools.speed, 0, 0)"))
     (student / "tools").mkdir()

@@ -69,6 +69,7 @@ def test_a_list_of_few_files_has_a_largest_size_in_bytes() -> None:
     assert refusal(zip64(b"".join(entry(b"%08x" % i, extra=padding) for i in range(count)), count))[0] == "large"
 
 
+@pytest.mark.slow
 def test_a_million_entries_behind_a_zip64_record_take_no_memory(tmp_path: Path) -> None:
     (tmp_path / "z.zip").write_bytes(zip64(entry(b"00000000") * 1_200_000, 1_200_000))
     result = run_limited(["replay", "--list", str(tmp_path / "z.zip")], 400)

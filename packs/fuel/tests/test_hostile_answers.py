@@ -227,6 +227,7 @@ def test_an_endless_page_of_a_redirect_takes_no_memory(tmp_path: Path) -> None:
     assert result.returncode == 1 and "more than 1 MiB" in result.stderr, result.stderr
 
 
+@pytest.mark.slow
 def test_many_slow_models_end_with_the_time_of_the_run(fuel: object) -> None:
     """Each model comes in time; all together do not."""
     names = "".join(f"<include><uri>SERVER/1.0/o/models/m{i}</uri><name>m{i}</name></include>\n" for i in range(100))

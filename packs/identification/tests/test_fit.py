@@ -71,6 +71,7 @@ def test_a_latency_comes_back_although_it_acts_in_whole_steps(pushed: Path) -> N
     assert result.values[path] == pytest.approx(0.03, abs=0.004)  # less than a step of 5 ms
 
 
+@pytest.mark.slow
 def test_a_pendulum_gives_its_damping_and_its_centre_of_mass(tmp_path: Path) -> None:
     bag = record(pendulum(0.08, 0.4), tmp_path / "swing.mcap", swing)
     vary = ["swing::hinge.axis.dynamics.damping", "swing::bob.inertial.com.z"]
@@ -119,6 +120,7 @@ def test_several_recordings_validate_each_other(tmp_path: Path) -> None:
         assert list(fold.values.values()) == pytest.approx([2.0, 1.5], rel=1e-3)
 
 
+@pytest.mark.slow
 def test_the_file_of_a_result_is_a_scenario_with_the_fitted_values(pushed: Path, tmp_path: Path) -> None:
     world = tmp_path / "slider.sdf"
     world.write_text(slider())

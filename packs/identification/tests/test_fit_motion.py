@@ -59,6 +59,7 @@ def test_friction_comes_back_from_short_parts_of_tosses() -> None:
     assert low < 0.18 < high and high - low < 0.1
 
 
+@pytest.mark.slow
 def test_a_bag_of_poses_is_a_free_motion(tmp_path: Path) -> None:
     def slide(sim: simkit.Simulation) -> None:
         sim.model("cube").set_pose(Pose.from_rpy(0, 0, 0.05, 0, 0, 0))

@@ -34,6 +34,7 @@ def test_the_terminals_of_the_page_show_what_it_says(sockets: Path, tmp_path: Pa
         desk.finish()
 
 
+@pytest.mark.slow
 def test_the_four_launch_files_start_the_same_run(tmp_path: Path) -> None:
     assert [Path(block.title).suffix for block in LAUNCH_FILES] == [".py", ".xml", ".yaml", ".launch"]
     states = set()

@@ -137,6 +137,7 @@ def test_the_printed_run_is_a_scenario_that_does_the_same(folder: Path, line: Ca
     assert places[0][0] == pytest.approx(0.3 * 0.9, abs=0.02)
 
 
+@pytest.mark.slow
 def test_a_scenario_runs_a_launch_file_with_permission_only(folder: Path) -> None:
     text = "launch: cart.launch.py\narguments: {speed: 0.5}\nduration: 1\n"
     (folder / "run.yaml").write_text(text, encoding="utf-8")
@@ -180,6 +181,7 @@ def test_overrides_reach_the_robot_of_a_launch_file(line: Callable[..., Result])
     assert wrong.exit_code == 2
 
 
+@pytest.mark.slow
 def test_a_bundle_repeats_a_launched_run_without_its_nodes(line: Callable[..., Result], folder: Path) -> None:
     (folder / "run.yaml").write_text("launch: cart.launch.py\nduration: 1\n", encoding="utf-8")
     assert line("bundle", "run.yaml", "-o", "run.zip", "--allow-code").exit_code == 0
@@ -216,6 +218,7 @@ rclpy.spin(node)
 """
 
 
+@pytest.mark.slow
 def test_an_environment_of_gymnasium_acts_on_a_topic_that_a_node_creates(folder: Path) -> None:
     """Each episode waits for the topic, and both have the same bits."""
     (folder / "driver.py").write_text(RELAY, encoding="utf-8")

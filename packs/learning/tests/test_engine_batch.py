@@ -113,6 +113,7 @@ def test_a_batch_has_the_odometry_imu_and_joint_states_of_single_robots() -> Non
     assert assert_like_single("turtlebot3_world", 5, 2, overrides=(*MUJOCO, *LOADS), **options) == 2
 
 
+@pytest.mark.slow
 def test_a_batch_has_the_rewards_and_collisions_of_the_registered_goal_task() -> None:
     assert assert_like_single("simkit/TurtleBot3Goal-v0", 8, 2, control_period=0.5, time_limit=3.5) >= 2
 

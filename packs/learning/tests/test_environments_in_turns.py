@@ -64,6 +64,7 @@ name="gz::sim::systems::OdometryPublisher"><odom_topic>odom</odom_topic></plugin
 PLANAR = """<plugin filename="libgazebo_ros_planar_move.so" name="drive"><publish_rate>20</publish_rate></plugin>"""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "drive", [ACKERMANN, MECANUM, VELOCITY, PLANAR], ids=["ackermann", "mecanum", "velocity", "planar"]
 )

@@ -54,6 +54,7 @@ def test_a_robot_reaches_a_goal_on_the_true_map(folder: Path) -> None:
         sim.check_nodes()
 
 
+@pytest.mark.slow
 def test_the_option_adds_the_servers_of_nav2_and_localises_the_robot_where_it_is(folder: Path) -> None:
     found = run("rooms.sdf", "--nav", "--duration", "2", "--assert", "topic('/amcl_pose').pose.pose.position.x > 0.9")
     assert found.exit_code == 0, found.output
@@ -119,6 +120,7 @@ def test_problems_of_a_parameter_file_have_its_lines(folder: Path) -> None:
     assert "nav2.yaml:3: warning SK-NAV-002: plugin 'planner_server': no effect here: wrong" in found.output
 
 
+@pytest.mark.slow
 def test_a_server_with_an_invalid_parameter_ends_the_run_and_the_log_names_the_line(folder: Path) -> None:
     lines = "    planner_plugins: [GridBased]\n    GridBased:\n      tolerance: -1\n"
     (folder / "nav2.yaml").write_text(parameters(planner_server=lines), "utf-8")

@@ -324,6 +324,7 @@ def test_messages_of_another_type_are_ignored_and_reported_once(tmp_path: Path) 
 # ------------------------------------------------------------------ truth
 
 
+@pytest.mark.slow
 def test_wheels_and_gyroscope_follow_the_truth(tmp_path: Path) -> None:
     """2 mm on a way of 1.2 m. In lab 12, the wheels err."""
     file = tmp_path / "w.sdf"

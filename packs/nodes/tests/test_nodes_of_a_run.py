@@ -288,6 +288,7 @@ def test_an_exercise_runs_its_nodes_with_a_permission(folder: Path) -> None:
     assert graded.passed
 
 
+@pytest.mark.slow
 def test_an_exercise_tells_how_a_program_for_ros_has_failed(folder: Path) -> None:
     text = (
         "world: w.sdf\nduration: 0.5\nat_end: ['time > 0.4']\nexercise: {title: Count, hand_in: counter.py, node: %s}\n"

@@ -31,6 +31,7 @@ def printed(text: str) -> Any:
     return json.loads(text[text.index("{") : text.rindex("}") + 1])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("program", PROGRAMS, ids=lambda path: path.stem)
 def test_a_program_prints_the_same_as_on_ros(program: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with simkit.load(EMPTY) as sim:

@@ -127,6 +127,7 @@ def call(sim: simkit.Simulation, floor: str, doors: int = 2, session: str = "me"
     sim.publish("/lift_requests", msgs.make("rmf_lift_msgs/msg/LiftRequest", lift_name="lift1", **fields))
 
 
+@pytest.mark.slow
 def test_a_lift_moves_with_closed_doors_opens_them_and_carries_a_crate() -> None:
     with simkit.load(lift(crate=CRATE)) as sim:
         states = sim.subscribe("/lift_states")

@@ -72,6 +72,7 @@ def test_a_straight_way_has_the_time_of_its_speed_and_acceleration() -> None:
         assert place(sim) == pytest.approx(before, abs=1e-4)  # no drift at rest
 
 
+@pytest.mark.slow
 def test_the_robot_turns_on_the_spot_reverses_and_ends_with_the_heading_of_the_path() -> None:
     with simkit.load(world()) as sim:
         follow(sim, (0, 0, 0), (0, 1, math.pi / 2), (0, 0.2, math.pi / 2), (0, 0.2, 0))

@@ -131,6 +131,7 @@ def test_a_lidar_that_detects_collisions_has_no_echoes() -> None:
         assert np.asarray(sim.sensor("robot::l::lidar").latest.ranges).min() > 8.8
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["rgbd_camera", "depth_camera"])
 def test_a_depth_camera_has_echoes(kind: str) -> None:
     with simkit.load(world(f"{STILL}<size>1 1 1</size>", sensor=CAMERA.format(kind=kind))) as sim:

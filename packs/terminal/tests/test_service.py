@@ -138,6 +138,7 @@ def test_an_error_gives_its_remedy(words: tuple[str, ...], code: str, hint: str,
     assert code in result.stderr and hint in result.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text", ["/Tuner: {ros__parameters: {p_gain: 2024-13-45}}", "/Tuner: {ros__parameters: &a {x: *a}}", "[" * 3000]
 )
@@ -147,6 +148,7 @@ def test_an_invalid_parameter_file_is_reported(text: str, yard: Any, simkit_line
     assert told.exit_code == 2 and "SK-CLI-041" in told.stderr and "is not YAML" in told.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", ["2024-13-45", "!!bool foo", "9" * 5000, "[" * 3000])
 def test_a_value_that_is_no_yaml_is_a_text_and_refused(text: str, yard: Any, simkit_line: Any) -> None:
     told = simkit_line("param", "set", "/Tuner", "p_gain", text)

@@ -196,6 +196,7 @@ def test_raw_bytes_are_json_too(yard: Any, simkit_line: Any) -> None:
     assert found[:4] == [0, 1, 0, 0]
 
 
+@pytest.mark.slow
 def test_an_unknown_frame_has_no_pose_in_itself(yard: Any, simkit_line: Any) -> None:
     told = simkit_line("tf", "echo", "nobody", "nobody", "--once")
     assert told.exit_code == 2 and "SK-CLI-038" in told.stderr

@@ -50,6 +50,7 @@ def test_the_pump_has_a_rate_and_the_volume_has_limits() -> None:
         assert "SK-PLUGIN-041" in {found.code for found in sim.diagnostics}
 
 
+@pytest.mark.slow
 def test_a_submarine_rises_at_the_speed_that_its_drag_allows_and_trims() -> None:
     drag = """<plugin filename="gz-sim-hydrodynamics-system" name="gz::sim::systems::Hydrodynamics">
       <link_name>hull</link_name><zDotW>-40</zDotW><zWabsW>-60</zWabsW><zW>-20</zW></plugin>"""

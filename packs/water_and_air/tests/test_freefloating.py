@@ -194,6 +194,7 @@ def test_a_keel_and_a_rudder_have_lift_and_drag_of_the_angle_of_attack() -> None
             assert gained[1] == pytest.approx(up * math.cos(angle) + back * math.sin(angle), rel=0.05)
 
 
+@pytest.mark.slow
 def test_a_sail_across_the_boat_is_pushed_by_the_wind_and_a_keel_follows_the_current() -> None:
     with simkit.load(foil("sail", "-1 0 0", "0 6 0", "<fluid_density>1.2</fluid_density>")) as sim:
         sim.run(0.1)

@@ -126,6 +126,7 @@ def fly(sim: simkit.Simulation, peer: MavlinkPeer, steps: int, target: Any) -> l
     return states
 
 
+@pytest.mark.slow
 def test_a_quadrotor_flies_to_a_place_over_mavlink_and_hovers() -> None:
     with connected(iris()) as (sim, peer):
         states = fly(sim, peer, 1000, (0.3, -0.2, -2.3))

@@ -155,6 +155,7 @@ def test_a_disabled_controller_stops_the_rotors_and_waits_for_a_new_command() ->
         assert sim.joint("quad::j0").velocity > 1
 
 
+@pytest.mark.slow
 def test_commands_stay_within_their_limits_and_nan_is_ignored() -> None:
     limits = "<maximumLinearVelocity>0.3 0.3 0.3</maximumLinearVelocity>"
     limits += "<maximumAngularVelocity>1 1 0.2</maximumAngularVelocity>"

@@ -99,6 +99,7 @@ def test_published_parameters_of_the_waves_move_the_boat() -> None:
         assert np.ptp(pitches) / 2 == pytest.approx(0.2 * wavenumber, rel=0.25)
 
 
+@pytest.mark.slow
 def test_a_direction_may_be_an_angle_in_messages_and_files() -> None:
     vector = "type: VECTOR3D vector3d_value { x: 1.0 y: 0.0 }"
     angles, turned = [], WAVES.replace(vector, "type: VECTOR3D vector3d_value { x: 0.6 y: 0.8 }")

@@ -180,6 +180,7 @@ def test_a_damaged_file_is_told(server: Server, content: str) -> None:
         Client(server.path)
 
 
+@pytest.mark.slow
 def test_the_file_of_a_killed_process_is_recognised_and_removed(
     court: simkit.Simulation, sockets: Path, tmp_path: Path
 ) -> None:

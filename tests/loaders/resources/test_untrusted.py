@@ -251,6 +251,7 @@ def test_entities_are_refused_in_every_format(declared, root):
     assert errors(f"{declared}]><{root} name='&a;'/>") == ["SK-XML-003"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["model.config", "parts.xacro", "package.xml", "inner.xml"])
 def test_entities_are_refused_in_every_referenced_file(write, tmp_path, name):
     """The entity in the file would expand to ten thousand million words."""

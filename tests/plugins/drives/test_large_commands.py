@@ -136,6 +136,7 @@ def test_every_kind_of_command_is_checked(topic: str, value: float) -> None:
         assert [d.code for d in sim.diagnostics if d.severity == "warning"] == expected
 
 
+@pytest.mark.slow
 def test_the_command_line_names_the_bound_and_does_not_ask_for_a_ground(tmp_path: Path) -> None:
     robot = ROBOT.format(name="bot", x=0, plugin=DRIVE.format(topic="/cmd_vel"))
     (tmp_path / "w.sdf").write_text(WORLD.format(robots=robot))

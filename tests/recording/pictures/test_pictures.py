@@ -274,6 +274,7 @@ def test_goals_belong_to_the_picture() -> None:
         np.testing.assert_allclose(driven.goals["/goal_pose"], (4, 3, 0))
 
 
+@pytest.mark.slow
 def test_a_picture_changes_no_bit_of_the_run_and_shows_shadows(tmp_path: Path) -> None:
     sun = """<light name="sun" type="directional"><direction>0.5 0.3 -1</direction><cast_shadows>true</cast_shadows>
       </light>"""

@@ -32,6 +32,7 @@ def test_a_wheel_with_a_large_gain_is_named_and_not_its_base(tmp_path: Path, mon
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_the_same_wheels_run_with_an_implicit_integrator() -> None:
     with simkit.load(BASE.replace("<option ", '<option integrator="implicitfast" ')) as sim:
         sim.mj_data.ctrl[:] = 5.0

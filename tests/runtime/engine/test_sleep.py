@@ -398,6 +398,7 @@ def test_a_restore_over_a_spawn_and_a_removal_repeats_the_bits() -> None:
     assert state(sim) == state(plain)
 
 
+@pytest.mark.slow
 def test_two_processes_give_the_same_bits(tmp_path: Path) -> None:
     file = tmp_path / "world.sdf"
     file.write_text(world(*EVENTS), encoding="utf-8")

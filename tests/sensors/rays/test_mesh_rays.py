@@ -236,6 +236,7 @@ def test_the_hull_of_a_moving_mesh_collides_and_its_copy_for_rays_does_not(own_f
         assert (sim.mj_model.geom_contype[copy], sim.mj_model.geom_conaffinity[copy]) == (0, 0)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not (CORPUS / PAL[0]).is_dir(), reason="needs the corpus in ../shared")
 def test_the_laser_of_pals_tiago_sees_nothing_of_its_own_base(monkeypatch: pytest.MonkeyPatch) -> None:
     """The laser is in a slot of the base; the hull of the base covered 552 of its 666 rays."""

@@ -218,6 +218,7 @@ def test_a_function_of_a_module_needs_the_permission_for_all_code(stranger: Path
     assert "antigravity" not in sys.modules
 
 
+@pytest.mark.slow
 def test_a_stored_sweep_gives_no_permission(stranger: Path) -> None:
     """The results name their sweep file; a sweep that was allowed once is refused without the option."""
     assert run("sweep", "sweep.yaml", "-o", "rows", "-q", "--allow-code")[0] == 0

@@ -57,6 +57,7 @@ def cart(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     return world, bag
 
 
+@pytest.mark.slow
 def test_the_world_repeats_the_commands_and_nothing_differs(cart: tuple[Path, Path]) -> None:
     world, bag = cart
     table = simkit.compare(bag, world, seed=2)
@@ -65,6 +66,7 @@ def test_the_world_repeats_the_commands_and_nothing_differs(cart: tuple[Path, Pa
     assert table.row("/imu", "noise of angular_velocity.x").chance < 1.0
 
 
+@pytest.mark.slow
 def test_a_changed_noise_and_rate_of_the_world_are_found(cart: tuple[Path, Path], tmp_path: Path) -> None:
     world, bag = cart
     page = tmp_path / "compare.html"

@@ -103,6 +103,7 @@ def test_a_turtlebot_reaches_a_goal_with_the_launch_files_of_nav2(
         sim.check_nodes()
 
 
+@pytest.mark.slow
 def test_all_nodes_of_the_bringup_are_active_at_once(launched: Launch, tmp_path: Path) -> None:
     body = ROOMS + f'        included("nav2_bringup", "bringup_launch.py", map="{tmp_path / "rooms.yaml"}"),\n'
     with launched(body) as sim:
@@ -113,6 +114,7 @@ def test_all_nodes_of_the_bringup_are_active_at_once(launched: Launch, tmp_path:
         sim.check_nodes()
 
 
+@pytest.mark.slow
 def test_a_namespace_is_that_of_all_nodes(launched: Launch, tmp_path: Path) -> None:
     arguments = f'map="{tmp_path / "rooms.yaml"}", namespace="robot1", use_namespace="True"'
     with launched(ROOMS + f'        included("nav2_bringup", "bringup_launch.py", {arguments}),\n') as sim:
@@ -124,6 +126,7 @@ def test_a_namespace_is_that_of_all_nodes(launched: Launch, tmp_path: Path) -> N
         assert controller._options.desired_linear_vel == 0.26  # of the file, below the namespace
 
 
+@pytest.mark.slow
 def test_slam_in_place_of_a_map(launched: Launch) -> None:
     with launched(ROOMS + '        included("nav2_bringup", "bringup_launch.py", slam="True"),\n') as sim:
         maps = sim.subscribe("/map", keep=1)
@@ -201,6 +204,7 @@ def test_a_launch_file_of_ros_1_starts_move_base_with_its_parameters(launched: L
         sim.check_nodes()
 
 
+@pytest.mark.slow
 def test_the_launch_files_of_turtlebot3_start_slam_and_nav2(launched: Launch, tmp_path: Path) -> None:
     with launched(ROOMS + '        included("turtlebot3_cartographer", "cartographer.launch.py"),\n') as sim:
         maps = sim.subscribe("/map", keep=1)

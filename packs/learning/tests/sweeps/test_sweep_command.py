@@ -68,6 +68,7 @@ def test_parts_of_a_sweep_make_one_table(folder: Path) -> None:
     assert (folder / "parts" / "results.csv").read_bytes() == (folder / "whole" / "results.csv").read_bytes()
 
 
+@pytest.mark.slow
 def test_a_change_of_the_world_is_another_sweep(folder: Path) -> None:
     command("sweep.yaml", "--jobs", "1")
     (folder / "box.sdf").write_text(BOX.replace("0 0 0.5", "0 0 0.6"), encoding="utf-8")

@@ -18,6 +18,7 @@ def both_ways(type_name: str, flavour: MessageFlavour, message: msgs.Message) ->
     return flavour.to_simkit(type_name)(flavour.to_program(type_name)(message))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("flavour", [ROS2, ROS1], ids=["ROS 2", "ROS 1"])
 def test_every_type_survives_the_way_to_a_program_and_back(flavour: MessageFlavour) -> None:
     for name in message_type_names():

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 TEXT = """
 import math, numpy as np
@@ -34,6 +35,7 @@ def test_a_program_can_use_names_that_numpy_2_has_left_out(run_program: Callable
     assert not hasattr(np, "Inf")  # simkit's own module has not changed
 
 
+@pytest.mark.slow
 def test_the_virtual_environment_may_be_in_the_folder_of_the_program(tmp_path: Path) -> None:
     packages = tmp_path / ".venv" / "site-packages"
     packages.mkdir(parents=True)

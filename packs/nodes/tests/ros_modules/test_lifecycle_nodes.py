@@ -6,6 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 from textwrap import dedent
 
+import pytest
+
 import simkit
 
 RunProgram = Callable[..., list[str]]
@@ -54,6 +56,7 @@ def change(sim: simkit.Simulation, label: str) -> bool:
     return responses[0]
 
 
+@pytest.mark.slow
 def test_a_manager_configures_and_activates_a_lifecycle_node(sim: simkit.Simulation, tmp_path: Path) -> None:
     file = tmp_path / "talker.py"
     file.write_text(TALKER + "rclpy.spin(node)\n")

@@ -106,6 +106,7 @@ def test_a_failed_run_leaves_a_bundle_that_fails_in_the_same_way(folder: Path) -
     assert "no ice" in found.stdout
 
 
+@pytest.mark.slow
 def test_a_plugin_that_fails_to_load_leaves_a_bundle_too(folder: Path) -> None:
     (folder / "plugins" / "boom.py").write_text(BOOM.replace("pass", "raise ValueError('no ice')"))
     run = simkit("run", "sled.sdf", "--duration", "1", "--plugin-path", "plugins", "--bundle-on-failure", "kept")

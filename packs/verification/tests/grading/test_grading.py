@@ -88,6 +88,7 @@ def test_each_run_and_check_gets_its_points_and_the_reason(folder):
     assert json.loads(json.dumps(grade_json(graded)))["points"] == 4.0
 
 
+@pytest.mark.slow
 def test_a_plugin_that_raises_is_reported_with_its_line(folder):
     keep_one_run(folder)
     file = hand_in(folder, "self.cart.set_velocity((1 / 0, 0, 0))")

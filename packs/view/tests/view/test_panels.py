@@ -143,6 +143,7 @@ def test_the_paths_of_a_type_lead_to_its_numbers() -> None:
 # ---------------------------------------------------------------------- topics, log and graphs
 
 
+@pytest.mark.slow
 def test_topics_come_with_types_fields_and_rates(moving: Stage) -> None:
     page = moving.page()
     page.want(topics={}, rates={})
@@ -200,6 +201,7 @@ def test_the_graph_has_the_boxes_of_simkit_graph_with_places(moving: Stage) -> N
     assert x >= 0 and y >= 0 and x + width <= head["size"][0] + 0.2 and y + height <= head["size"][1] + 0.2
 
 
+@pytest.mark.slow
 def test_frames_come_with_their_rates(stage: Stage) -> None:
     page, sim = stage.page(), stage.sim
     page.want(frames={})
@@ -398,6 +400,7 @@ def test_what_a_page_calls_sends_and_sets_is_repeated_by_a_bundle(tmp_path: Path
 # ---------------------------------------------------------------------- bags
 
 
+@pytest.mark.slow
 def test_a_bag_has_its_topics_and_numbers_and_log(tmp_path: Path) -> None:
     with simkit.load(MOVING) as sim, Recorder(sim, tmp_path / "drive.mcap", topics=["*", "/rosout"]):
         sim.publish("/cmd_vel", {"linear": {"x": 0.5}})
