@@ -199,8 +199,9 @@ def _rigid_groups(members: list[SceneLink], moves: bool, diagnostics: Diagnostic
 def _with_some_mass(members: list[SceneLink], diagnostics: Diagnostics) -> dict[str, BodyInertia]:
     """Return the inertias of links with an inertia but without mass; the first link gets the least mass."""
     foot = members[0]
-    message = f"link {foot.scoped}: {foot.inertial.mass:g} kg is too light to move; {LEAST_MASS:g} kg are used"
-    diagnostics.warning("SK-PHYS-011", message, foot.where, "give the link its mass")
+    if foot.inertial.mass >= 0.0:  # a negative mass is an error of the file
+        message = f"link {foot.scoped}: {foot.inertial.mass:g} kg is too light to move; {LEAST_MASS:g} kg are used"
+        diagnostics.warning("SK-PHYS-011", message, foot.where, "give the link its mass")
     written = {m.scoped: _file_inertia(repair_inertia(m.inertial).inertial) for m in members}
     inertia = written[foot.scoped]
     written[foot.scoped] = BodyInertia(LEAST_MASS, inertia.com, inertia.inertia, inertia.exact)

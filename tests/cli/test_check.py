@@ -171,6 +171,12 @@ def test_a_nan_of_a_static_model_leaves_the_other_inertias_to_be_corrected(here:
     assert "1 impossible inertia\n" in run("m.sdf", "--fix-inertia").stdout
 
 
+def test_a_negative_mass_is_one_error_without_a_warning_about_a_light_link(here: Path) -> None:
+    link = "<link name='a'><inertial><mass>-1</mass></inertial></link>"
+    (here / "m.sdf").write_text(f"<sdf version='1.9'><world name='w'><model name='m'>{link}</model></world></sdf>")
+    assert [d.code for d in simkit.check("m.sdf") if d.severity != "note"] == ["SK-SDF-013"]
+
+
 def test_missing_inertia_values_of_sdf_are_inserted(here: Path) -> None:
     text = (
         "<sdf version='1.9'><model name='m'><link name='a'><inertial><mass>2</mass>"

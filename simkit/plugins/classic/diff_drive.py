@@ -286,7 +286,7 @@ class GazeboRosDiffDrive(CommandedDrive):
         elif options.from_encoders:
             self._advance()
         if self._truth is not None:
-            self._truth.tell()
+            self._truth.publish()
         if self._outputs.wants_odometry:
             self._outputs.tell(*self._measured(), *self._covariances())
         self._outputs.tell_joints()

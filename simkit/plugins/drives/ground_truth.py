@@ -47,7 +47,7 @@ class GroundTruth(SharedByCopies):
         """Topic of the true odometry."""
         return self._odom.topic
 
-    def tell(self) -> None:
+    def publish(self) -> None:
         """Publish the present truth, if the topics have subscribers."""
         now = self._sim.time_ns
         if self._odom.wanted:

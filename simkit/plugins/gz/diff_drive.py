@@ -135,7 +135,7 @@ class DiffDrive(TwistDrive):
             covariances = noisy.messages_covariance() if noisy.noise.wheel_variance else ()
             self.publish_odometry(noisy.reckoning.pose, noisy.twist, *covariances)
         if self._truth is not None:
-            self._truth.tell()
+            self._truth.publish()
 
     def publish_planar(self, ahead: float, turn: float) -> None:
         """Publish the pose of `odometry` and a forward speed [m/s] and turning rate [rad/s], as `after_step` does."""
@@ -146,7 +146,7 @@ class DiffDrive(TwistDrive):
         if self._tf.wanted:
             self._tf.publish_later(partial(planar_transform, *fields))
         if self._truth is not None:
-            self._truth.tell()
+            self._truth.publish()
 
     # ------------------------------------------------------------------ many simulations
 
