@@ -135,7 +135,7 @@ def simkit_run(bridge_options: list[str]) -> Callable[..., Any]:
     @contextmanager
     def start(*arguments: str, with_ros: bool = True) -> Iterator[Run]:
         ros = ["--ros", *bridge_options] if with_ros else []
-        with Run(["run", "--quiet", *ros, *arguments], dict(os.environ)) as run:
+        with Run(["run", *ros, *arguments], dict(os.environ)) as run:
             if with_ros:
                 run.until(r"ROS 2: .* in domain")
             yield run
