@@ -314,8 +314,7 @@ def picture(entry: Entry, file: Path) -> str:
 def motion(result: dict[str, Any]) -> str:
     """Return the text of what works, for one entry."""
     if "rate" in result:
-        counts = f"{counted(result['models'], 'model')}, {counted(result['sensors'], 'sensor')}"
-        return f"{counts}; {result['rate']:.0f} × real time"
+        return f"{counted(result['models'], 'model')}; {result['rate']:.0f} × real time"
     if "drive" in result:
         texts = []
         for part, r in sorted(result["drive"].items(), reverse=True):
@@ -326,7 +325,7 @@ def motion(result: dict[str, Any]) -> str:
     if "error" not in result:
         return f"{result['joints']} joints"
     error = 1000 * result["error"]
-    return f"{result['joints']} joints, error {f'{error:.2g}' if error > 0.01 else '< 0.01'} mrad or mm"
+    return f"{result['joints']} joints, error {f'{error:.2g}' if error > 0.01 else '< 0.01'}"
 
 
 def write_page(results: dict[str, Any]) -> None:
@@ -346,13 +345,13 @@ def write_page(results: dict[str, Any]) -> None:
         "Worlds": ("world",),
     }
     for title, kinds in groups.items():
-        lines += [f"\n## {title}\n", "| | name and file | result |", "|---|---|---|"]
+        lines += [f"\n## {title}\n", "| | result |", "|---|---|"]
         for entry, result in rows.items():
             if entry.kind in kinds:
                 text = motion(result)
                 image = f"![](images/gallery/{entry.slug}.webp)"
                 text += f"; {NOTES[entry.slug]}" if entry.slug in NOTES else ""
-                cells = [image, f"**{entry.name}** `{entry.file}`", text]
+                cells = [image, f"**{entry.name}** `{entry.file}`: {text}"]
                 lines.append(f"| {' | '.join(cells)} |")
     PAGE.write_text("\n".join(lines) + "\n")
 
