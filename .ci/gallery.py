@@ -15,7 +15,6 @@ import contextlib
 import itertools
 import json
 import math
-import platform
 import re
 import subprocess
 import sys
@@ -314,7 +313,7 @@ def picture(entry: Entry, file: Path) -> str:
 def motion(result: dict[str, Any]) -> str:
     """Return the text of what works, for one entry."""
     if "rate" in result:
-        return f"{counted(result['models'], 'model')}; {result['rate']:.0f} × real time"
+        return counted(result["models"], "model")
     if "drive" in result:
         texts = []
         for part, r in sorted(result["drive"].items(), reverse=True):
@@ -333,7 +332,6 @@ def write_page(results: dict[str, Any]) -> None:
     rows = {entry: results[entry.slug] for entry in entries() if entry.slug in results}
     lines = [
         HEAD.read_text().format(
-            python=platform.python_version(),
             packages=", ".join(f"`{name}` {version}" for name, version in PACKAGES.items()),
             controllers=CONTROLLERS,
         )

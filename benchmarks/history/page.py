@@ -92,7 +92,7 @@ def history() -> str:
     lines = [
         "## By version\n",
         "![Ratio to MuJoCo alone of each measurement, over the commits](images/speed.svg)\n",
-        "Two entries of one commit differ by up to 10 %; the check of two commits is more exact, because it alternates.",
+        "Two entries of one commit differ by up to 10 %; the check of two commits alternates, and is more exact.",
     ]
     return "\n".join(lines) + "\n"
 
