@@ -15,7 +15,6 @@ from simkit.run_spec import run_fields
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
-    from simkit.scene import SceneWorld
 
 
 def describe_run(sim: Simulation, folder: Path, is_recorded: Callable[[str], bool]) -> dict[str, str]:
@@ -53,17 +52,17 @@ def describe_run(sim: Simulation, folder: Path, is_recorded: Callable[[str], boo
     inputs = dict.fromkeys(topic for topic, role in endpoints if role == "takes" and topic not in published)
     return {
         "world": run["world"],
-        "files_sha256": hash_of_files(sim.world),
+        "files_sha256": hash_of_files(sim),
         "run": json.dumps({**run, "options": options}, default=str),
         "commands": json.dumps([topic for topic in inputs if is_recorded(topic)]),
         "left_out": json.dumps([topic for topic in inputs if not is_recorded(topic) and topic not in bus.aside]),
     }
 
 
-def hash_of_files(world: SceneWorld) -> str:
-    """Return the SHA-256 of the files that describe a world and its models, without meshes."""
+def hash_of_files(sim: Simulation) -> str:
+    """Return the SHA-256 of the files that describe a simulation's world and its models, without meshes."""
     digest = hashlib.sha256()
-    for file in dict.fromkeys(item.where.file for item in (world, *world.models)):
+    for file in dict.fromkeys((sim.world.where.file, *(model.where.file for model in sim.world.models))):
         with suppress(OSError, ValueError):
             if file is not None:
                 with open_input(file) as opened:

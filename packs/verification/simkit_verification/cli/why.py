@@ -72,9 +72,14 @@ def _opened_at(run: str, time: float | None, given: GivenOptions, *, allow_code:
         InputError: SK-CLI-064 the run ends before this time, is a bundle and options are given, or is a bag whose run
             cannot be repeated.
     """
-    from simkit.testing import golden_scenario, open_scenario, run_scenario
+    from simkit.testing import (
+        check_recorded_files,
+        golden_scenario,
+        open_scenario,
+        recorded_scenario,
+        run_scenario,
+    )
     from simkit_verification.testing.bundles import replay_until
-    from simkit_verification.testing.recorded_run import check_files, is_bag, recorded_run
 
     if "<" not in run and zipfile.is_zipfile(run):
         if names := given.names():
@@ -84,17 +89,15 @@ def _opened_at(run: str, time: float | None, given: GivenOptions, *, allow_code:
             yield sim
         return
     folders, code = (given.values.get(name, ()) for name in ("resource_paths", "plugin_paths"))
-    stored = golden_scenario(run, folders=folders, allow_code=allow_code, plugin_paths=code) if "<" not in run else None
-    is_bag_ = "<" not in run and is_bag(Path(run))
-    if is_bag_:
-        stored = recorded_run(Path(run), folders)
-    spec = scenario_spec(stored or run, given, allow_code=allow_code)
+    golden = golden_scenario(run, folders=folders, allow_code=allow_code, plugin_paths=code) if "<" not in run else None
+    recorded = recorded_scenario(run, folders=folders) if "<" not in run else None
+    spec = scenario_spec(golden or recorded or run, given, allow_code=allow_code)
     if time is not None:
-        is_world = spec.file is None and stored is None
+        is_world = spec.file is None and golden is None and recorded is None
         spec = spec.with_values({"duration": time if is_world else min(time, spec.longest), "timeout": None})
     with open_scenario(spec) as sim:
-        if is_bag_ and not given.names(("resource_paths", "plugin_paths")):
-            check_files(Path(run), sim)
+        if recorded is not None and not given.names(("resource_paths", "plugin_paths")):
+            check_recorded_files(run, sim)
         print_diagnostics(sim.diagnostics, verbose=False)
         add_diagnostics(sim.diagnostics)
         run_scenario(spec, sim, judged=False)

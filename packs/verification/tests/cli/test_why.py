@@ -129,7 +129,7 @@ def test_a_bag_is_played_in_its_world_with_its_options(bag: str) -> None:
     options = ("--seed", "3", "--set", "box.pose=1 0 0.05 0 0 0", "-t", "0.3")
     assert why(bag, "-t", "0.3") == why("push.yaml", *options)
     assert why(bag)["time"] == 0.5
-    assert why("hill.sdf", "--play", bag, *options) == why("push.yaml", *options)  # the world in place of the recorded one
+    assert why("hill.sdf", "--play", bag, *options) == why("push.yaml", *options)
 
 
 def test_a_bag_without_commands_and_a_folder_are_repeated(folder: Path) -> None:

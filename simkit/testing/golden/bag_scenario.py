@@ -5,40 +5,41 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING, Final
 
-from simkit import RunSpec, Simulation
 from simkit.errors import InputError
 from simkit.json_reader import parse_json
 from simkit.recording.bags.reader import BagReader, open_bag_to_read
 from simkit.recording.bags.recorded_run import hash_of_files
-from simkit.run_spec import FilePath
+from simkit.run_spec import FilePath, RunSpec
 from simkit.testing.golden.record_encoding import decode_scenario
 from simkit.testing.scenarios.readable_files import ReadableFiles
 
-_CODE = "SK-CLI-064"
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+_CODE: Final = "SK-CLI-064"
 
 
-def is_bag(path: Path) -> bool:
-    """Check whether a path is a bag: its suffix, or the metadata of a rosbag2 folder."""
-    return path.suffix in (".mcap", ".db3") or (path / "metadata.yaml").is_file()
-
-
-def recorded_run(path: Path, folders: Sequence[FilePath] = ()) -> RunSpec:
-    """Return the specification of the run of a bag, which plays the commands of the bag.
+def recorded_scenario(bag: FilePath, *, folders: Sequence[FilePath] = ()) -> RunSpec | None:
+    """Return the run that a bag was recorded from, with the commands of the bag; None if a path is not a bag.
 
     Args:
-        path: bag.
+        bag: bag.
         folders: folders of the user in which the bag may name files, beside its own folder and its project.
 
     Raises:
         InputError: SK-CLI-064 the bag does not describe its run, or has not all commands of the run; SK-URI-003 it
             names files that it may not name; SK-CLI-035 it cannot be read.
     """
-    with open_bag_to_read(path) as bag:
-        if not bag.run:
+    path = Path(bag)
+    if path.suffix not in (".mcap", ".db3") and not (path / "metadata.yaml").is_file():
+        return None
+    with open_bag_to_read(path) as reader:
+        if not reader.run:
             raise InputError(_CODE, f"{path} does not name the world of its recording", help=_help(path))
-        spec, commands, left_out = _parse_run(bag)
-        played = [topic.name for topic in bag.topics if topic.name in commands]
+        spec, commands, left_out = _parse_run(reader)
+        played = [topic.name for topic in reader.topics if topic.name in commands]
     if left_out:
         problem = f"{path} was recorded without {', '.join(left_out)}, on which its world receives commands"
         raise InputError(_CODE, problem, help="record the run again without --skip and --topic for these topics")
@@ -46,19 +47,19 @@ def recorded_run(path: Path, folders: Sequence[FilePath] = ()) -> RunSpec:
     if "<" not in spec.world and Path(spec.world).suffix and spec.beside is None:
         raise InputError(_CODE, f"{path} was recorded in {spec.world}, which does not exist", help=_help(path))
     play = str(path.absolute()) if played else ""
-    return replace(spec, duration=bag.duration, play=play, play_topics=tuple(played))
+    return replace(spec, duration=reader.duration, play=play, play_topics=tuple(played))
 
 
-def check_files(path: Path, sim: Simulation) -> None:
-    """Check that the world of a bag has the files of the recording.
+def check_recorded_files(bag: FilePath, sim: Simulation) -> None:
+    """Check that the world of a simulation has the files that it had in the recording.
 
     Raises:
         InputError: SK-CLI-064 they differ.
     """
-    with open_bag_to_read(path) as bag:
-        if bag.run.get("files_sha256") != hash_of_files(sim.world):
-            problem = f"{path}: the files of {bag.run['world']} differ from those of the recording"
-            raise InputError(_CODE, problem, help=_help(path))
+    with open_bag_to_read(Path(bag)) as reader:
+        if reader.run.get("files_sha256") != hash_of_files(sim):
+            problem = f"{bag}: the files of {reader.run.get('world')} differ from those of the recording"
+            raise InputError(_CODE, problem, help=_help(Path(bag)))
 
 
 def _help(path: Path) -> str:
