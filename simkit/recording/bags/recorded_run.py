@@ -51,7 +51,7 @@ def describe_run(sim: Simulation, folder: Path, is_recorded: Callable[[str], boo
     published = {topic for topic, role in endpoints if role == "publishes"}
     inputs = dict.fromkeys(topic for topic, role in endpoints if role == "takes" and topic not in published)
     return {
-        "world": run["world"],
+        "world": run["world"].encode(errors="replace").decode(),  # a name of a file may be no UTF-8
         "files_sha256": hash_of_files(sim),
         "run": json.dumps({**run, "options": options}, default=str),
         "commands": json.dumps([topic for topic in inputs if is_recorded(topic)]),
