@@ -296,4 +296,5 @@ PUSHED = Table(
     engines=BESIDE,
     timed=True,
     headline=("speed", "creep", "yaw"),
+    is_on_page=False,
 )

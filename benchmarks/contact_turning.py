@@ -272,6 +272,7 @@ PRECESSIONS = Table(
     steps=(0.004, 0.002, 0.001, 0.0005, 0.00025),
     quick_steps=(0.001,),
     by_step=True,
+    is_on_page=False,
 )
 TURNTABLE = Table(
     "turntable",
@@ -307,4 +308,5 @@ PENDULUMS = Table(
     quick_steps=(0.001,),
     engines=("simkit", "MuJoCo's law", "PyBullet"),
     by_step=True,
+    is_on_page=False,
 )
