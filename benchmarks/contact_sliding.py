@@ -296,5 +296,4 @@ PUSHED = Table(
     engines=BESIDE,
     timed=True,
     headline=("speed", "creep", "yaw"),
-    is_on_page=False,
 )

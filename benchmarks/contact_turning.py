@@ -272,7 +272,6 @@ PRECESSIONS = Table(
     steps=(0.004, 0.002, 0.001, 0.0005, 0.00025),
     quick_steps=(0.001,),
     by_step=True,
-    is_on_page=False,
 )
 TURNTABLE = Table(
     "turntable",
@@ -308,5 +307,4 @@ PENDULUMS = Table(
     quick_steps=(0.001,),
     engines=("simkit", "MuJoCo's law", "PyBullet"),
     by_step=True,
-    is_on_page=False,
 )
