@@ -89,7 +89,7 @@ class RcutilsLogger:
         """Check whether messages of a level are logged."""
         return LoggingSeverity(severity) >= effective_level(self.name)
 
-    def log(self, message: str, severity: int | LoggingSeverity, **kwargs: Any) -> bool:
+    def log(self, message: object, severity: int | LoggingSeverity, **kwargs: Any) -> bool:
         """Log a message.
 
         Args:
