@@ -21,7 +21,7 @@ from simkit.scene.model_namespace import NAMESPACE, model_in_namespace
 
 __all__ = ["SpawnEntry", "SpawnedModel", "add_spawned_models", "client_models", "parse_spawn", "spawned_model"]
 
-_POSED: Final = re.compile(r":\s*[^:/]*,[^:/]*(:[^:/]*(:[^:]*)?)?$")
+_POSED: Final = re.compile(r":\s*[^:/]*,[^:/]*(:[^:/]*(:[^:]*)?)?$|:[-+.\d\s]+,[-+.,\d\s]+:")
 _FORM: Final = "MODEL:x,y,yaw[:name[:namespace]], as in tiago:1,0,1.57 or robot.urdf:0,2,0:tb1:tb1; or MODEL alone"
 _FARTHEST: Final = 1e15  # [m, rad]; sums of larger numbers lose their precision or overflow
 _COUNTS: Final = {3: "x,y,yaw", 4: "x,y,z,yaw", 6: "x,y,z,roll,pitch,yaw"}

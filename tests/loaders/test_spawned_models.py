@@ -96,6 +96,21 @@ def test_the_command_line_accepts_several_spawn_options() -> None:
     assert "SK-SPAWN-001" in bad.output
 
 
+@pytest.mark.parametrize(
+    ("text", "code", "help_"),
+    [
+        ("turtlebot3_burger:0,0,0:a/b", "SK-SPAWN-001", "write MODEL:x,y,yaw"),
+        ("turtlebot3_burger:0,0,0:a:b:c", "SK-SPAWN-001", "write MODEL:x,y,yaw"),
+        ("robot:0,0,0", "SK-LOAD-002", "give a file, or a model of simkit: aruco_box, "),
+    ],
+)
+def test_a_spawn_text_that_names_no_model_is_an_error_with_the_allowed_ones(text: str, code: str, help_: str) -> None:
+    with pytest.raises(LoadError) as caught:
+        simkit.load("empty", spawn=[text])
+    error = next(d for d in caught.value.diagnostics if d.severity == "error")
+    assert error.code == code and error.hint.startswith(help_)
+
+
 @pytest.mark.parametrize("number", [1e308, -1e16, float("nan")])
 def test_a_spawn_pose_beyond_the_largest_distance_is_an_error(number: float) -> None:
     """The levers of contacts overflow at 1e308 m; a bundle can also contain NaN."""
