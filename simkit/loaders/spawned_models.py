@@ -144,6 +144,10 @@ def add_spawned_models(
             text = f"--spawn: {spawn.source!s:.80} at {spawn.place}"
             diagnostics.error("SK-SPAWN-001", text, hint=f"give numbers between -{_FARTHEST:g} and {_FARTHEST:g}")
             continue
+        if spawn.name is not None and (not isinstance(spawn.name, str) or "::" in spawn.name or not spawn.name.strip()):
+            text = f"--spawn: {spawn.source!s:.80} has the name {spawn.name!r:.80}"
+            diagnostics.error("SK-SPAWN-001", text, hint="give a text without ::, as in tb1")
+            continue
         namespace = spawn.namespace
         if namespace is not None and not (isinstance(namespace, str) and NAMESPACE.fullmatch(namespace)):
             text = f"--spawn: {spawn.source!s:.80} has the namespace {namespace!r:.80}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 from typer.testing import CliRunner
@@ -94,6 +95,12 @@ def test_the_command_line_accepts_several_spawn_options() -> None:
     bad = CliRunner().invoke(app, [*line, "turtlebot3_burger:1,0"])
     assert bad.exit_code != 0
     assert "SK-SPAWN-001" in bad.output
+
+
+@pytest.mark.parametrize("name", [5, "", "a::b"])
+def test_the_name_of_a_spawned_model_is_a_text_without_scopes(name: Any) -> None:
+    with pytest.raises(LoadError, match="SK-SPAWN-001: --spawn: turtlebot3_burger has the name"):
+        simkit.load("empty", spawn=[{"model": "turtlebot3_burger", "name": name}])
 
 
 @pytest.mark.parametrize(
