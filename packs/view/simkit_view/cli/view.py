@@ -70,6 +70,7 @@ def view(
     if not Path(target).exists() and target in _running():
         text = f"{target} runs already; start it with these options, such as `simkit run WORLD --web PORT`"
         _refuse(server | dict.fromkeys(given.names(), True), text)
+        print_status(f"note: the page shows {target}, which runs already; `simkit run WORLD --web` starts another run")
         return _show_running(target, page)
     spec = replace(given.run_spec(target, duration=math.inf), pace=1.0, paused=True)
     parts = run_parts(web=page.port, host=host, no_open=no_open)

@@ -293,6 +293,17 @@ def test_the_panels_of_tiago_are_drawn(session: Callable[..., Session]) -> None:
     assert found.errors == [] and found.outside == []
 
 
+def test_motions_of_a_paused_world_show_the_positions_of_joints(session: Callable[..., Session]) -> None:
+    found = session("tiago_table", paused=True)
+    found.until("document.querySelector('#joints output')?.textContent")  # the only packet with positions has arrived
+    found.page.locator("#tab-motions").click()
+    found.until("document.querySelectorAll('[data-target]').length > 8")
+    shown = found.until("document.querySelector('.controllers output').textContent")
+    name = found.get("document.querySelector('[data-target]').dataset.target")
+    position = found.do(lambda: found.sim.joint(f"tiago::{name}").position)
+    assert float(shown) == pytest.approx(position, abs=0.001)
+
+
 def test_a_click_in_the_picture_of_a_camera_turns_the_head_there(session: Callable[..., Session]) -> None:
     found = session("tiago_table", size=(1400, 860))
     page, joint = found.page, found.sim.joint("tiago::head_1_joint")

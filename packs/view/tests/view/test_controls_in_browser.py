@@ -71,6 +71,10 @@ def test_a_goal_without_a_navigator_says_what_is_missing(session: Callable[..., 
     found.until("app.stage.draws > 1 && document.getElementById('drive').hidden === false")
     answer = found.page.locator("#pose-answer")
     found.page.locator("#go").click()
+    assert "click on the ground" in answer.inner_text()
+    found.page.keyboard.press("Escape")
+    assert answer.inner_text() == "" and not found.get("app.aiming")
+    found.page.locator("#go").click()
     found.page.mouse.click(*found.get(GROUND))
     answer.filter(has_text="no navigator subscribes to /goal_pose").filter(has_text="--nav").wait_for(timeout=TIMEOUT)
     assert "no navigator" in found.page.locator("#notice").inner_text()
@@ -276,6 +280,10 @@ def test_a_phone_reaches_everything_with_a_finger(session: Callable[..., Session
         page.locator(f"#tab-{tab}").click()
         page.wait_for_timeout(300)
         assert (small := page.evaluate(SMALL)) == [], (tab, small)
+        if tab == "calls":
+            page.locator(".call-names .leaf").first.click()
+            page.locator("#call-send").wait_for(timeout=TIMEOUT)
+            assert page.evaluate(INSIDE, "#call-send")
     page.set_viewport_size({"width": 1280, "height": 800})
     page.locator("#left #tree").wait_for(timeout=TIMEOUT)
     assert found.errors == []

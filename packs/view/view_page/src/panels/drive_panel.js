@@ -86,6 +86,8 @@ export function makeDrivePanel(app) {
     button.classList.add('on');
     app.stage.controls.enabled = false;
     app.stage.canvas.style.cursor = 'crosshair';
+    answer.textContent = 'click on the ground and drag for the direction; Esc ends';
+    answer.className = 'dim';
   };
   const endAim = () => {
     aiming = app.aiming = null;
@@ -93,7 +95,9 @@ export function makeDrivePanel(app) {
     here.classList.remove('on');
     app.stage.controls.enabled = app.views.sensor === null;
     app.stage.canvas.style.cursor = '';
+    answer.textContent = '';
   };
+  addEventListener('keydown', event => { if (event.key === 'Escape' && aiming) endAim(); });
   const ground = event => {
     const hit = app.pickAt(event.clientX, event.clientY);
     if (hit) return hit.point;

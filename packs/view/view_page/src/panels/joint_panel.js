@@ -6,7 +6,8 @@ const MOST = 80;
 export function makeJointPanel(app) {
   const list = element('div', { class: 'joints' });
   const box = panel('joints', 'Joints', list);
-  let rows = [], newest = [];
+  let rows = [];
+  app.jointPositions = []; // newest positions; a paused world sends them once, also for panels that open later
   const degrees = joint => joint.type !== 'prismatic';
   const format = (joint, value) => degrees(joint) ? `${fixed(value * 180 / Math.PI, 1)}°` : `${fixed(value, 3)} m`;
   const make = (joint, index) => {
@@ -25,6 +26,7 @@ export function makeJointPanel(app) {
   };
   /** Shows the newest positions, unless they belong to another scene, which is then loaded soon. */
   const show = () => {
+    const newest = app.jointPositions;
     if (newest.length !== app.scene?.joints.length) return;
     for (const { joint, index, slider, value } of rows) {
       value.textContent = format(joint, newest[index]);
@@ -47,7 +49,7 @@ export function makeJointPanel(app) {
     show(); // a paused world sends no further positions
     want();
   });
-  app.on('packet:joints', ({ arrays }) => { newest = arrays.position; show(); });
+  app.on('packet:joints', ({ arrays }) => { app.jointPositions = arrays.position; show(); });
   const enable = state => { for (const { slider } of rows) slider.disabled = !state.paused; };
   app.on('state', enable);
   box.addEventListener('toggle', want);

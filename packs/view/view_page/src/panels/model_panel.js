@@ -22,11 +22,12 @@ export function makeModelPanel(app) {
 
   const model = () => app.selected?.split('::', 1)[0] ?? null;
   const show = () => {
-    name.textContent = model() ?? 'select a model to move, turn or delete it';
+    const isPlacing = app.clickMode === spawnAt;
+    name.textContent = isPlacing ? 'click on the ground; Esc ends' : model() ?? 'select a model to move, turn or delete it';
     for (const tool of tools.children) tool.disabled = model() === null;
     tools.children[0].classList.toggle('on', edited !== null && gizmo.mode === 'translate');
     tools.children[1].classList.toggle('on', edited !== null && gizmo.mode === 'rotate');
-    place.classList.toggle('on', !!app.clickMode && edited === null);
+    place.classList.toggle('on', isPlacing);
   };
 
   // ---- spawn

@@ -7,7 +7,7 @@ const PLAY = 'play_motion2_msgs/action/PlayMotion2', FOLLOW = 'control_msgs/acti
 export function makeMotionTab(app) {
   const motions = element('div', { class: 'motions' }), controllers = element('div', { class: 'controllers' }), calls = makeCallList(app);
   const none = element('p', { class: 'dim hint', hidden: true }, 'No controller of this world takes motions or trajectories.');
-  let isShown = false, positions = [];
+  let isShown = false;
 
   const loadMotions = async actions => {
     const boxes = [];
@@ -52,19 +52,20 @@ export function makeMotionTab(app) {
   };
   const show = () => {
     for (const box of controllers.children) for (const row of box.rows) {
-      const position = positions[row.index];
+      const position = app.jointPositions[row.index];
       if (row.isMoved || !Number.isFinite(position)) continue;
       row.slider.value = position;
       row.value.textContent = fixed(position, 3);
     }
   };
-  app.on('packet:joints', ({ arrays }) => { positions = arrays.position; if (isShown) show(); });
+  app.on('packet:joints', () => { if (isShown) show(); });
   const load = async () => {
     const found = await app.ask('interfaces').catch(() => null);
     if (!found) return;
     await loadMotions(found.actions);
     await loadControllers(found);
     none.hidden = !(motions.parentElement.hidden && controllers.parentElement.hidden);
+    calls.parentElement.hidden = !none.hidden;
     show();
   };
   for (const event of ['scene', 'link']) app.on(event, () => { if (isShown) load(); });
