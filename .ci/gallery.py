@@ -15,7 +15,6 @@ import contextlib
 import itertools
 import json
 import math
-import platform
 import re
 import subprocess
 import sys
@@ -314,8 +313,7 @@ def picture(entry: Entry, file: Path) -> str:
 def motion(result: dict[str, Any]) -> str:
     """Return the text of what works, for one entry."""
     if "rate" in result:
-        counts = f"{counted(result['models'], 'model')}, {counted(result['sensors'], 'sensor')}"
-        return f"{counts}; {result['rate']:.0f} × real time"
+        return counted(result["models"], "model")
     if "drive" in result:
         texts = []
         for part, r in sorted(result["drive"].items(), reverse=True):
@@ -326,7 +324,7 @@ def motion(result: dict[str, Any]) -> str:
     if "error" not in result:
         return f"{result['joints']} joints"
     error = 1000 * result["error"]
-    return f"{result['joints']} joints, error {f'{error:.2g}' if error > 0.01 else '< 0.01'} mrad or mm"
+    return f"{result['joints']} joints, error {f'{error:.2g}' if error > 0.01 else '< 0.01'}"
 
 
 def write_page(results: dict[str, Any]) -> None:
@@ -334,7 +332,6 @@ def write_page(results: dict[str, Any]) -> None:
     rows = {entry: results[entry.slug] for entry in entries() if entry.slug in results}
     lines = [
         HEAD.read_text().format(
-            python=platform.python_version(),
             packages=", ".join(f"`{name}` {version}" for name, version in PACKAGES.items()),
             controllers=CONTROLLERS,
         )
@@ -346,13 +343,13 @@ def write_page(results: dict[str, Any]) -> None:
         "Worlds": ("world",),
     }
     for title, kinds in groups.items():
-        lines += [f"\n## {title}\n", "| | name and file | result |", "|---|---|---|"]
+        lines += [f"\n## {title}\n", "| | result |", "|---|---|"]
         for entry, result in rows.items():
             if entry.kind in kinds:
                 text = motion(result)
                 image = f"![](images/gallery/{entry.slug}.webp)"
                 text += f"; {NOTES[entry.slug]}" if entry.slug in NOTES else ""
-                cells = [image, f"**{entry.name}** `{entry.file}`", text]
+                cells = [image, f"**{entry.name}** `{entry.file}`: {text}"]
                 lines.append(f"| {' | '.join(cells)} |")
     PAGE.write_text("\n".join(lines) + "\n")
 

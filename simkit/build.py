@@ -109,7 +109,7 @@ def load(
         xacro_args: arguments for xacro files.
         strict: treat warnings as errors, and cameras without a renderer.
         overrides: `PATH=VALUE` texts as for `--set`, or values by path.
-        sleep: leave bodies at rest out of the physics until something reaches them; see `docs/sleeping.md`.
+        sleep: leave bodies at rest out of the physics until something reaches them; see `docs/physics.md`.
         package_paths: folders of ROS packages by name, for `package://` and `$(find ...)`; or a list of workspaces.
         render_thread: draw camera images on a second thread, with the same bits. Default: with two cores or more.
         on_error: policy for a plugin that raises: "stop" ends the run with a PluginError, "disable" continues without

@@ -64,6 +64,14 @@ def is_there(path: Path) -> bool:
         return False
 
 
+def relative_path(path: Path, folder: Path) -> str:
+    """Return a path relative to a folder, with slashes; the absolute path if the two are on different drives."""
+    try:
+        return Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
+    except ValueError:
+        return path.resolve().as_posix()
+
+
 class FileName(NamedTuple):
     """Name of a file in the value of a field.
 

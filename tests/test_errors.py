@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import pickle
+import re
+from pathlib import Path
 
 import pytest
 
+import simkit.errors
 from simkit.diagnostic_record import Where
 from simkit.diagnostics import Diagnostic
 from simkit.errors import InputError, LoadError, PluginError, RenderError, SimkitError, SimulationDiverged
@@ -53,3 +56,17 @@ def test_an_error_has_its_message_and_its_help_apart() -> None:
     error = InputError("SK-CLI-016", "no file", help="write it")
     assert (error.message, error.help) == ("no file", "write it")
     assert InputError("SK-CLI-014", "SK-CLI-014 a\nSK-CLI-014 b", shows_code=False).message == "a\nSK-CLI-014 b"
+
+
+def test_the_tables_of_exit_codes_have_the_codes_of_the_errors() -> None:
+    errors = {kind.__name__: kind.exit_code for kind in vars(simkit.errors).values() if _is_error(kind)}
+    tree = re.findall(r"(\w+) +exit (\d)", simkit.errors.__doc__ or "")
+    assert {name: errors[name] for name, _ in tree} == {name: int(code) for name, code in tree}
+    page = (Path(__file__).parents[1] / "docs" / "ci.md").read_text("utf-8").partition("## Exit codes")[2]
+    listed = re.findall(r"^\| ([\d, ]+) \|", page.partition("\n## ")[0], re.MULTILINE)
+    signals = [128 + 1, 128 + 2, 128 + 15]  # SIGHUP, SIGINT, SIGTERM
+    assert [int(code) for codes in listed for code in codes.split(",")] == sorted({0, *errors.values(), *signals})
+
+
+def _is_error(value: object) -> bool:
+    return isinstance(value, type) and issubclass(value, SimkitError)

@@ -20,10 +20,8 @@ Both take turns in one process, on the same compiled model. A ratio of 1 is the 
 rest of a ratio above 1 is what a simulator adds: plugins, sensors with their noise, and messages.
 
 The robot of the first rows is a TurtleBot3 waffle in `turtlebot3_world`, with steps of 1 ms. "Main job" is its drive of
-36 s; recorded, it writes nine topics to a bag. [The other benchmarks](../benchmarks/README.md) measure parts in more
-detail.
-
-Each entry in [benchmarks/history/entries](../benchmarks/history/entries) names its commit, processor and versions:
+36 s; recorded, it writes nine topics to a bag. [Other benchmarks](../benchmarks/README.md) measure parts, and
+[entries](../benchmarks/history/entries) name their commit, processor and versions:
 
     python benchmarks/history measure          # measures the last commit and adds an entry
     python benchmarks/history measure COMMIT   # an older one
@@ -79,15 +77,13 @@ def last_entry(entries: Sequence[Entry]) -> str:
         "## Last entry\n",
         f"Commit `{entry['commit'][:10]}` of {entry['date'][:10]}, {machine(entry)}. Times are of a step unless the",
         "row names something else; one row alone: `python benchmarks/history measure --case NAME`.\n",
-        "| name | work of simkit | work of MuJoCo | time of simkit | time of MuJoCo | ratio |",
-        "|---|---|---|---|---|---|",
+        "| name | work of simkit | work of MuJoCo | time of simkit | ratio |",
+        "|---|---|---|---|---|",
     ]
     for name, case in CASES.items():
         if found := entry["ratios"].get(name):
-            values = amount(name, found["ours"]), amount(name, found["bare"])
-            lines.append(
-                f"| `{name}` | {case.title} | {case.beside} | {values[0]} | {values[1]} | {found['ratio']:.2f} |"
-            )
+            time = amount(name, found["ours"])
+            lines.append(f"| `{name}` | {case.title} | {case.beside} | {time} | {found['ratio']:.2f} |")
     return "\n".join(lines) + "\n"
 
 
@@ -96,8 +92,7 @@ def history() -> str:
     lines = [
         "## By version\n",
         "![Ratio to MuJoCo alone of each measurement, over the commits](images/speed.svg)\n",
-        "Two entries of one commit differ by up to 10 %, because other programs ran. The check of two commits is more",
-        "exact, because it alternates between them. The entries have the numbers.",
+        "Two entries of one commit differ by up to 10 %; the check of two commits alternates, and is more exact.",
     ]
     return "\n".join(lines) + "\n"
 

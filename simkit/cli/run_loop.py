@@ -13,7 +13,7 @@ from types import FrameType
 from typing import TYPE_CHECKING, Protocol
 
 from simkit.cli.terminal.blocked_plugins import describe_blocking_plugin
-from simkit.cli.terminal.output import print_line, print_status
+from simkit.cli.terminal.output import print_line, print_message
 from simkit.cli.wall_time_limit import SignalHandler
 from simkit.interrupts import note_stop_request
 
@@ -146,7 +146,7 @@ class RunLoop:
             self.server.poll()
 
     def _say_paused(self) -> None:
-        print_status(f"paused at t={self._sim.time:g} s until {' or '.join(self.resumers)} resumes it (Ctrl-C ends)")
+        print_message(f"paused at t={self._sim.time:g} s until {' or '.join(self.resumers)} resumes it (Ctrl-C ends)")
 
     # ------------------------------------------------------------------ pace
 

@@ -26,6 +26,12 @@ def with_notebook_pictures(classes: Mapping[str, type]) -> None:
         setattr(classes[type_name], _HTML, draw)
 
 
+def reading_html(sensor: object, title: str, reading: Any) -> str:
+    """Return a sensor as a line of text and its newest reading; None for a sensor without one."""
+    shown = "no reading" if reading is None else getattr(reading, _HTML, lambda: _caption(reading))()
+    return f"{_caption(sensor)} {html.escape(title)}<br>{shown}"
+
+
 def scan_html(scan: Any) -> str:
     """Return a scan as a line of text and an SVG from above: x of the sensor points up, and its y to the left."""
     step = max(1, math.ceil(len(scan.ranges) / _MOST_DOTS))
@@ -35,7 +41,8 @@ def scan_html(scan: Any) -> str:
     hits = [(r * math.cos(angle), r * math.sin(angle)) for angle, r in rays if math.isfinite(r)]
     reach = max((r for _, r in rays if math.isfinite(r)), default=0.0)
     rays_text = counted(len(scan.ranges), "ray")
-    return f"{_caption(scan)}<br>{_from_above(hits, _SENSOR)} {rays_text}, farthest hit {reach:.2f} m"
+    farthest = f"farthest hit {reach:.2f} m" if hits else "no hit"
+    return f"{_caption(scan)}<br>{_from_above(hits, _SENSOR)} {rays_text}, {farthest}"
 
 
 def cloud_html(cloud: Any) -> str:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import heapq
 import math
+import re
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -27,9 +28,11 @@ if TYPE_CHECKING:
 _Item = TypeVar("_Item")
 _Result = TypeVar("_Result")
 _KEYS = ("at", "topic", "message", "until", "rate")
+_VARIABLE = re.compile(r"\{[^\W\d]\w*\}")
 _RATE = 10.0  # [Hz] default rate of a repeated command
 _HIGHEST_RATE = 1e6  # [Hz]
 _LATEST = 2.0**31 - 1.0  # [s], latest time that a ROS time stamp can hold
+_ANY_NUMBERS = {"at": 0.0, "until": _LATEST, "rate": _RATE}  # for variables, whose values are not known yet
 _TWISTS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 
 
@@ -275,7 +278,7 @@ def script_items(path: Path) -> list[JsonObject]:
 
 
 def validate_items(items: Iterable[tuple[object, str]]) -> list[JsonObject]:
-    """Validate commands independently of a world.
+    """Validate commands independently of a world; a number may be a variable `{name}` of a sweep.
 
     Args:
         items: each command with its file and line.
@@ -293,7 +296,8 @@ def _validate_item(item_with_location: tuple[object, str]) -> JsonObject:
     item, where = item_with_location
     if not isinstance(item, dict):
         raise _script_error(where, f"found {item!r:.60}; expected {{at, topic, message}}")
-    _command(item, where, None)
+    known = {key: number for key, number in _ANY_NUMBERS.items() if _VARIABLE.fullmatch(str(item.get(key)))}
+    _command({**item, **known}, where, None)
     return {**item, "where": where}
 
 

@@ -20,6 +20,7 @@ from simkit.diagnostics import Diagnostics, Severity, Where
 from simkit.errors import InputError
 from simkit.linear_algebra import matmul
 from simkit.msgs.message_types import M, Message
+from simkit.msgs.notebook_pictures import reading_html
 from simkit.msgs.topic_names import valid_topic
 from simkit.packs import is_shipped
 from simkit.params import Params
@@ -364,6 +365,11 @@ class Sensor(Sampler, Generic[M]):
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.scoped!r}>"
+
+    def _repr_html_(self) -> str:
+        facts = f"{self.update_rate:g} Hz" if self.update_rate else "every step"
+        title = ", ".join([facts, *self._topics.values()])
+        return reading_html(self, title, None if self.sim.engine.is_closed else self.latest)
 
     # ------------------------------------------------------------------ helpers
 

@@ -13,6 +13,7 @@ from simkit.lazy_names import lazy_attributes
 
 if TYPE_CHECKING:
     from simkit.testing.conditions import Watch
+    from simkit.testing.golden.bag_scenario import check_recorded_files, recorded_scenario
     from simkit.testing.golden.cause import explain
     from simkit.testing.golden.check import check_golden, golden_scenario
     from simkit.testing.golden.compare.runs import compare
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Watch",
     "check_golden",
+    "check_recorded_files",
     "compare",
     "count_left_out",
     "explain",
@@ -32,12 +34,14 @@ __all__ = [
     "newly_left_out",
     "open_scenario",
     "record_run",
+    "recorded_scenario",
     "run_scenario",
     "write_golden",
 ]
 
 _MODULES = {
     "simkit.testing.conditions": ("Watch",),
+    "simkit.testing.golden.bag_scenario": ("check_recorded_files", "recorded_scenario"),
     "simkit.testing.golden.cause": ("explain",),
     "simkit.testing.golden.check": ("check_golden", "golden_scenario"),
     "simkit.testing.golden.compare.runs": ("compare",),

@@ -17,7 +17,6 @@ from simkit.diagnostics import Diagnostics
 from simkit.loaders.resources.xml_reader import parse_text
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "writing_a_plugin.md"
-TESTS = PAGE.with_name("testing_plugins.md")
 BLOCK = re.compile(
     r"(?:^`(?P<file>[\w.]+)`\n\n)?^```(?P<language>\w+)\n(?P<text>.*?)^```$", flags=re.DOTALL | re.MULTILINE
 )
@@ -59,11 +58,11 @@ def test_its_xml_and_toml_can_be_read() -> None:
             assert parse_text(f"<page>{text}</page>", found) is not None and not len(found)
 
 
-def test_the_test_of_the_page_about_tests_passes(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_test_of_the_page_passes(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")  # as if pytest were alone with simkit's own plugin
     monkeypatch.setenv("PYTHONPATH", str(PAGE.parents[1]))
     words = [sys.executable, "-m", "pytest", "-q", "-p", "simkit.pytest_plugin", "-p", "no:cacheprovider"]
-    (text,) = re.findall(r"^```python\n(.*?)^```", TESTS.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+    (text,) = [text for _, _, text in BLOCKS if "def test_" in text]
     (folder / "test_brake.py").write_text(text, encoding="utf-8")
     done = subprocess.run([*words, "test_brake.py"], cwd=folder, capture_output=True, text=True, check=False)
     assert "1 passed" in done.stdout, done.stdout

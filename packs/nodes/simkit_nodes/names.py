@@ -21,6 +21,8 @@ _NOT_IN_FULL_NAME = re.compile(r"[^A-Za-z0-9_/]")
 _UNBALANCED: Final = "topic name must not have unmatched (unbalanced) curly braces '{}'"
 _BAD_SUBSTITUTION: Final = "substitution name must not contain characters other than alphanumerics or '_'"
 _SUBSTITUTION = re.compile(r"\{([^{}]*)\}")
+_PART = r"([A-Za-z_]\w*|/([A-Za-z_]\w*)?)(/([A-Za-z_]\w*)?)*"
+_PARAMETER_NAME = re.compile(rf"{_PART}(\.{_PART})*", re.ASCII)  # as rcl reads it after `-p`
 
 
 class RosArgumentsError(ValueError):
@@ -288,7 +290,7 @@ def _add_argument(parsed: RosArguments, word: str, option: str, value: str | Non
     elif option == "--param":
         name, assigned, text = value.partition(":=")
         node, _, short = name.rpartition(":")
-        if not assigned or not short:
+        if not assigned or not text or not _PARAMETER_NAME.fullmatch(short):
             raise RosArgumentsError(f"Couldn't parse parameter override rule: '{word} {value}'.")
         parsed.parameters.append((node, short, text))
     elif option == "--params-file":

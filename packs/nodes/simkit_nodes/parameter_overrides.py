@@ -194,8 +194,11 @@ def _value(node: yaml.Node | None, name: str) -> ParameterContent:
     """Return a value or a list of values of one type."""
     if isinstance(node, yaml.ScalarNode):
         return typed_text(node.value) if node.style is None else str(node.value)
-    if not isinstance(node, yaml.SequenceNode):
+    if node is None:
         return ""
+    if not isinstance(node, yaml.SequenceNode):
+        problem = f"found a mapping for parameter {name!r}; expected a value or a list"
+        raise InputError("SK-NODE-030", problem, help=f"give each parameter of the mapping a value: {name}.NAME")
     items = [_value(item, name) for item in node.value]
     if len({type(item) for item in items}) > 1 or any(isinstance(item, list) for item in items):
         raise InputError(

@@ -189,6 +189,8 @@ rclpy.shutdown()
         (["-p", "a:=[1, 2.5]"], "SK-NODE-030", "values of different types"),
         (["-p", "a:=[1"], "SK-NODE-030", "expected a value in YAML"),
         (["-p", "a"], "SK-NODE-030", "Couldn't parse parameter override rule: '-p a'"),
+        (["-p", "a-b:=1"], "SK-NODE-030", "Couldn't parse parameter override rule: '-p a-b:=1'"),
+        (["-p", "a:={x: 1}"], "SK-NODE-030", "found a mapping for parameter 'a'; expected a value or a list"),
         (["-r", "scan"], "SK-NODE-030", "Couldn't parse remap rule: '-r scan'"),
         (["--params-file", "/no/such/file.yaml"], "SK-NODE-031", "cannot be read"),
     ],

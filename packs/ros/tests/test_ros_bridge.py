@@ -45,6 +45,22 @@ def test_a_node_receives_the_topics_of_a_robot_and_drives_it(simkit_run: SimkitR
     assert abs(age_ns) < 0.5e9  # the clock of a node with use_sim_time is the simulation's
 
 
+def test_images_arrive_without_confirmation_too(simkit_run: SimkitRun, ros_node: RosNode) -> None:
+    with simkit_run("turtlebot3_world", "--rtf", "0.3"):
+        confirmed, unconfirmed = ros_node("""
+            from rclpy.qos import qos_profile_sensor_data
+            from sensor_msgs.msg import Image
+
+            client = Client()
+            found = client.hear("/camera/image_raw", Image)
+            unconfirmed = []
+            client.node.create_subscription(Image, "/camera/image_raw", unconfirmed.append, qos_profile_sensor_data)
+            client.until(lambda: len(found) >= 20)
+            tell([len(found), len(unconfirmed)])
+        """)
+    assert unconfirmed > confirmed / 2  # with a segment of 0.5 MB, one of ten
+
+
 def test_a_late_node_receives_latched_messages_of_a_type_that_is_not_installed(
     simkit_run: SimkitRun, ros_node: RosNode
 ) -> None:
@@ -223,6 +239,12 @@ def test_names_have_the_namespace_and_the_remappings(simkit_run: SimkitRun, ros_
             tell(sorted(topics()))
         """)
     assert "/scan" not in found and "/lab/scan" not in found
+
+
+def test_unknown_arguments_of_ros_are_named(bridge_options: list[str], simkit_command: SimkitRun) -> None:
+    with simkit_command("run", "turtlebot3_empty", "--ros", *bridge_options, "--ros-args", "--wrong") as run:
+        assert run.end() == 2
+        run.until(r"error: SK-ROS-002 .*: unknown arguments after --ros-args: \['--wrong'\]")
 
 
 def test_messages_that_are_no_messages_are_dropped_with_a_note(simkit_run: SimkitRun, ros_node: RosNode) -> None:

@@ -17,7 +17,7 @@ from simkit.bridges.teleop import KEY_TIMEOUT
 from simkit.cli.run_part import OpenRun, RunPart, fill_in_value
 from simkit.cli.run_verdict import RunVerdict
 from simkit.cli.terminal.options import option
-from simkit.cli.terminal.output import print_status
+from simkit.cli.terminal.output import print_message, print_status
 from simkit.errors import InputError
 from simkit.run_spec import RunSpec
 
@@ -154,7 +154,7 @@ class RunKeys:
         """Print once which keys a paused run accepts."""
         if not self._was_hinted:
             self._was_hinted = True
-            print_status(f"paused at t={self._sim.time:g} s: {HINT}")
+            print_message(f"paused at t={self._sim.time:g} s: {HINT}")
 
     def press(self, key: str) -> None:
         """Process a key; an unknown key has no effect."""

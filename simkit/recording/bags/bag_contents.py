@@ -50,12 +50,14 @@ class BagFile(Protocol):
         storage: `mcap` or `sqlite3`.
         damage: reason why the file is read only up to some place; empty for a complete file.
         start, end: recording time of the first and the last message [ns].
+        run: metadata of the recorded run; empty if the file has none.
     """
 
     storage: str
     damage: str
     start: int
     end: int
+    run: dict[str, str]
 
     def topics(self) -> list[BagTopic]:
         """Return the topics with their numbers of messages."""

@@ -40,6 +40,7 @@ from simkit.recording.bags.mcap_records import (
     read_chunk,
     read_record,
     read_records,
+    read_run_metadata,
 )
 
 _FOOTER_SIZE: Final = HEAD_SIZE + 20
@@ -102,6 +103,7 @@ class McapFile:
         try:
             self._size = file_size(self._file)
             self._check_beginning()
+            self.run = read_run_metadata(self._file, self._size)
             try:
                 is_indexed = self._read_index()
             except DamagedRecord as damaged:

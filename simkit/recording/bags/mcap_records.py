@@ -18,7 +18,10 @@ from simkit.number_text import counted
 MAGIC: Final = b"\x89MCAP0\r\n"
 LARGEST_RECORD: Final = 512 << 20  # [bytes] of a record, and of the content of a chunk; 4096 x 4096 points have 256 MiB
 LATEST_TIME: Final = (1 << 63) - 1  # [ns], largest time of ROS 2
-HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, CHUNK_INDEX, STATISTICS, DATA_END = 1, 2, 3, 4, 5, 6, 8, 11, 15
+HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, CHUNK_INDEX, STATISTICS = 1, 2, 3, 4, 5, 6, 8, 11
+METADATA, DATA_END = 12, 15
+RUN_METADATA: Final = "simkit run"
+"""Name of the metadata, the first record after the header, that describe the recorded run."""
 HEAD_SIZE: Final = 9  # [bytes] of opcode and length
 MESSAGE_HEAD: Final = struct.Struct("<HIQQ")  # channel, sequence number, recording time, publication time
 _HEAD: Final = struct.Struct("<BQ")
@@ -233,6 +236,18 @@ def read_body(file: BufferedReader, record: Record) -> bytes:
     check_size(record.position, "a record", record.length)
     file.seek(record.position + HEAD_SIZE)
     return file.read(record.length)
+
+
+def read_run_metadata(file: BufferedReader, size: int) -> dict[str, str]:
+    """Return the metadata of the recorded run; empty if a file of `size` bytes has none."""
+    try:
+        record = read_record(file, read_record(file, len(MAGIC), size).end, size)
+        if record.opcode == METADATA:
+            fields = Fields(read_body(file, record))
+            return fields.texts() if fields.text() == RUN_METADATA else {}
+    except (DamagedRecord, ValueError, struct.error):
+        pass  # the reader of the messages reports it
+    return {}
 
 
 def check_size(position: int, what: str, size: int) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import IO, Final
 from zlib import crc32
@@ -19,6 +19,7 @@ from simkit.recording.bags.mcap_records import (
     HEADER,
     MAGIC,
     MESSAGE,
+    METADATA,
     SCHEMA,
     STATISTICS,
 )
@@ -69,6 +70,7 @@ class McapWriter:
         self._schemas: list[bytes] = []
         self._channels: list[bytes] = []
         self._chunk_indexes: list[bytes] = []
+        self._metadata_indexes: list[bytes] = []
         self._counts: dict[int, int] = {}
         self._start = self._end = 0
         self._thread = ThreadPoolExecutor(1, "mcap")
@@ -80,6 +82,14 @@ class McapWriter:
         self._content = bytearray()
         self._indexes: dict[int, bytearray] = {}  # times and places in the chunk, alternately, by channel
         self._chunk_start = self._chunk_end = 0
+
+    def add_metadata(self, name: str, texts: Mapping[str, str]) -> None:
+        """Write metadata; before the first message, because the thread does not write chunks then."""
+        pairs = b"".join(_text(key) + _text(value) for key, value in texts.items())
+        record = _record(METADATA, _text(name), struct.pack("<I", len(pairs)), pairs)
+        place = struct.pack("<QQ", self._position, len(record))
+        self._metadata_indexes.append(_record(_METADATA_INDEX, place, _text(name)))
+        self._write(record)
 
     def register_schema(self, name: str, encoding: str, data: bytes) -> int:
         """Add a message type with its definition in a language; return its number."""
@@ -225,7 +235,7 @@ class McapWriter:
             (STATISTICS, [self._statistics()]),
             (CHUNK_INDEX, self._chunk_indexes),
             (_ATTACHMENT_INDEX, []),
-            (_METADATA_INDEX, []),
+            (_METADATA_INDEX, self._metadata_indexes),
         )
         for opcode, records in groups:
             group = b"".join(records)
@@ -239,5 +249,5 @@ class McapWriter:
 
     def _statistics(self) -> bytes:
         total, numbers = sum(self._counts.values()), (len(self._schemas), len(self._channels))
-        counts = struct.pack("<QHIIII", total, *numbers, 0, 0, len(self._chunk_indexes))
+        counts = struct.pack("<QHIIII", total, *numbers, 0, len(self._metadata_indexes), len(self._chunk_indexes))
         return _record(STATISTICS, counts, struct.pack("<QQ", self._start, self._end), _table(self._counts))

@@ -49,6 +49,8 @@ class BagReader:
         start, end: recording time of the first and the last message [ns]; 0 for an empty bag.
         topics: topics, sorted by name.
         broken: reason why the bag is truncated; empty for a complete bag.
+        run: description of the recorded run, as texts by name; empty if the bag has none. See
+            `recorded_run.describe_run`.
     """
 
     def __init__(self, path: Path) -> None:
@@ -62,6 +64,7 @@ class BagReader:
             self._closing.close()
             raise
         self.files, self.distro = self._layout.names, self._layout.distro
+        self.run = self._files[0].run if self._files else {}
         self.storage = self._files[0].storage if self._files else "mcap"
         self.broken = "; ".join(dict.fromkeys(p for p in (self._layout.problem, *(f.damage for f in self._files)) if p))
         filled = [file for file in self._files if any(t.count for t in file.topics())]

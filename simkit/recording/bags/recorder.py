@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 from simkit.errors import SimkitError
 from simkit.recording.bags.bag_contents import matches_topic
-from simkit.recording.bags.writer import McapBag, open_bag
+from simkit.recording.bags.recorded_run import describe_run
+from simkit.recording.bags.writer import McapBag, is_single_file, open_bag
 from simkit.recording.message_taps import MessageQueue, TopicTaps
 
 if TYPE_CHECKING:
@@ -62,7 +63,9 @@ class Recorder:
         self._choose = choose
         self._count = 0
         self._check_available()
-        self._bag: McapBag | None = open_bag(self.path, overwrite=overwrite)
+        folder = self.path.parent if is_single_file(self.path) else self.path
+        run = describe_run(sim, folder, self._is_recorded)
+        self._bag: McapBag | None = open_bag(self.path, overwrite=overwrite, run=run)
         # while an image is rendered, later messages wait as bytes, so that all messages stay in order
         self._queue = MessageQueue(self._write, serialises=True)
         self._newest_ns = self._shift_ns = 0  # newest log time, and log time minus simulated time

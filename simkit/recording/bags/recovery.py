@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import Final
 
 from simkit.errors import InputError
-from simkit.input_file import read_failure
+from simkit.input_file import open_input, read_failure
 from simkit.number_text import counted
 from simkit.progress import report_each
+from simkit.recording.bags.mcap_records import file_size, read_run_metadata
 from simkit.recording.bags.mcap_salvage import Loss, McapSalvage
 from simkit.recording.bags.writer import Channel, McapBag, check_target, open_bag
 from simkit.writers.atomic_output import remove_abandoned, unfinished_folder
@@ -75,7 +76,8 @@ def recover_bag(source: Path, target: Path, *, overwrite: bool = False) -> Recov
     check_target(target, overwrite=overwrite)
     salvages = [McapSalvage(file) for file in files]
     with _unfinished_bag(target, overwrite=overwrite) as draft:
-        bag = open_bag(draft)
+        with open_input(files[0]) as file_:
+            bag = open_bag(draft, run=read_run_metadata(file_, file_size(file_)))
         channels: dict[object, Channel] = {}
         try:
             for file, salvage in zip(files, salvages, strict=True):

@@ -23,7 +23,7 @@ class SqliteFile:
     storage, damage = "sqlite3", ""
 
     def __init__(self, path: Path) -> None:
-        self._path = path
+        self._path, self.run = path, dict[str, str]()
         try:
             # "immutable" ignores journals, so that a read-only folder can be read
             self._database = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro&immutable=1", uri=True)

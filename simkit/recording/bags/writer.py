@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
@@ -11,6 +11,7 @@ from typing import IO, TYPE_CHECKING
 from simkit import msgs
 from simkit.errors import InputError
 from simkit.output_file import open_target
+from simkit.recording.bags.mcap_records import RUN_METADATA
 from simkit.recording.bags.mcap_writer import McapWriter
 from simkit.writers.atomic_output import write_obstacle
 
@@ -81,13 +82,14 @@ class McapBag:
     Args:
         path: file to create.
         overwrite: True to replace an existing file.
+        run: metadata of the recorded run; see `recorded_run.describe_run`.
 
     Raises:
         FileExistsError: the file exists, and `overwrite` is not set.
         OSError: the file is not writable.
     """
 
-    def __init__(self, path: Path, *, overwrite: bool = False) -> None:
+    def __init__(self, path: Path, *, overwrite: bool = False, run: Mapping[str, str] | None = None) -> None:
         self.path = path
         self.span = Span()
         self.channels: dict[tuple[str, str], Channel] = {}
@@ -96,6 +98,8 @@ class McapBag:
         self._file: IO[bytes] = open_target(path, overwrite=overwrite)
         # Half a minute of an RGB-D camera is 2 GB; compression reduces images without noise to a tenth.
         self._writer = McapWriter(self._file, "ros2", "simkit", _CHUNK_BYTES)
+        if run:
+            self._writer.add_metadata(RUN_METADATA, run)
         self._file.flush()
 
     def channel(self, topic: str, type_name: str, latched: bool, renderer: str = "") -> Channel:
@@ -195,7 +199,7 @@ class Rosbag2Folder(McapBag):
         OSError: the folder is not writable.
     """
 
-    def __init__(self, folder: Path, *, overwrite: bool = False) -> None:
+    def __init__(self, folder: Path, *, overwrite: bool = False, run: Mapping[str, str] | None = None) -> None:
         if folder.exists():
             if not overwrite:
                 raise FileExistsError(folder)
@@ -204,7 +208,7 @@ class Rosbag2Folder(McapBag):
             shutil.rmtree(folder)
         folder.mkdir(parents=True)
         self.folder = folder
-        super().__init__(folder / f"{folder.name}_0.mcap")
+        super().__init__(folder / f"{folder.name}_0.mcap", run=run)
 
     def close(self) -> None:
         """Complete the file and write the metadata."""
@@ -301,7 +305,7 @@ def _path_exists(path: Path) -> bool:
         raise InputError("SK-BAG-002", f"cannot write {path}: {why}") from None
 
 
-def open_bag(path: Path, *, overwrite: bool = False) -> McapBag:
+def open_bag(path: Path, *, overwrite: bool = False, run: Mapping[str, str] | None = None) -> McapBag:
     """Create a bag: one MCAP file or a rosbag2 folder, by the suffix of `path`.
 
     Raises:
@@ -310,8 +314,8 @@ def open_bag(path: Path, *, overwrite: bool = False) -> McapBag:
     check_target(path, overwrite=overwrite)
     try:
         if is_single_file(path):
-            return McapBag(path, overwrite=overwrite)
-        return Rosbag2Folder(path, overwrite=overwrite)
+            return McapBag(path, overwrite=overwrite, run=run)
+        return Rosbag2Folder(path, overwrite=overwrite, run=run)
     except FileExistsError as error:
         raise InputError("SK-BAG-001", f"{path} is not overwritten: {error}") from None
     except OSError as error:

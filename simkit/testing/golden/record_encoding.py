@@ -14,7 +14,7 @@ import numpy as np
 from simkit.code_requests import CodeRequest, folder_request, node_requests
 from simkit.diagnostic_record import NOWHERE, Where
 from simkit.run_fields import LOAD_FIELDS, RunField
-from simkit.run_files import FileName
+from simkit.run_files import FileName, relative_path
 from simkit.run_spec import (
     EMPTY_SPACE,
     Check,
@@ -130,14 +130,6 @@ def relative_world(scenario: RunSpec, folder: Path) -> str:
     if "<" in scenario.world:
         return scenario.world
     return scenario.world if scenario.beside is None else relative_path(scenario.beside, folder)
-
-
-def relative_path(path: Path, folder: Path) -> str:
-    """Return a path relative to a folder, with slashes; the absolute path if the two are on different drives."""
-    try:
-        return Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
-    except ValueError:
-        return path.resolve().as_posix()
 
 
 T = TypeVar("T")

@@ -16,6 +16,8 @@ CHUNK_BYTES = 4000
 def write(writer: Any, seed: int) -> None:
     """Write random schemas, channels and messages, with times that jump back, and flush now and then."""
     source, channels = random.Random(seed), []
+    if seed % 2:
+        writer.add_metadata("run", {"world": "ü", "seed": "1"})
     time_ns = source.choice([0, 10**9])
     for number in range(source.choice([0, 1, 50, 400])):
         if not channels or source.random() < 0.05:

@@ -172,6 +172,15 @@ def test_the_commands_of_a_sweep_are_a_list_a_velocity_a_script_or_a_bag(tmp_pat
     assert played["x"].tolist() == pytest.approx([0.05], abs=2e-3)
 
 
+def test_the_times_and_the_rate_of_a_command_are_variables() -> None:
+    command = {"at": "{t}", "until": "{t}", "rate": "{rate}", "topic": "/cmd_vel", "message": {"linear": {"x": 1.0}}}
+    table = simkit.sweep(BALL, {"t": [0.02, 0.05], "rate": [5]}, commands=[command], metrics=X, duration=0.1, jobs=1)
+    assert table["x"].tolist() == pytest.approx([0.08, 0.05], abs=2e-3)
+    with pytest.raises(InputError) as caught:
+        simkit.sweep(BALL, {"t": [-1.0]}, commands=[{**command, "rate": 5}], metrics=X, duration=0.1, jobs=1)
+    assert "at: found -1.0; expected a number of at least 0" in str(caught.value)
+
+
 def test_the_commands_of_a_sweep_replace_those_of_the_specification() -> None:
     spec = RunSpec(BALL, velocity="1,0", duration=0.1)
     assert simkit.sweep(spec, metrics=X, jobs=1)["x"][0] == pytest.approx(0.1, abs=2e-3)

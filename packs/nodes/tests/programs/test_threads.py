@@ -245,6 +245,24 @@ def test_a_loop_that_only_asks_gets_a_step_after_some_questions(run_program: Run
     assert log == ["0.1"]
 
 
+def test_an_idle_thread_of_an_executor_ends_with_the_program_without_a_traceback(
+    sim: Simulation, add_program: Callable[..., NodeProgram]
+) -> None:
+    node = add_program("""
+        import time
+        from concurrent.futures import ThreadPoolExecutor
+        executor = ThreadPoolExecutor(1)
+        print(executor.submit(lambda: "done").result())
+        try:
+            time.sleep(9)
+        except KeyboardInterrupt:
+            pass
+    """)
+    sim.run(0.1)
+    sim.close()
+    assert node.log == ["done"]
+
+
 def test_threads_that_wait_for_locks_of_each_other_are_told_and_the_run_goes_on(
     sim: Simulation, add_program: Callable[..., NodeProgram], reports: Callable[[str], list[str]]
 ) -> None:

@@ -51,6 +51,9 @@ def main():
         error_of(lambda: logger.info("x", wrong=True)),
         error_of(change_level),
         error_of(lambda: get_logger("")),
+        error_of(lambda: logger.error(RuntimeError("no text"))),
+        error_of(lambda: logger.info(3)),
+        error_of(lambda: logger.debug(3)),
     ]
     logger.set_level(LoggingSeverity.WARN)
     logger.warning("one")

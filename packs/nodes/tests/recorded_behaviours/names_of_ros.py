@@ -58,6 +58,7 @@ def main():
             lambda: node.create_publisher(String, "a", -1),
             lambda: node.create_publisher(String, "a", "x"),
             lambda: node.create_subscription(String, "a", lambda: 0, 1),
+            lambda: node.create_subscription(String, "a", None, 1),
             lambda: node.create_rate(0),
             rclpy.init,
             lambda: node.create_service(__import__("std_srvs.srv").srv.Trigger, "1a", print),
@@ -66,7 +67,18 @@ def main():
     rclpy.shutdown()
     result["arguments"] = [
         error_of(lambda words=words: rclpy.init(args=["p", "--ros-args", *words])).split("|")[0]
-        for words in (["--foo"], ["a:=b"], ["-r", "x"], ["-r"], ["-p", "x"], ["--log-level", "bla"])
+        for words in (
+            ["--foo"],
+            ["a:=b"],
+            ["-r", "x"],
+            ["-r"],
+            ["-p", "x"],
+            ["-p", "x:="],
+            ["-p", "a-b:=1"],
+            ["-p", "1a:=1"],
+            ["-p", "a..b:=1"],
+            ["--log-level", "bla"],
+        )
     ]
     print(json.dumps(result))
 

@@ -34,7 +34,7 @@ LISTED_AFTER = "replay"
     },
 )
 def why(
-    run: Annotated[str, argument("Bundle, golden run, scenario or world.", "RUN", completion.runs)],
+    run: Annotated[str, argument("Bag, bundle, golden run, scenario or world.", "RUN", completion.runs)],
     time: Annotated[
         float | None,
         option(
@@ -69,9 +69,16 @@ def _opened_at(run: str, time: float | None, given: GivenOptions, *, allow_code:
     """Repeat a run up to a time [s], and yield its simulation.
 
     Raises:
-        InputError: SK-CLI-064 the run ends before this time, is a bundle and options are given, or is a bag.
+        InputError: SK-CLI-064 the run ends before this time, is a bundle and options are given, or is a bag whose run
+            cannot be repeated.
     """
-    from simkit.testing import golden_scenario, open_scenario, run_scenario
+    from simkit.testing import (
+        check_recorded_files,
+        golden_scenario,
+        open_scenario,
+        recorded_scenario,
+        run_scenario,
+    )
     from simkit_verification.testing.bundles import replay_until
 
     if "<" not in run and zipfile.is_zipfile(run):
@@ -81,16 +88,16 @@ def _opened_at(run: str, time: float | None, given: GivenOptions, *, allow_code:
             _check_time(sim, run, time)
             yield sim
         return
-    if "<" not in run and Path(run).suffix in (".mcap", ".db3"):
-        help_ = f"name the world, and play the bag: simkit why WORLD --play {run}"
-        raise InputError("SK-CLI-064", f"{run} is a bag, which has messages but not their world", help=help_)
     folders, code = (given.values.get(name, ()) for name in ("resource_paths", "plugin_paths"))
     golden = golden_scenario(run, folders=folders, allow_code=allow_code, plugin_paths=code) if "<" not in run else None
-    spec = scenario_spec(golden or run, given, allow_code=allow_code)
+    recorded = recorded_scenario(run, folders=folders) if "<" not in run else None
+    spec = scenario_spec(golden or recorded or run, given, allow_code=allow_code)
     if time is not None:
-        is_world = spec.file is None and golden is None
+        is_world = spec.file is None and golden is None and recorded is None
         spec = spec.with_values({"duration": time if is_world else min(time, spec.longest), "timeout": None})
     with open_scenario(spec) as sim:
+        if recorded is not None and not given.names(("resource_paths", "plugin_paths")):
+            check_recorded_files(run, sim)
         print_diagnostics(sim.diagnostics, verbose=False)
         add_diagnostics(sim.diagnostics)
         run_scenario(spec, sim, judged=False)

@@ -9,7 +9,9 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
+import simkit as simkit_module
 from simkit.cli import app
+from simkit.recording import Recorder
 
 REPOSITORY = Path(__file__).resolve().parents[4]
 HILL = """<sdf version="1.9"><world name="hill"><gravity>0 0 -10</gravity>
@@ -114,15 +116,56 @@ def test_an_unknown_model_suggests_the_closest_name(folder: Path) -> None:
     assert "SK-NAME-006 no model 'bx'; did you mean 'box'?" in found.output
 
 
-def test_a_bag_is_played_in_its_world(folder: Path) -> None:
+@pytest.fixture
+def bag(folder: Path) -> str:
+    """Return the name of a recording of the scenario, with another seed and pose."""
     (folder / "push_script.yaml").write_text(SCENARIO.partition("commands:\n")[2])
-    words = ("--script", "push_script.yaml", "--duration", "0.5", "--record", "push.mcap")
+    words = ("--script", "push_script.yaml", "--duration", "0.5", "--seed", "3", "--set", "box.pose=1 0 0.05 0 0 0")
+    assert simkit("run", "hill.sdf", *words, "--record", "push.mcap").exit_code == 0
+    return "push.mcap"
+
+
+def test_a_bag_is_played_in_its_world_with_its_options(bag: str) -> None:
+    options = ("--seed", "3", "--set", "box.pose=1 0 0.05 0 0 0", "-t", "0.3")
+    assert why(bag, "-t", "0.3") == why("push.yaml", *options)
+    assert why(bag)["time"] == 0.5
+    assert why("hill.sdf", "--play", bag, *options) == why("push.yaml", *options)
+
+
+def test_a_bag_without_commands_and_a_folder_are_repeated(folder: Path) -> None:
+    assert simkit("run", "hill.sdf", "--duration", "0.2", "--record", "still").exit_code == 0
+    assert why("still") == why("hill.sdf", "-t", "0.2")
+
+
+def test_the_world_of_a_bag_may_not_change_or_be_missing(bag: str) -> None:
+    world = Path("hill.sdf")
+    world.write_text(HILL + "<!-- changed -->")
+    found = simkit("why", bag)
+    assert found.exit_code == 2
+    assert "SK-CLI-064 push.mcap: the files of hill.sdf differ from those of the recording" in found.output
+    assert "simkit why WORLD --play push.mcap" in found.output
+    world.unlink()
+    found = simkit("why", bag)
+    assert found.exit_code == 2
+    assert "SK-CLI-064 push.mcap was recorded in hill.sdf, which does not exist" in found.output
+
+
+def test_a_bag_without_its_commands_is_not_repeated(folder: Path) -> None:
+    words = ("--duration", "0.1", "--record", "part.mcap", "--skip", "/world/*")
     assert simkit("run", "hill.sdf", *words).exit_code == 0
-    assert why("hill.sdf", "--play", "push.mcap", "-t", "0.3") == why("push.yaml", "-t", "0.3")
-    alone = simkit("why", "push.mcap", "-t", "0.3")
-    assert alone.exit_code == 2
-    assert "SK-CLI-064 push.mcap is a bag" in alone.output
-    assert "simkit why WORLD --play push.mcap" in alone.output
+    found = simkit("why", "part.mcap")
+    assert found.exit_code == 2
+    assert "SK-CLI-064 part.mcap was recorded without /world/hill/wrench" in found.output
+
+
+def test_a_bag_that_does_not_describe_its_run_needs_a_world(folder: Path) -> None:
+    with simkit_module.load("hill.sdf") as sim:
+        sim.run(0.1)
+        with Recorder(sim, "late.mcap"):  # the state at the begin of the recording is not in it
+            sim.run(0.1)
+    found = simkit("why", "late.mcap")
+    assert found.exit_code == 2
+    assert "SK-CLI-064 late.mcap does not name the world of its recording" in found.output
 
 
 @pytest.mark.slow
@@ -130,7 +173,7 @@ def test_the_bag_of_the_first_run_repeats_its_moments(folder: Path) -> None:
     script = str(REPOSITORY / "worlds" / "turtlebot3_world_drive.yaml")
     words = ("--script", script, "--duration", "13", "--record", "first_run.mcap", "--skip", "/camera/*")
     assert simkit("run", "turtlebot3_world", *words).exit_code == 0
-    played = why("turtlebot3_world", "--play", "first_run.mcap", "-t", "12.5", "--model", "turtlebot3")
+    played = why("first_run.mcap", "-t", "12.5", "--model", "turtlebot3")
     assert played == why("turtlebot3_world", "--script", script, "-t", "12.5", "--model", "turtlebot3")
     assert played["findings"] == []  # the drive touches nothing, and the wheels roll
     left, right = played["wheels"]

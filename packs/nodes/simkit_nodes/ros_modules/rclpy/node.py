@@ -39,6 +39,7 @@ from simkit_nodes.ros_modules.rclpy.parameter import Parameter
 from simkit_nodes.ros_modules.rclpy.parameter_service import ParameterService
 from simkit_nodes.ros_modules.rclpy.publisher import Publisher
 from simkit_nodes.ros_modules.rclpy.qos import QoSProfile, graph_qos, qos_profile_parameter_events
+from simkit_nodes.ros_modules.rclpy.qos_overriding_options import QoSOverridingOptions, declare_qos_parameters
 from simkit_nodes.ros_modules.rclpy.subscription import Subscription, callback_type_of
 from simkit_nodes.ros_modules.rclpy.time_source import TimeSource
 from simkit_nodes.ros_modules.rclpy.timer import Rate, Timer
@@ -318,7 +319,7 @@ class Node(NodeParameters, NodeServices, NodeQueries):
         *,
         callback_group: CallbackGroup | None = None,
         event_callbacks: PublisherEventCallbacks | None = None,
-        qos_overriding_options: object = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
         publisher_class: type[Publisher] = Publisher,
     ) -> Publisher:
         """Create a publisher.
@@ -329,12 +330,14 @@ class Node(NodeParameters, NodeServices, NodeQueries):
             qos_profile: quality of service, or the depth of the queue.
             callback_group: callback group of the event callbacks.
             event_callbacks: callbacks for events.
-            qos_overriding_options: has no effect.
+            qos_overriding_options: policies that parameters may replace.
             publisher_class: class of the publisher.
         """
         profile = _checked_profile(qos_profile)
         group = callback_group or self.default_callback_group
         full_name = self.resolve_topic_name(topic)
+        if qos_overriding_options is not None:
+            declare_qos_parameters(self, "publisher", full_name, profile, qos_overriding_options)
         check_is_valid_msg_type(msg_type)
         type_name, events = type_name_of(msg_type), EventSource()
         callbacks = event_callbacks or PublisherEventCallbacks()
@@ -358,7 +361,7 @@ class Node(NodeParameters, NodeServices, NodeQueries):
         *,
         callback_group: CallbackGroup | None = None,
         event_callbacks: SubscriptionEventCallbacks | None = None,
-        qos_overriding_options: object = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
         raw: bool = False,
     ) -> Subscription:
         """Create a subscription.
@@ -370,12 +373,14 @@ class Node(NodeParameters, NodeServices, NodeQueries):
             qos_profile: quality of service, or the depth of the queue.
             callback_group: callback group.
             event_callbacks: callbacks for events.
-            qos_overriding_options: has no effect.
+            qos_overriding_options: policies that parameters may replace.
             raw: True for bytes instead of messages.
         """
         profile = _checked_profile(qos_profile)
         group = callback_group or self.default_callback_group
         full_name = self.resolve_topic_name(topic)
+        if qos_overriding_options is not None:
+            declare_qos_parameters(self, "subscription", full_name, profile, qos_overriding_options)
         check_is_valid_msg_type(msg_type)
         type_name = type_name_of(msg_type)
         callback_type_of(callback)

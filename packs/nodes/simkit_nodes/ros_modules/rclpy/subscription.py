@@ -135,10 +135,9 @@ def callback_type_of(callback: Callable[..., Any]) -> Subscription.CallbackType:
     Raises:
         RuntimeError: the callback takes neither one nor two arguments.
     """
-    signature = inspect.signature(callback)
     for kind, arguments in zip(Subscription.CallbackType, ((None,), (None, None)), strict=True):
         try:
-            signature.bind(*arguments)
+            inspect.signature(callback).bind(*arguments)
         except TypeError:
             continue
         return kind

@@ -102,7 +102,7 @@ class RcutilsLogger:
             False if the message was dropped.
 
         Raises:
-            TypeError: an option is unknown.
+            TypeError: an option is unknown, or the message is no text, such as an exception or a number.
             ValueError: the options of this line of the program have changed.
         """
         if not self.is_enabled_for(severity):
@@ -121,7 +121,10 @@ class RcutilsLogger:
             _check_same(call, name, severity, filters, kwargs)
         if not _passes(call):
             return False
-        write(severity, name, str(message), code.co_filename, code.co_name, frame.f_lineno)
+        if not isinstance(message, str):
+            text = f"the message must be of type str, but is {message!r}"
+            raise TypeError(f"rclpy_logging_rcutils_log(): incompatible function arguments: {text}")
+        write(severity, name, message, code.co_filename, code.co_name, frame.f_lineno)
         return True
 
     def debug(self, message: str, **kwargs: Any) -> bool:
