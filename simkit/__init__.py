@@ -178,4 +178,4 @@ def _conflict_text() -> str:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_LAZY, *_PUBLIC_MODULES})
+    return sorted({*__all__, *_PUBLIC_MODULES})

@@ -357,6 +357,7 @@ def describe(
     """Return the resolved content of a file as plain data, as `simkit inspect --json` prints it.
 
     The diagnostics in the result include Python plugins that are not found in `plugin_paths` or cannot be imported.
+    The arguments are those of `load`.
 
     Raises:
         LoadError: the file has errors.

@@ -64,6 +64,7 @@ class Diagnostics:
 
     @property
     def has_errors(self) -> bool:
+        """True if an error was added."""
         return self._errors > 0
 
     @property
@@ -72,6 +73,7 @@ class Diagnostics:
         return self._errors
 
     def add(self, severity: Severity, code: str, message: str, where: Where = NOWHERE, hint: str = "") -> None:
+        """Add a diagnostic; texts longer than `LONGEST_MESSAGE` lose their middle."""
         if len(message) > LONGEST_MESSAGE:
             message = f"{message[: LONGEST_MESSAGE // 2]} ... {message[-LONGEST_MESSAGE // 2 :]}"
         file = where.file or (TEXT_SOURCE if where.line else None)
@@ -93,15 +95,19 @@ class Diagnostics:
                 self._on_new(item)
 
     def error(self, code: str, message: str, where: Where = NOWHERE, hint: str = "") -> None:
+        """Add an error: its code, message, place, and a remedy as `hint`."""
         self.add("error", code, message, where, hint)
 
     def warning(self, code: str, message: str, where: Where = NOWHERE, hint: str = "") -> None:
+        """Add a warning: its code, message, place, and a remedy as `hint`."""
         self.add("warning", code, message, where, hint)
 
     def note(self, code: str, message: str, where: Where = NOWHERE, hint: str = "") -> None:
+        """Add a note: its code, message, place, and a remedy as `hint`."""
         self.add("note", code, message, where, hint)
 
     def extend(self, items: Iterable[Diagnostic]) -> None:
+        """Add diagnostics."""
         for item in items:
             self._put(item)
 

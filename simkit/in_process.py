@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NoReturn, Self
 
+from simkit.completion import Completed
 from simkit.errors import ArgumentTypeError
 
 
-class InProcess:
+class InProcess(Completed):
     """Base class of objects that belong to one process: deep copies share them, and they cannot be pickled.
 
     A pickled snapshot has references to such objects. They are resolved in the simulation that restores it.

@@ -10,7 +10,7 @@ from typing import Any
 
 def lazy_attributes(
     module: str, names_of: Mapping[str, Iterable[str]]
-) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
+) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
     """Return the functions `__getattr__` and `__dir__` of a module.
 
     Args:
@@ -27,6 +27,6 @@ def lazy_attributes(
         return value
 
     def names() -> list[str]:
-        return sorted({*vars(sys.modules[module]), *homes})
+        return sorted(homes)
 
     return get, names

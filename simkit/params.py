@@ -232,6 +232,7 @@ class Params:
     def vector3(
         self, name: str, default: Sequence[float] | None = None, required: bool = False
     ) -> tuple[float, float, float]:
+        """Return three finite numbers, as `vector` does."""
         x, y, z = self.vector(name, 3, default, required)
         return (x, y, z)
 
@@ -252,6 +253,7 @@ class Params:
     # ------------------------------------------------------------------ attributes
 
     def attribute(self, name: str, default: str = "") -> str:
+        """Return the text of an attribute of this element."""
         if self._attributes_asked is None:
             self._attributes_asked = {name}
         else:

@@ -34,7 +34,7 @@ def wrap_angle(angle: float) -> float:
 
 
 def quat_multiply(a: VectorLike, b: VectorLike) -> Vector:
-    """Return the Hamilton product of two (w, x, y, z) quaternions."""
+    """Return the Hamilton product of two (w, x, y, z) quaternions, shape (4,)."""
     return np.array(hamilton_product(_floats(a), _floats(b)))
 
 
@@ -57,7 +57,7 @@ def quat_conjugate(q: VectorLike) -> Vector:
 
 
 def quat_rotate(q: VectorLike, v: VectorLike) -> Vector:
-    """Rotate the vector `v` by the unit quaternion `q`."""
+    """Rotate the vector `v` by the unit quaternion `q` (w, x, y, z); shape (3,)."""
     w, x, y, z = _floats(q)
     vx, vy, vz = _floats(v)
     tx, ty, tz = 2 * (y * vz - z * vy), 2 * (z * vx - x * vz), 2 * (x * vy - y * vx)
@@ -65,7 +65,7 @@ def quat_rotate(q: VectorLike, v: VectorLike) -> Vector:
 
 
 def quat_from_rpy(roll: float, pitch: float, yaw: float) -> Vector:
-    """Return the quaternion of Rz(yaw)·Ry(pitch)·Rx(roll) [rad], the order of SDF, URDF and ROS."""
+    """Return the quaternion (w, x, y, z) of Rz(yaw)·Ry(pitch)·Rx(roll) [rad], the order of SDF, URDF and ROS."""
     cr, sr = math.cos(roll / 2), math.sin(roll / 2)
     cp, sp = math.cos(pitch / 2), math.sin(pitch / 2)
     cy, sy = math.cos(yaw / 2), math.sin(yaw / 2)
@@ -80,7 +80,7 @@ def quat_from_rpy(roll: float, pitch: float, yaw: float) -> Vector:
 
 
 def rpy_from_quat(q: VectorLike) -> Vector:
-    """Return roll, pitch and yaw [rad] of a unit quaternion."""
+    """Return roll, pitch and yaw [rad] of a unit quaternion (w, x, y, z), shape (3,)."""
     return np.array(_angles(FLOATS, *_floats(q)))
 
 
@@ -103,7 +103,7 @@ def _angles(
 
 
 def quat_to_matrix(q: VectorLike) -> Vector:
-    """Return the 3×3 rotation matrix of a unit quaternion."""
+    """Return the rotation matrix of a unit quaternion (w, x, y, z), shape (3, 3)."""
     w, x, y, z = _floats(q)
     return np.array(
         (
@@ -217,6 +217,7 @@ class Pose:
         return checked_pose(other)
 
     def inverse(self) -> Pose:
+        """Return the pose of the parent's frame in this frame."""
         w, x, y, z = self.quaternion.tolist()
         vx, vy, vz = self.position.tolist()
         x, y, z = -x, -y, -z
@@ -227,15 +228,15 @@ class Pose:
         )
 
     def rotate(self, vector: VectorLike) -> Vector:
-        """Rotate a free vector from this frame to the parent's axes."""
+        """Rotate a vector, such as a velocity, from the axes of this frame to those of the parent; shape (3,)."""
         return _rotate_argument(self.quaternion, vector)
 
     def transform(self, point: VectorLike) -> Vector:
-        """Transform a point [m] from this frame to the parent's frame."""
+        """Transform a point [m] from this frame to the parent's frame; shape (3,)."""
         return self.position + _rotate_argument(self.quaternion, point)
 
     def as_list(self) -> list[float]:
-        """Return the pose as [x, y, z, qw, qx, qy, qz]."""
+        """Return the pose as [x, y, z, qw, qx, qy, qz], positions in m."""
         return [float(v) for v in (*self.position, *self.quaternion)]
 
     def __eq__(self, other: object) -> bool:

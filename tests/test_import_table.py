@@ -27,6 +27,7 @@ SMALL_MODULES = frozenset(
         "argument_checks",
         "child_process",
         "code_requests",
+        "completion",
         "deferred_response",
         "deprecation",
         "diagnostic_record",

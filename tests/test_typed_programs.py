@@ -18,7 +18,8 @@ from typing import Any, assert_type
 import simkit
 from simkit import live, msgs
 from simkit.extend import GoalHandle, ServiceCall
-from simkit.sensors import Camera, Imu, Lidar, Sensor
+from simkit.recording import ExportOptions, export_bag, open_bag_to_read
+from simkit.sensors import Camera, DepthCamera, Imu, Lidar, Sensor
 
 
 def switch(request: msgs.SetBool_Request) -> msgs.SetBool_Response:
@@ -73,6 +74,28 @@ def sensors(sim: simkit.Simulation) -> None:
     assert_type(sim.sensor("lds", type=Lidar).latest, msgs.LaserScan | Any)
     assert_type(sim.sensor("imu", type=Imu).truth, msgs.Imu | Any)
     assert_type(sim.sensor("camera", type=Camera).latest, msgs.Image | Any)
+    print(sim.sensor("lds", type=Lidar).hits[90], sim.sensor("depth", type=DepthCamera).depth[0, 0])
+
+
+def joints(sim: simkit.Simulation) -> None:
+    wheel = sim.joint("bot::wheel")
+    assert_type(wheel.position, float | Any)
+    print(round(wheel.position, 2), abs(wheel.velocity) < wheel.velocity_limit, f"{wheel.damping:.2f}")
+    angle: float = wheel.position
+    wheel.set_position(angle + 1)
+
+
+def parameters(sim: simkit.Simulation, client: live.Client) -> None:
+    mode = sim.declare("mode", "slow", choices=("slow", "fast"), on_change=lambda mode: print(mode.upper()))
+    assert_type(mode.value, str)
+    assert_type(client.declare("gain", 0.5).value, float)
+
+
+def runs_and_bags(sim: simkit.Simulation) -> None:
+    print(sim.run_spec.overrides)
+    export_bag("run.mcap", "tables", ExportOptions(topics=("/scan",)))
+    with open_bag_to_read("run.mcap") as bag:
+        print([bag.decode(message) for message in bag.messages("/scan")])
 
 
 def services(sim: simkit.Simulation) -> None:
@@ -113,6 +136,8 @@ def messages() -> None:
     assert_type(twist, msgs.Twist)
     assert_type(msgs.deserialize(msgs.serialize(twist), msgs.Twist), msgs.Twist)
     assert_type(simkit.msgs.String("hello").data, str)
+    assert_type(msgs.pose_message(simkit.Pose(), msgs.PoseStamped), msgs.PoseStamped)
+    assert_type(msgs.definition("std_msgs/msg/String"), str)
 
 
 def loaded() -> None:
@@ -136,6 +161,8 @@ MISTAKES = {
     "sim.plugins['drive'].sped": "sped",
     "Push().load(sim, simkit.Params())": "Model",
     "simkit.load('world', plugins=Push())": "plugins",
+    "msgs.definition(1)": "str",
+    "client.declare('gain', 0.5).value.upper()": "upper",
 }
 
 

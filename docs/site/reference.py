@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import importlib
 import json
 import posixpath
 import re
@@ -146,10 +147,20 @@ def _python_page(title: str, introduction: str, names: Iterable[str]) -> str:
 def _directive(name: str) -> str:
     """Return the line of mkdocstrings for a name. A class that users get only from a handle has no module before it."""
     options = dict(_OPTIONS.get(name, {}))
+    if internal := _internal_names(name):
+        options["filters"] = ["!^_[^_]", f"!^({'|'.join(internal)})$"]
     if name.count(".") >= 3:
         options["heading"] = name.rpartition(".")[2]
     lines = [f"      {option}: {json.dumps(value)}" for option, value in options.items()]
     return "\n".join([f"::: {name}", *(["    options:"] if lines else []), *lines])
+
+
+def _internal_names(name: str) -> list[str]:
+    """Return the names of a handle's class that only simkit's own code uses."""
+    if not any(name in names for _, names in _HANDLES.values()):
+        return []
+    module, _, attribute = name.rpartition(".")
+    return sorted(getattr(getattr(importlib.import_module(module), attribute), "_internal_names", ()))
 
 
 def _with_blocks(docstring: str) -> str:

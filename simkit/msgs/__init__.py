@@ -24,6 +24,7 @@ from simkit.msgs.cdr_serializer import SizeMismatch, make_serializer
 from simkit.msgs.message_types import (
     M,
     Message,
+    class_names,
     definition,
     full_name,
     message_class,
@@ -108,6 +109,10 @@ if not TYPE_CHECKING:  # hidden from type checkers, so that they report unknown 
         value = message_class(name) if module is None else getattr(importlib.import_module(module), name)
         globals()[name] = value
         return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*__all__, *class_names()})
 
 
 @cache

@@ -10,7 +10,6 @@ types, which `---` separates in the file: `<package>/srv/<Name>_Request` and `â€
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from simkit.argument_checks import check_text
@@ -39,7 +38,12 @@ if TYPE_CHECKING:
     M_co = TypeVar("M_co", default=Any, covariant=True)
     R = TypeVar("R", default=Any)
     F = TypeVar("F", default=Any)
+
+    def cache(function: M) -> M:
+        """Remember results, as `functools.cache` does, which hides the arguments from editors."""
+
 else:
+    from functools import cache
     from typing import TypeVar
 
     M = TypeVar("M")  # class of a message, a request or a goal; Any if it is not given

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, overload
 
 from simkit.argument_checks import check_kind, checked_vector, wrong_type, wrong_value
 from simkit.errors import ArgumentTypeError
 from simkit.msgs.definition_parser import NAME
 from simkit.msgs.message_builder import builder_of
 from simkit.msgs.message_text import field_nodes, is_message
-from simkit.msgs.message_types import FieldValue, Message
+from simkit.msgs.message_types import FieldValue, M, Message, named_type
 from simkit.pose import Pose, checked_pose, quat_from_rpy, rpy_from_quat
 
 if TYPE_CHECKING:
@@ -85,13 +85,23 @@ def yaw(rotation: Quaternion | Message | Pose) -> float:
     return float(rpy_from_quat(quaternion)[2])
 
 
-def pose_message(value: Pose, type_name: str = POSE, header: Message = None, child_frame_id: str = "") -> Message:
+@overload
+def pose_message(value: Pose, type_name: type[M], header: Message = None, child_frame_id: str = "") -> M: ...
+
+
+@overload
+def pose_message(value: Pose, type_name: str = POSE, header: Message = None, child_frame_id: str = "") -> Message: ...
+
+
+def pose_message(
+    value: Pose, type_name: str | type = POSE, header: Message = None, child_frame_id: str = ""
+) -> Message:
     """Return a message with a pose.
 
     Args:
         value: pose.
-        type_name: type of the message: `geometry_msgs/msg/Pose`, `Transform`, or a type with a field `pose` or
-            `transform`, such as `PoseStamped` or `TransformStamped`.
+        type_name: type of the message, or its class: `geometry_msgs/msg/Pose`, `Transform`, or a type with a field
+            `pose` or `transform`, such as `msgs.PoseStamped` or `msgs.TransformStamped`.
         header: time and frame, from `msgs.header`; None for time 0 and no frame.
         child_frame_id: frame of the pose, for types with this field, such as `TransformStamped`.
 
@@ -100,8 +110,8 @@ def pose_message(value: Pose, type_name: str = POSE, header: Message = None, chi
         MessageError: the type is unknown.
     """
     checked_pose(value)
-    check_kind(type_name, str, "the type", "a text such as 'geometry_msgs/msg/PoseStamped'")
-    builder = builder_of(type_name)
+    check_kind(type_name, (str, type), "the type", "a text such as 'geometry_msgs/msg/PoseStamped', or a class of msgs")
+    builder = builder_of(named_type(type_name))
     fields = _pose_fields(value, builder.name)
     if fields is None:
         raise wrong_type("the type", "that of a message with a pose, such as geometry_msgs/msg/PoseStamped", type_name)

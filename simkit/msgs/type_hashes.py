@@ -7,12 +7,11 @@ from __future__ import annotations
 
 import hashlib
 import json
-from functools import cache
 from typing import TYPE_CHECKING, Final
 
 from simkit.msgs.definition_parser import ARRAY, BASE, NAME, SEQUENCE, FieldNode
 from simkit.msgs.derived_types import Fields, derived_fields, is_derived
-from simkit.msgs.message_types import full_name, type_store
+from simkit.msgs.message_types import cache, full_name, type_store
 from simkit.msgs.shipped_interfaces import NO_FIELD
 
 if TYPE_CHECKING:

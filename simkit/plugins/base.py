@@ -17,6 +17,7 @@ from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Literal, TypeVar, overload
 
+from simkit.completion import Completed
 from simkit.diagnostics import NOWHERE, Diagnostics, Where
 from simkit.msgs.message_types import named_type
 from simkit.params import Params
@@ -55,7 +56,7 @@ NEVER: Final = 1e-9
 """Rate of a paused hook [Hz]: once in thirty years."""
 
 
-class Plugin(abc.ABC):
+class Plugin(Completed, abc.ABC):
     """Base class of all plugins; derive from `WorldPlugin`, `ModelPlugin`, `VisualPlugin` or `SensorPlugin`.
 
     A hook that a class does not override takes no time. A hook with a rate of r Hz runs at the first step at or after
@@ -82,6 +83,14 @@ class Plugin(abc.ABC):
         ros: names as in a ROS node, with `<namespace>` and `<remapping>`.
         log: logger of the plugin, a child of the logger `simkit`.
     """
+
+    _internal_names = frozenset(
+        (
+            *("code_objects", "drives", "get_loaded_state", "hand_over", "has_hook", "importing"),
+            *("join_simulation", "node_names", "only_publishes", "plugin_paths", "reads_parameter_files"),
+            *("report_unread", "take_source"),
+        )
+    )
 
     filenames: ClassVar[tuple[str, ...]] = ()
     names: ClassVar[tuple[str, ...]] = ()
@@ -128,7 +137,7 @@ class Plugin(abc.ABC):
         """
 
     @abc.abstractmethod
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Any, params: Params, /) -> None:
         """Read parameters, open topics and find links and joints; called once, when the simulation is complete.
 
         Args:
@@ -296,7 +305,7 @@ class Plugin(abc.ABC):
         *,
         minimum: float | None = None,
         maximum: float | None = None,
-        choices: Sequence[T] = (),
+        choices: Sequence[object] = (),
         description: str = "",
         element: str | None = None,
         on_change: Callable[[T], None] | None = None,
@@ -476,7 +485,7 @@ class WorldPlugin(Plugin):
     if TYPE_CHECKING:  # a base class beside this one may have the method
 
         @abc.abstractmethod
-        def load(self, parent: Simulation, params: Params) -> None: ...
+        def load(self, parent: Simulation, params: Params, /) -> None: ...
 
 
 class ModelPlugin(Plugin):
@@ -487,7 +496,7 @@ class ModelPlugin(Plugin):
     if TYPE_CHECKING:  # a base class beside this one may have the method
 
         @abc.abstractmethod
-        def load(self, parent: Model, params: Params) -> None: ...
+        def load(self, parent: Model, params: Params, /) -> None: ...
 
 
 class VisualPlugin(Plugin):
@@ -498,7 +507,7 @@ class VisualPlugin(Plugin):
     if TYPE_CHECKING:  # a base class beside this one may have the method
 
         @abc.abstractmethod
-        def load(self, parent: Visual, params: Params) -> None: ...
+        def load(self, parent: Visual, params: Params, /) -> None: ...
 
 
 class SensorPlugin(Plugin):

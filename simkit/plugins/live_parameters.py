@@ -88,7 +88,7 @@ def _first_value(params: Params, element: str, parameter: Parameter[Any]) -> Any
     if isinstance(default, bool):
         return params.boolean(element, default)
     if isinstance(default, str):
-        return params.choice(element, list(choices), default) if choices else params.text(element, default)
+        return params.choice(element, list(map(str, choices)), default) if choices else params.text(element, default)
     if isinstance(default, tuple):
         return params.vector(element, len(default), default)
     if isinstance(default, int):

@@ -75,6 +75,8 @@ class Simulation(ScriptEntities, ScriptGraph, InProcess):
         remapping: other names for the topics, services and actions of plugins and sensors; None for none.
     """
 
+    _internal_names = frozenset({"communication", "contents", "control", "engine", "loaded", "ros1_parameters"})
+
     communication: Communication
     contents: WorldContents
     control: WorldControl
@@ -125,7 +127,7 @@ class Simulation(ScriptEntities, ScriptGraph, InProcess):
         self.loaded.change(self.snapshot())
 
     @property
-    def run_spec(self) -> RunSpec | None:
+    def run_spec(self) -> RunSpec | Any:
         """Specification of the run from `simkit.load`; None for a simulation made in another way."""
         return self.loaded.run_spec
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import abc
 import math
+import re
 from collections.abc import Callable, Mapping, Sequence
 from itertools import chain
 from typing import Any, ClassVar, Generic, TypeVar
@@ -41,10 +42,6 @@ from simkit.sensors.topics_and_frames import check_topic, entity_topic, read_fra
 __all__ = ["Product", "Sample", "Sensor"]
 
 
-_NAMES_FOR_USERS = (
-    *("name", "scoped", "kind", "topic", "topics", "frame_id", "update_rate", "set_rate", "pose"),
-    *("latest", "truth", "noise", "options", "sim"),
-)
 _COMMON_ELEMENTS = ("visualize", "pose", "update_rate", "topic")
 _RATE_TYPE = "std_msgs/msg/Float64"
 _BODY = int(mujoco.mjtObj.mjOBJ_XBODY)
@@ -89,7 +86,11 @@ class Sensor(Sampler, Generic[M]):
     has_dynamic_bias: ClassVar[bool] = False
     artefact_families: ClassVar[tuple[str, ...]] = ()
 
-    options: object = None
+    _names_for_users: ClassVar[tuple[str, ...]] = (
+        *("name", "scoped", "kind", "topic", "topics", "frame_id", "update_rate", "set_rate", "pose"),
+        *("latest", "truth", "noise", "options", "sim"),
+    )
+    options: Any = None
     noise: Any = SettableNoise()
 
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
@@ -115,10 +116,16 @@ class Sensor(Sampler, Generic[M]):
         check_topic(self.timing.set_rate_topic, params, "set_rate_topic")
 
     def __dir__(self) -> list[str]:
-        """Return the names that users read or call, for completion: those of all kinds and those that the kind adds."""
-        kind = type(self).__mro__[: type(self).__mro__.index(Sensor)]
-        own = {name for cls in kind for name in vars(cls) if not name.startswith("_") and not hasattr(Sensor, name)}
-        return sorted({*_NAMES_FOR_USERS, *own})
+        """Return the names that users read or call, for completion: those of all kinds and those that the kind adds.
+
+        A kind of a user adds all its names, a kind of simkit those in `_names_for_users`.
+        """
+        names: set[str] = set()
+        for cls in type(self).__mro__[: type(self).__mro__.index(Sensor) + 1]:
+            names.update(vars(cls).get("_names_for_users", ()))
+            if re.match(r"simkit\b|simkit_", cls.__module__) is None:
+                names.update(name for name in vars(cls) if not name.startswith("_") and not hasattr(Sensor, name))
+        return sorted(names)
 
     # ------------------------------------------------------------------ methods that a kind overrides
 

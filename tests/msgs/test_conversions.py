@@ -123,7 +123,7 @@ def test_a_pose_is_the_same_after_a_message_of_any_type(type_name: str) -> None:
 
 
 def test_planar_poses_headers_and_child_frames() -> None:
-    assert msgs.pose(msgs.pose_message(PLANAR, "geometry_msgs/msg/Pose2D")).rpy[2] == pytest.approx(0.3)
+    assert msgs.pose(msgs.pose_message(PLANAR, msgs.Pose2D)).rpy[2] == pytest.approx(0.3)
     stamped = msgs.pose_message(POSE, "geometry_msgs/msg/TransformStamped", HEAD, "robot")
     assert (stamped.header.frame_id, stamped.child_frame_id) == ("eye", "robot")
     with pytest.raises(MessageError, match="has no field 'header'"):

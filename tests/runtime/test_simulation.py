@@ -330,6 +330,21 @@ def test_completion_of_a_sensor_lists_what_users_need():
         assert all(hasattr(sim.sensor("height"), name) for name in names)
 
 
+def test_completion_leaves_out_what_only_simkit_calls():
+    with load(TWO_WHEELS) as sim:
+        model = next(iter(sim.models.values()))
+        publisher, subscription = sim.advertise("/text", "std_msgs/msg/String"), sim.subscribe("/text")
+        listed = {*dir(sim), *dir(model), *dir(publisher), *dir(subscription), *dir(sim.tf)}
+        assert {"run", "models", "pose", "set_pose", "publish", "latest", "lookup", "engine"} - listed == {"engine"}
+        assert not {"check_present", "replace_scene", "send_kept", "restore_latest", "set_state"} & listed
+
+
+def test_completion_of_modules_lists_public_names_and_message_classes():
+    assert {*dir(simkit)} == {*simkit.__all__, *simkit._PUBLIC_MODULES}
+    assert dir(simkit.testing) == sorted(simkit.testing.__all__)
+    assert {"LaserScan", "pose"} <= {*dir(simkit.msgs)}
+
+
 class Counter(simkit.WorldPlugin):
     """Count the calls of its hooks."""
 

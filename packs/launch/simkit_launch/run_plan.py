@@ -333,7 +333,11 @@ def _program_of(process: LaunchedProcess) -> str:
         return SHUTDOWN
     if process.package:
         return f"{process.package}/{process.executable}"
-    return process.arguments[0] if process.arguments else ""
+    program = process.arguments[0] if process.arguments else ""
+    installed = Path(program).parts[-3:]
+    if installed[:1] == ("lib",) and not Path(program).exists():
+        return "/".join(installed[1:])  # of get_package_prefix or $(find-pkg-prefix), in a workspace without a build
+    return program
 
 
 def _arguments_of(process: LaunchedProcess) -> tuple[str, ...]:

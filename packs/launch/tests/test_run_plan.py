@@ -60,6 +60,12 @@ def test_a_launch_file_without_a_simulator_runs_in_an_empty_world(plan: LaunchPl
     assert nodes_of(spec) == [{"program": talker, "label": "talker.py-1", "args": ("--loud",), "respawn": 2.0}]
 
 
+def test_a_command_with_the_path_of_an_installed_executable_is_the_executable(plan: LaunchPlan) -> None:
+    program = str(plan.file.parent / "lib" / "topic_tools" / "relay")
+    plan.processes.append(LaunchedProcess(1, "command", arguments=(program, "a", "b")))
+    assert nodes_of(run_spec_of(plan)) == [{"program": "topic_tools/relay", "label": "relay-1", "args": ("a", "b")}]
+
+
 def test_what_waits_for_a_left_out_process_waits_for_what_that_waited_for(plan: LaunchPlan, talker: str) -> None:
     """A process in C++ cannot run; the timers before and after it add up."""
     driver = LaunchedProcess(

@@ -26,8 +26,7 @@ from simkit_learning.environments.specification import (
 )
 
 if TYPE_CHECKING:
-    import gymnasium
-
+    from simkit_learning.environments.batch_environment import BatchVectorEnv
     from simkit_learning.environments.environment import SimulationEnv
 
 __all__ = ["Batched", "EnvironmentSpec", "JointVelocities", "Observation", "SimulationEnv", "make", "make_vec"]
@@ -61,8 +60,8 @@ def make_vec(
     autoreset: Autoreset = "next_step",
     threads: int = 0,
     **options: Unpack[EnvironmentOptions],
-) -> gymnasium.vector.VectorEnv[Any, Any, Any]:
-    """Return several environments of a world that step together.
+) -> BatchVectorEnv | Any:
+    """Return several environments of a world that step together: a vector environment of Gymnasium.
 
     Environment k has the results of `make` with the seed of the specification plus k. The page learning.md lists the
     parts of worlds and specifications that MuJoCo's batch can step, all environments in one call. If another part

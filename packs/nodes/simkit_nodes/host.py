@@ -46,7 +46,7 @@ class Host(Protocol):
     def wake(self) -> None:
         """Have the conditions of all waits asked again, because something has happened."""
 
-    def call_outside(self, function: Callable[[], Any]) -> Any:
+    def call_outside(self, function: Callable[[], object]) -> Any:
         """Call a function that changes the world in the thread of the simulation, and return its result."""
 
     def start_thread(self, function: Callable[[], object], name: str) -> Any:

@@ -158,7 +158,7 @@ class LiveHost:
         """Have the conditions of all waits asked again."""
         self.lock.notify()
 
-    def call_outside(self, function: Callable[[], Any]) -> Any:
+    def call_outside(self, function: Callable[[], object]) -> Any:
         """Call a function and return its result: this process has no simulation."""
         return function()
 

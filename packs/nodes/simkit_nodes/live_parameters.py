@@ -16,7 +16,7 @@ class SharedParameterServer(ParameterServer):
         ask: function that sends a request to the simulation and returns its answer.
     """
 
-    def __init__(self, ask: Callable[..., Any]) -> None:
+    def __init__(self, ask: Callable[..., object]) -> None:
         super().__init__()
         self._ask_simulation = ask
 

@@ -68,7 +68,7 @@ def msgify(msg_type: Any, numpy_obj: Any, *args: Any, **kwargs: Any) -> Any:
     return convert(numpy_obj, *args, **kwargs)
 
 
-def _names(table: dict[str, Callable[..., Any]]) -> str:
+def _names(table: dict[str, Callable[..., object]]) -> str:
     return ", ".join(name.rpartition("/")[2] for name in table)
 
 
@@ -324,7 +324,7 @@ def _posed(type_name: str, position: str, rotation: str, matrix: Any) -> Any:
     return message
 
 
-def _each(arr: Any, axes: int, convert: Callable[[Any], Any]) -> Any:
+def _each(arr: Any, axes: int, convert: Callable[[Any], object]) -> Any:
     """Convert an array whose last axes are those of one message, or each part of a larger array."""
     if arr.ndim == axes:
         return convert(arr)
@@ -334,7 +334,7 @@ def _each(arr: Any, axes: int, convert: Callable[[Any], Any]) -> Any:
     return result
 
 
-_TO_NUMPY: Final[dict[str, Callable[..., Any]]] = {
+_TO_NUMPY: Final[dict[str, Callable[..., object]]] = {
     "geometry_msgs/msg/Vector3": vector3_to_numpy,
     "geometry_msgs/msg/Point": point_to_numpy,
     "geometry_msgs/msg/Quaternion": quat_to_numpy,
@@ -345,7 +345,7 @@ _TO_NUMPY: Final[dict[str, Callable[..., Any]]] = {
     "sensor_msgs/msg/PointCloud2": pointcloud2_to_array,
 }
 
-_FROM_NUMPY: Final[dict[str, Callable[..., Any]]] = {
+_FROM_NUMPY: Final[dict[str, Callable[..., object]]] = {
     "geometry_msgs/msg/Vector3": numpy_to_vector3,
     "geometry_msgs/msg/Point": numpy_to_point,
     "geometry_msgs/msg/Quaternion": numpy_to_quat,

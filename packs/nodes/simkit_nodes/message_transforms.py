@@ -15,7 +15,7 @@ from simkit.linear_algebra import matmul
 from simkit_nodes.frame_buffer import Quaternion, Vector, multiply, rotate
 from simkit_nodes.interfaces import ProgramMessage
 
-Transforms = dict[Any, Callable[[Any, Any], Any]]
+Transforms = dict[Any, Callable[[Any, Any], object]]
 """Functions of an object and a `TransformStamped` that return an object, by name of the message type, or by class."""
 
 

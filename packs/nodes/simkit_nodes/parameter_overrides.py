@@ -154,7 +154,7 @@ def _composed(text: str) -> yaml.Node | None:
     return yaml.compose(text, yaml.SafeLoader)
 
 
-def _read_yaml(path: Path, read: Callable[[str], Any]) -> Any:
+def _read_yaml(path: Path, read: Callable[[str], object]) -> Any:
     try:
         return read(read_input_text(path))
     except OSError as error:

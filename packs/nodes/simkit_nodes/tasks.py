@@ -90,7 +90,7 @@ class Task(InProcess):
         self.turn = TurnSignal()
         self.polls = self.ended_waits = 0
         self.request: Callable[[], object] | None = None
-        self._answer: Callable[[], Any] = _no_answer
+        self._answer: Callable[[], object] = _no_answer
         self.turns = (-1, 0)
         self._thread_id = 0
 

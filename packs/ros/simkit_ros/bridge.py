@@ -328,7 +328,9 @@ def main(options: JsonObject) -> int:
     try:
         session = RosSession("simkit", options["namespace"], options["arguments"])
     except Exception as error:  # noqa: BLE001 - rclpy raises its own errors, whose class is not known before the import
-        tell(error=f"ROS cannot be opened: {error}")
+        is_unknown = type(error).__name__ == "UnknownROSArgsError"
+        reason = f"unknown arguments after --ros-args: {error}" if is_unknown else error
+        tell(error=f"ROS cannot be opened: {reason}")
         return 1
 
     def run() -> None:

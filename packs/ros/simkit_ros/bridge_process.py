@@ -41,11 +41,16 @@ class RosOptions:
         """Validate the options.
 
         Raises:
-            InputError: SK-ROS-003 the domain or the namespace is invalid.
+            InputError: SK-ROS-003 the domain, of the options or of `ROS_DOMAIN_ID`, or the namespace is invalid.
         """
-        if self.domain is not None and not 0 <= self.domain <= _MOST_DOMAIN:
-            text = f"--ros-domain: found {self.domain}; expected a number from 0 to {_MOST_DOMAIN}"
-            raise InputError("SK-ROS-003", text)
+        variable = os.environ.get("ROS_DOMAIN_ID") or "0"
+        name, found = ("ROS_DOMAIN_ID", variable) if self.domain is None else ("--ros-domain", str(self.domain))
+        try:
+            is_valid = 0 <= int(found, 0) <= _MOST_DOMAIN
+        except ValueError:
+            is_valid = False
+        if not is_valid:
+            raise InputError("SK-ROS-003", f"{name}: found {found}; expected a number from 0 to {_MOST_DOMAIN}")
         if self.namespace and not is_namespace(self.namespace):
             text = f"--ros-namespace: found {self.namespace!r}; expected letters, digits and _ between slashes"
             raise InputError("SK-ROS-003", text)

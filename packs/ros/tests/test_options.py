@@ -90,6 +90,16 @@ def test_a_domain_or_namespace_that_ros_does_not_accept_is_an_error(options: Ros
         options.check()
 
 
+@pytest.mark.parametrize("value", ["240", "-1", "lab"])
+def test_a_domain_of_the_environment_that_ros_does_not_accept_is_an_error(
+    monkeypatch: pytest.MonkeyPatch, value: str
+) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", value)
+    with pytest.raises(InputError, match=f"SK-ROS-003 ROS_DOMAIN_ID: found {value}; expected a number from 0 to 232"):
+        RosOptions().check()
+    RosOptions(domain=7).check()
+
+
 def test_names_become_names_of_ros() -> None:
     assert ros_name("/world/a.b/2d-scan/x") == "/world/a_b/_2d_scan/x"
     assert ros_name("/scan", "/lab") == "/lab/scan"

@@ -241,6 +241,12 @@ def test_names_have_the_namespace_and_the_remappings(simkit_run: SimkitRun, ros_
     assert "/scan" not in found and "/lab/scan" not in found
 
 
+def test_unknown_arguments_of_ros_are_named(bridge_options: list[str], simkit_command: SimkitRun) -> None:
+    with simkit_command("run", "turtlebot3_empty", "--ros", *bridge_options, "--ros-args", "--wrong") as run:
+        assert run.end() == 2
+        run.until(r"error: SK-ROS-002 .*: unknown arguments after --ros-args: \['--wrong'\]")
+
+
 def test_messages_that_are_no_messages_are_dropped_with_a_note(simkit_run: SimkitRun, ros_node: RosNode) -> None:
     with simkit_run("turtlebot3_world", "--rtf", "1") as run:
         ros_node("""

@@ -19,6 +19,7 @@ from simkit.bridges.live.client_servers import (
     LiveParameter,
     LiveServerGoal,
     LiveService,
+    T,
 )
 from simkit.bridges.live.protocol import JsonObject, JsonValue, LiveClosed, LiveError
 from simkit.bridges.live.server_link import ServerLink
@@ -307,15 +308,15 @@ class ClientGraph(ServerLink):
     def declare(
         self,
         name: str,
-        value: object,
+        value: T,
         *,
         node: str | None = None,
         minimum: float | None = None,
         maximum: float | None = None,
         choices: Sequence[object] = (),
         description: str = "",
-        on_change: Callable[[object], object] | None = None,
-    ) -> LiveParameter:
+        on_change: Callable[[T], object] | None = None,
+    ) -> LiveParameter[T]:
         """Declare a live parameter: `.value` is the newest value that the client has received.
 
         Args:

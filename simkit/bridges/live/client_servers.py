@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, Generic
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 from simkit import msgs
 from simkit.bridges.live.client_handles import LiveSubscription
@@ -17,6 +17,8 @@ from simkit.msgs.message_types import F, M, M_co, Message, R
 
 if TYPE_CHECKING:
     from simkit.msgs.message_classes import ActionGoal
+
+T = TypeVar("T", bound="bool | int | float | str | tuple[float, ...]")
 
 CALLBACK_ERROR = "SK-TOPIC-002"
 """Code of the error for a callback that raised, as in the process of the simulation."""
@@ -233,7 +235,7 @@ class LiveInput(LiveSubscription[M]):
                 self._link.request("close_endpoint", {"number": self.number})
 
 
-class LiveParameter(LiveEndpoint):
+class LiveParameter(LiveEndpoint, Generic[T]):
     """Parameter of this client.
 
     Attributes:
@@ -247,21 +249,24 @@ class LiveParameter(LiveEndpoint):
         number: int,
         name: str,
         node: str,
-        value: JsonValue,
-        on_change: Callable[[Any], Any] | None,
+        value: T,
+        on_change: Callable[[T], object] | None,
     ) -> None:
         super().__init__(link, number, name, type(value).__name__)
         self.node, self._on_change = node, on_change
-        self.value = tuple(value) if isinstance(value, list) else value
+        self.value: T = self._converted(value)
 
     def take(self, words: JsonObject, data: bytes) -> None:
         """Store a new value and queue the callback."""
-        value = words["value"]
-        self.value = tuple(value) if isinstance(value, list) else value
+        self.value = self._converted(words["value"])
         if self._on_change is not None:
             self._link.callbacks.append(lambda value=self.value: self._change(value))  # type: ignore[misc]
 
-    def _change(self, value: JsonValue) -> None:
+    @staticmethod
+    def _converted(value: JsonValue) -> JsonValue:
+        return tuple(value) if isinstance(value, list) else value
+
+    def _change(self, value: T) -> None:
         assert self._on_change is not None
         try:
             self._on_change(value)

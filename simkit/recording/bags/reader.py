@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
     from simkit.msgs.data_frames import DataFrame
+    from simkit.run_files import FilePath
 
 __all__ = ["LATEST_SIMULATED_TIME", "BagMessage", "BagReader", "BagTopic", "open_bag_to_read"]
 
@@ -107,17 +108,18 @@ class BagReader:
         folder = self.path if self.path.is_dir() else self.path.parent
         return sum((folder / name).stat().st_size for name in self.files if (folder / name).is_file())
 
-    def messages(self, topics: Sequence[str] = (), start: int | None = None) -> Iterator[BagMessage]:
+    def messages(self, topics: str | Sequence[str] = (), start: int | None = None) -> Iterator[BagMessage]:
         """Yield messages in the order of their times.
 
         Args:
-            topics: topics to read; empty for all.
+            topics: topic or topics to read; empty for all.
             start: recording time of the first message to read [ns].
 
         Raises:
             InputError: SK-CLI-030 the topic is not in the bag; SK-CLI-035 the bag is damaged.
         """
         known = {topic.name for topic in self.topics}
+        topics = [topics] if isinstance(topics, str) else topics
         for name in topics:
             if name not in known:
                 hint = did_you_mean(name, known) or "known: " + (", ".join(sorted(known)) or "none")
@@ -217,7 +219,7 @@ class BagReader:
         return msgs.type_store() if is_known and _is_as_in_simkit(type_name, store) else store
 
 
-def open_bag_to_read(path: str | Path) -> BagReader:
+def open_bag_to_read(path: FilePath) -> BagReader:
     """Open a bag: an `.mcap` or `.db3` file, or a rosbag2 folder.
 
     Raises:

@@ -28,6 +28,7 @@ from simkit.writers.atomic_output import abandoned_folders, current_umask, unfin
 
 if TYPE_CHECKING:
     from simkit.recording.bags.reader import BagReader
+    from simkit.run_files import FilePath
 
 
 INDEX: Final = "index.json"
@@ -166,14 +167,23 @@ class ExportedTopic:
     notes: list[str] = field(default_factory=list)
 
 
-def export_bag(path: Path, target: Path, options: ExportOptions) -> list[ExportedTopic]:
+def export_bag(path: FilePath, target: FilePath, options: ExportOptions) -> list[ExportedTopic]:
     """Export a bag to a folder. The folder is written completely or not at all.
+
+    Args:
+        path: bag, as for `open_bag_to_read`.
+        target: folder of the exported files.
+        options: topics and formats.
+
+    Returns:
+        One entry for each topic.
 
     Raises:
         InputError: SK-BAG-011 no topic is selected; SK-BAG-013 the folder is not writable; SK-BAG-014 a format needs a
             missing package; SK-CLI-030 a topic does not exist; SK-CLI-035 the bag is unreadable; SK-CLI-036 a message
             does not match its type.
     """
+    path, target = Path(path), Path(target)
     check_folder(target, overwrite=options.overwrite)
     if options.format == "parquet":
         check_parquet()

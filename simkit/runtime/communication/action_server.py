@@ -55,6 +55,8 @@ class GoalHandle(InProcess, Generic[M_co]):
         sent_ns: simulated time at which the goal was sent [ns].
     """
 
+    _internal_names = frozenset({"begin", "end", "get_state", "set_state"})
+
     def __init__(
         self,
         action: Action,
@@ -123,7 +125,7 @@ class GoalHandle(InProcess, Generic[M_co]):
                 self.status = GoalStatus.EXECUTING
 
     def reject(self, reason: str = "") -> None:
-        """Reject the goal. Only the goal callback of the plugin can do this."""
+        """Reject the goal. Only the goal callback can do this; ActionError after the goal was accepted."""
         if self.status in (GoalStatus.EXECUTING, GoalStatus.CANCELING):
             raise ActionError(f"goal {self.id} of {self.action.name!r} was accepted already; abort it")
         self.end(GoalStatus.REJECTED, None, reason)
@@ -144,19 +146,19 @@ class GoalHandle(InProcess, Generic[M_co]):
     def succeed(
         self: GoalHandle[ActionGoal[M, R, F]], result: R | Mapping[str, object] | None = None, reason: str = ""
     ) -> None:
-        """End the goal as succeeded."""
+        """End the goal as succeeded. The result is a message, a dict of its fields, or None for default fields."""
         self.end(GoalStatus.SUCCEEDED, result, reason)
 
     def abort(
         self: GoalHandle[ActionGoal[M, R, F]], result: R | Mapping[str, object] | None = None, reason: str = ""
     ) -> None:
-        """End the goal as aborted."""
+        """End the goal as aborted; the arguments are those of `succeed`."""
         self.end(GoalStatus.ABORTED, result, reason)
 
     def canceled(
         self: GoalHandle[ActionGoal[M, R, F]], result: R | Mapping[str, object] | None = None, reason: str = ""
     ) -> None:
-        """End the goal as cancelled."""
+        """End the goal as cancelled; the arguments are those of `succeed`."""
         self.end(GoalStatus.CANCELED, result, reason)
 
     def end(self, status: GoalStatus, result: Message = None, reason: str = "") -> None:
@@ -215,6 +217,8 @@ class Action(InProcess):
         node: other process that executes the goals, and accepts or rejects them later; empty for this process.
         is_immediate: True if a goal reaches the callback at once while no step is made, so also in a paused world.
     """
+
+    _internal_names = frozenset({"ask_to_cancel", "deliver_at_once", "knows", "offer"})
 
     def __init__(
         self,

@@ -14,7 +14,7 @@ from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar
 
 P = ParamSpec("P")
 R = TypeVar("R")
-OutsideCallback = Callable[[Any], Any] | None
+OutsideCallback = Callable[[Any], object] | None
 ResultStore = Callable[[Any], None]
 S = TypeVar("S", bound="Journaled")
 

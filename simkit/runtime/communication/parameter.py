@@ -38,6 +38,8 @@ class Parameter(InProcess, Generic[T]):
         remove: function that removes the parameter from its node; None before the declaration.
     """
 
+    _internal_names = frozenset({"active", "checked", "is_within", "owner", "remove", "take"})
+
     def __init__(
         self,
         node: str,
@@ -46,7 +48,7 @@ class Parameter(InProcess, Generic[T]):
         *,
         minimum: float | None = None,
         maximum: float | None = None,
-        choices: Sequence[T] = (),
+        choices: Sequence[object] = (),
         description: str = "",
         on_change: Callable[[T], None] | None = None,
         owner: object = None,

@@ -69,6 +69,14 @@ class Publisher(InProcess, Generic[M]):
         node: name of the node of a program that publishes here; empty for any other publisher.
     """
 
+    _internal_names = frozenset(
+        (
+            *("check", "disown", "history", "is_live", "is_only_streamed", "keep_history", "last", "owner"),
+            *("patience", "pending", "present", "publish_later", "publish_packed", "send_kept", "tally"),
+            "wanted",
+        )
+    )
+
     __slots__ = (
         "_bus",
         "_publishers",
@@ -283,6 +291,8 @@ class Listener(InProcess):
         is_ready: function that returns False while the owner ignores messages, for example an inactive controller; None
             if the owner always uses them.
     """
+
+    _internal_names = frozenset({"is_ready", "last", "owner"})
 
     __slots__ = ("_bus", "active", "callback", "is_ready", "last", "owner", "topic", "types")
 

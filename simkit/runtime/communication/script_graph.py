@@ -86,6 +86,10 @@ class ScriptGraph:
 
         A message object on an unknown topic opens the topic.
 
+        Args:
+            topic: name of the topic; a missing leading slash is added.
+            message: message, or dict of its fields such as `{"linear": {"x": 0.2}}`; other fields are zero.
+
         Raises:
             MessageError: a dict is published on an unknown topic, or the message does not fit the topic's type.
         """
@@ -378,7 +382,7 @@ class ScriptGraph:
         node: str = SCRIPT_NODE,
         minimum: float | None = None,
         maximum: float | None = None,
-        choices: Sequence[T] = (),
+        choices: Sequence[object] = (),
         description: str = "",
         on_change: Callable[[T], object] | None = None,
     ) -> Parameter[T]:
@@ -416,5 +420,14 @@ class ScriptGraph:
         return parameter
 
     def set_parameter(self, node: str, name: str, value: object) -> None:
-        """Set a live parameter; raise ParameterError for an unknown parameter or a value that is not allowed."""
+        """Set a live parameter.
+
+        Args:
+            node: node of the parameter, such as `/diff_drive`; `/script` for those of a script.
+            name: name of the parameter.
+            value: new value.
+
+        Raises:
+            ParameterError: the parameter is unknown, or the value is not allowed.
+        """
         self.communication.set_parameter(node, name, value)

@@ -96,6 +96,8 @@ class Service(InProcess):
         remote: other process that answers; None for a service of this process.
     """
 
+    _internal_names = frozenset({"is_listed", "owner", "remote", "response", "wrap_handler", "yields"})
+
     __slots__ = ("_table", "active", "handler", "is_listed", "name", "owner", "remote", "type_name", "yields")
 
     def __init__(
@@ -148,6 +150,8 @@ class ServiceCall(InProcess, Generic[R]):
         response: response message; None before the end, and after an error.
         error: error of the service; None without one.
     """
+
+    _internal_names = frozenset({"end"})
 
     __slots__ = ("error", "id", "is_done", "on_done", "request", "response", "service")
 

@@ -161,6 +161,8 @@ class Subscription(InProcess, Generic[M]):
         active: False while the owner is removed or disabled; nothing is received then.
     """
 
+    _internal_names = frozenset({"expected", "is_called", "keeps", "owner", "receive", "restore_latest", "settle"})
+
     node = type_name = expected = ""
     owner: object = None
     active = True

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Final
 
+from simkit.completion import Completed
 from simkit.msgs.message_types import FieldValue, Message
 from simkit.msgs.transform_tree import TransformTree, TreeState
 from simkit.pose import Pose
@@ -30,13 +31,20 @@ def present_messages(bus: TopicBus, topic: str) -> Iterator[Message]:
                 yield message
 
 
-class TransformBuffer(TransformTree):
+class TransformBuffer(TransformTree, Completed):
     """Transforms of a simulation. Nothing is received, and nothing is published for it, before its first use.
 
     Args:
         bus: topic bus.
         now_ns: function that returns the simulated time [ns].
     """
+
+    _internal_names = frozenset(
+        (
+            *("advance", "close", "copied", "get_state", "is_static", "latest", "newest", "open", "replace"),
+            *("set_state", "since_ns", "take"),
+        )
+    )
 
     def __init__(self, bus: TopicBus, now_ns: Callable[[], int]) -> None:
         super().__init__()
@@ -70,7 +78,18 @@ class TransformBuffer(TransformTree):
                 self.take(message, is_static=is_static)
 
     def lookup(self, target: str, source: str, time: FieldValue = None) -> Pose:
-        """Return the pose of the frame `source` in the frame `target`; see `TransformTree.lookup`."""
+        """Return the pose of the frame `source` in the frame `target`.
+
+        Args:
+            target: frame in which the pose is given.
+            source: frame whose pose is returned.
+            time: simulated time [s], or the stamp of a message; None for the latest time at which all transforms
+                between the frames are known. With None, a transform that is first known later has its first pose.
+
+        Raises:
+            TransformError: SK-TF-001 a frame is unknown; SK-TF-002 the frames are not connected; SK-TF-003 a transform
+                between them is not known at that time.
+        """
         return super(TransformBuffer, self.open()).lookup(target, source, time)
 
     def frames(self) -> dict[str, str]:

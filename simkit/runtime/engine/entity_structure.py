@@ -182,7 +182,7 @@ class AttachedPlugin(Protocol):
 StructureChange = tuple[str, tuple[Any, ...]]
 """Name and arguments of a function of the spawner that changed the structure: "spawn", "remove", …"""
 
-ParentFinder = Callable[[Any], Any]
+ParentFinder = Callable[[Any], object]
 """Function that returns a plugin's parent (a simulation, a handle, a sensor) once the handles of a simulation exist."""
 
 

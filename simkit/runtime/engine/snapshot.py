@@ -47,6 +47,13 @@ class Snapshot(InProcess):
         pack: function that returns the snapshot for another process.
     """
 
+    _internal_names = frozenset(
+        (
+            *("fields", "handles", "inbox", "owner", "pack", "structure", "variant", "physics", "plugins"),
+            *("sensors", "data"),
+        )
+    )
+
     structure: WorldStructure
     data: mujoco.MjData | npt.NDArray[np.float64]
     fields: dict[str, npt.NDArray[np.float64]]

@@ -23,6 +23,8 @@ class Handle(InProcess):
         scoped: names from the world down, joined with `::`.
     """
 
+    _internal_names = frozenset({"check_present", "mark_present"})
+
     def __init__(self, handles: EntityHandles, name: str, scoped: str) -> None:
         self._handles, self._engine, self._physics = handles, handles.engine, handles.engine.physics
         self.name, self.scoped = name, scoped

@@ -17,15 +17,13 @@ from simkit.pose import Pose, Vector, quat_conjugate, quat_rotate
 from simkit.runtime.engine.physics_state import CONTROL, STALE, VELOCITY
 from simkit.runtime.handles import joined_models
 from simkit.runtime.handles import joint_mechanics as mechanics
-from simkit.runtime.handles.joint_numbers import TunableJoint
+from simkit.runtime.handles.joint_numbers import JointValue, TunableJoint
 
 if TYPE_CHECKING:
     from simkit.compiler.name_map import NameMap
     from simkit.runtime.engine.velocity_limits import LimitedDof
     from simkit.runtime.handles.entity_handles import EntityHandles
     from simkit.scene import SceneJoint
-
-JointValue = float | Vector
 
 
 def _checked_limits(value: JointValue, name: str, count: int) -> list[float]:
@@ -39,9 +37,18 @@ def _checked_limits(value: JointValue, name: str, count: int) -> list[float]:
 class Joint(TunableJoint):
     """Joint. One degree of freedom is a float, more are an array; angles in rad, lengths in m.
 
+    Type checkers know the float. Pass the numbers of a ball joint to `numpy.asarray` before other uses.
+
     Attributes:
         type: joint type in the file.
     """
+
+    _internal_names = TunableJoint._internal_names | frozenset(
+        (
+            *("axis_velocity_limit", "bind", "check_position", "get_state", "least_velocity_limit"),
+            *("limited_dofs", "reading", "set_state"),
+        )
+    )
 
     def __init__(self, handles: EntityHandles, scene: SceneJoint) -> None:
         super().__init__(handles, scene.name, scene.scoped)
@@ -137,7 +144,7 @@ class Joint(TunableJoint):
 
     @property
     def transmitted_wrench(self) -> tuple[Vector, Vector]:
-        """Force [N] and torque [N·m] of the parent on the child, at the joint origin, in the joint frame.
+        """Force [N] and torque [N·m] of the parent on the child, at the joint origin, in its frame, shape (3,) each.
 
         The wrench includes the efforts of motor, spring, damper and friction along the joint's axes.
         """

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -12,7 +13,8 @@ from simkit.number_text import counted
 from simkit.pose import Vector
 from simkit.runtime.handles.handle import Handle
 
-JointNumbers = float | Vector
+JointValue = float | Any
+"""Number of a joint: a float for one degree of freedom, else an array, which type checkers do not check."""
 
 _GAIN_KINDS = {"kp": ("position",), "kv": ("position", "velocity")}
 
@@ -23,7 +25,7 @@ class TunableJoint(Handle):
     _dofs: Vector
 
     @property
-    def damping(self) -> JointNumbers:
+    def damping(self) -> JointValue:
         """Damping [N·m·s/rad or N·s/m]; settable."""
         return self._numbers("dof_damping")
 
@@ -32,7 +34,7 @@ class TunableJoint(Handle):
         self._set_numbers("damping", "dof_damping", value)
 
     @property
-    def stiction(self) -> JointNumbers:
+    def stiction(self) -> JointValue:
         """Dry friction [N·m or N]; settable."""
         return self._numbers("dof_frictionloss")
 
@@ -41,7 +43,7 @@ class TunableJoint(Handle):
         self._set_numbers("stiction", "dof_frictionloss", value)
 
     @property
-    def armature(self) -> JointNumbers:
+    def armature(self) -> JointValue:
         """Inertia of the rotor of the joint's motor [kg·m² or kg]; settable."""
         return self._numbers("dof_armature")
 
@@ -76,7 +78,7 @@ class TunableJoint(Handle):
         self._engine.numbers.write("actuator_biasprm", (index, 2), -gain)
         self._engine.numbers.keep("joint", self.scoped, "kv", gain)
 
-    def _numbers(self, field: str) -> JointNumbers:
+    def _numbers(self, field: str) -> JointValue:
         self.check_present()
         values = getattr(self._physics.model, field)[self._dofs]
         return float(values[0]) if len(values) == 1 else np.array(values)

@@ -71,6 +71,8 @@ class Light(Handle):
         motion: motion of the light; replaced by another object with every change.
     """
 
+    _internal_names = Handle._internal_names | {"change", "draw", "get_state", "replace_scene", "set_state"}
+
     def __init__(self, handles: EntityHandles, scene: SceneLight) -> None:
         super().__init__(handles, scene.name, scene.scoped)
         self.scene = scene

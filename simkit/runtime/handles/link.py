@@ -32,6 +32,8 @@ _BODY = int(mujoco.mjtObj.mjOBJ_XBODY)
 class Link(Handle):
     """Link of a model. Poses and velocities are those of the link frame's origin, in the world frame."""
 
+    _internal_names = Handle._internal_names | {"bind", "root_state", "spatial_velocity"}
+
     def __init__(self, handles: EntityHandles, scene: SceneLink) -> None:
         super().__init__(handles, scene.name, scene.scoped)
         self.scene = scene

@@ -29,6 +29,8 @@ class Model(Handle):
         static: True for a static model in the file.
     """
 
+    _internal_names = Handle._internal_names | {"below", "everything", "get_state", "replace_scene", "set_state"}
+
     def __init__(self, handles: EntityHandles, scene: SceneModel) -> None:
         super().__init__(handles, scene.name, scene.scoped)
         self.scene, self.static = scene, scene.static
@@ -60,14 +62,17 @@ class Model(Handle):
             self.models[model.name].replace_scene(model)
 
     def link(self, name: str) -> Link:
+        """Return a link by its name below the model, such as `"arm::hand"`; a KeyError suggests the closest name."""
         link: Link = look_up(self.below("links"), name, "link")
         return link
 
     def joint(self, name: str) -> Joint:
+        """Return a joint by its name below the model, such as `"arm::wrist"`; a KeyError suggests the closest name."""
         joint: Joint = look_up(self.below("joints"), name, "joint")
         return joint
 
     def model(self, name: str) -> Model:
+        """Return a nested model by its name below the model; a KeyError suggests the closest name."""
         model: Model = look_up(self.below("models"), name, "model")
         return model
 

@@ -128,6 +128,7 @@ class RenderedCamera(RenderedSampler[M]):
     """
 
     has_depth: ClassVar[bool] = False
+    _names_for_users = ("zoom", "set_zoom", "true_colours")
     options: CameraOptions
 
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:

@@ -6,7 +6,7 @@ import functools
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import mujoco
 import numpy as np
@@ -89,6 +89,7 @@ class RgbdCamera(RenderedCamera["msgs.Image"]):
 
     kinds: ClassVar[tuple[str, ...]] = ("rgbd_camera",)
     artefact_families: ClassVar[tuple[str, ...]] = ("depth", "colour")
+    _names_for_users = ("depth", "true_depth", "points")
     has_depth = True
     needs_colours = False
     needs_geoms = False
@@ -236,17 +237,17 @@ class RgbdCamera(RenderedCamera["msgs.Image"]):
     # ------------------------------------------------------------------ readings
 
     @property
-    def depth(self) -> Depths | None:
+    def depth(self) -> Depths | Any:
         """Depths along the optical axis of the newest image [m], shape (h, w), or None before the first."""
         return _locked_depths(self._noisy_reading())
 
     @property
-    def true_depth(self) -> Depths | None:
+    def true_depth(self) -> Depths | Any:
         """Depths of the newest image without noise [m], shape (h, w), or None before the first."""
         return _locked_depths(self._true_reading())
 
     @property
-    def points(self) -> npt.NDArray[np.float32] | None:
+    def points(self) -> npt.NDArray[np.float32] | Any:
         """Points of the newest image [m], shape (h, w, 3), as in the cloud's message, or None before the first."""
         reading = self._noisy_reading()
         return None if reading is None else self._clouds.points(reading.depths, self._shift(reading))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -50,6 +51,7 @@ class SolarSensor(Sensor["msgs.Imu"]):
 
     kinds = ("solar",)
     example = "<solar/>"
+    _names_for_users = ("reading",)
     options: SolarSensorOptions
     noise: Noise
     light: Light | None = None
@@ -214,7 +216,7 @@ class SolarSensor(Sensor["msgs.Imu"]):
     # ------------------------------------------------------------------ truth
 
     @property
-    def reading(self) -> SolarReading | None:
+    def reading(self) -> SolarReading | Any:
         """True reading of the newest sample (direction, shadow, incidence, light, power), or None before the first."""
         true_reading: SolarReading | None = self._true_reading()
         return true_reading

@@ -134,6 +134,7 @@ class LidarMeasurement(Sensor["msgs.LaserScan"]):
         has_second_returns: True if readings have second returns, with messages of their own.
     """
 
+    _names_for_users = ("hits", "ray_times")
     options: LidarOptions
     noise: UniformNoise
     ray_noise: UniformNoise | None = None
@@ -288,7 +289,7 @@ class LidarMeasurement(Sensor["msgs.LaserScan"]):
     # ------------------------------------------------------------------ measuring
 
     @property
-    def hits(self) -> npt.NDArray[np.object_] | None:
+    def hits(self) -> npt.NDArray[np.object_] | Any:
         """Objects that the rays of the newest sample hit, without noise, or None before the first.
 
         The names are scoped names of collisions (of visuals for a rendered lidar), layer by layer from the lowest,
@@ -374,7 +375,7 @@ class LidarMeasurement(Sensor["msgs.LaserScan"]):
         return horizontal.samples, horizontal.high - horizontal.low
 
     @property
-    def ray_times(self) -> Vector | None:
+    def ray_times(self) -> Vector | Any:
         """Time of each ray after the stamp of the next scan [s], shape (layers · samples,); None without a sweep."""
         return None if self.lasting is None else self.ray_pattern(self._index + 1).ray_times
 

@@ -74,6 +74,7 @@ class Sonar(Sensor["msgs.Range"]):
 
     kinds = ("sonar",)
     example = "<sonar><min>0.02</min><max>4</max><radius>0.5</radius></sonar>"
+    _names_for_users = ("hit",)
     options: SonarOptions
     noise: Noise
 

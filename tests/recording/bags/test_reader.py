@@ -54,7 +54,7 @@ def test_a_bag_of_simkit_is_read_back(name: str, tmp_path: Path) -> None:
             ("/number", "std_msgs/msg/Float64", 3, False),
         ]
         assert (found.start, found.end, found.count) == (0, 2 * SECOND, 4)
-        assert [found.decode(m).data for m in found.messages(["/number"])] == [0.0, 1.0, 2.0]
+        assert [found.decode(m).data for m in found.messages("/number")] == [0.0, 1.0, 2.0]
         assert [m.time_ns for m in found.messages(["/number"], start=SECOND)] == [SECOND, 2 * SECOND]
         assert found.storage == "mcap" and not found.broken
 

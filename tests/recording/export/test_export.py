@@ -72,7 +72,7 @@ FRAMES = [
 
 def test_a_table_has_one_line_per_message_and_exact_numbers(tmp_path: Path) -> None:
     bag = written(tmp_path / "a.mcap", *SCANS, *FRAMES)
-    export_bag(bag, tmp_path / "out", ExportOptions())
+    export_bag(str(bag), str(tmp_path / "out"), ExportOptions())
     first, second = table(tmp_path / "out" / "scan.csv")
     assert first["time"] == "0.500000000" and second["time"] == "1.500000000"
     assert [first[f"ranges[{i}]"] for i in range(3)] == ["0.1", "inf", "nan"]

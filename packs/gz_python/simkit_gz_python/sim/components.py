@@ -161,7 +161,7 @@ def _numbers(data: Iterable[float]) -> tuple[float, ...]:
     return tuple(float(v) for v in data)
 
 
-_COMMANDS: Final[dict[str, tuple[tuple[str, ...], str, Callable[[Any], Any]]]] = {
+_COMMANDS: Final[dict[str, tuple[tuple[str, ...], str, Callable[[Any], object]]]] = {
     "JointForceCmd": (("joint",), "force", _numbers),
     "JointVelocityCmd": (("joint",), "velocity", _numbers),
     "JointPositionReset": (("joint",), "position_reset", _numbers),

@@ -247,7 +247,7 @@ class _Kind:
         fixed: keywords that are always the same.
     """
 
-    make: Callable[..., Any]
+    make: Callable[..., object]
     attributes: Mapping[str, tuple[str, _Convert]] = field(default_factory=dict)
     required: tuple[str, ...] = ()
     actions: str = ""

@@ -16,7 +16,7 @@ from sensor_msgs.msg import LaserScan
 from simkit_launch.program_simulation import ros1_parameter
 
 Parameters = Mapping[str, Any]
-Filter = Callable[[Any, Parameters], Any]
+Filter = Callable[[Any, Parameters], object]
 
 
 def within_range(scan: Any, params: Parameters) -> Any:

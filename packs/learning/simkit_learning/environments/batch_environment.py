@@ -152,7 +152,7 @@ class BatchVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
 
     def reset(
         self, *, seed: int | list[int | None] | None = None, options: ResetOptions | None = None
-    ) -> tuple[Array | dict[str, Array], Info]:
+    ) -> tuple[Any, Info]:
         """Begin an episode in all environments, or in those of `options["reset_mask"]`.
 
         Args:
@@ -238,9 +238,7 @@ class BatchVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
 
     # ------------------------------------------------------------------ steps
 
-    def step(
-        self, actions: npt.ArrayLike
-    ) -> tuple[Array | dict[str, Array], npt.NDArray[np.float64], Bools, Bools, Info]:
+    def step(self, actions: npt.ArrayLike) -> tuple[Any, npt.NDArray[np.float64], Bools, Bools, Info]:
         """Send an action to each environment, advance by one control period, and return the results of all.
 
         Environments that have ended begin their next episode, as the autoreset mode says.

@@ -44,7 +44,7 @@ from simkit_learning.sweeps.parameter_space import (
 from simkit_learning.sweeps.sweep_spec import fill_template, split_values
 
 if TYPE_CHECKING:
-    from simkit_learning.environments.message_arrays import Array
+    pass
 
 IMAGE_SIZE: Final = (480, 360)
 """Width and height of the images of `render` [px]."""
@@ -97,6 +97,7 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012 (Gymnasium's type)
 
+    observation_space: Any  # a box, or a dictionary of boxes by name
     sim: Simulation
     _loaded_overrides: tuple[str, ...]
     steps: int
@@ -136,9 +137,7 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
 
     # ------------------------------------------------------------------ Gymnasium
 
-    def reset(
-        self, *, seed: int | None = None, options: ResetOptions | None = None
-    ) -> tuple[Array | dict[str, Array], Info]:
+    def reset(self, *, seed: int | None = None, options: ResetOptions | None = None) -> tuple[Any, Info]:
         """Begin an episode.
 
         Args:
@@ -162,7 +161,7 @@ class SimulationEnv(gymnasium.Env[Any, Any]):
         self._has_ended = False
         return self.observation, self._info()
 
-    def step(self, action: npt.ArrayLike) -> tuple[Array | dict[str, Array], float, bool, bool, Info]:
+    def step(self, action: npt.ArrayLike) -> tuple[Any, float, bool, bool, Info]:
         """Send an action, advance by one control period, and return observation, reward, both ends, and info.
 
         A simulation that diverges truncates the episode; the info then has the text of the error as "diverged". A node

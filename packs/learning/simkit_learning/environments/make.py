@@ -89,7 +89,7 @@ def make_vector_env(
     autoreset: Autoreset = "next_step",
     threads: int = 0,
     **options: Unpack[EnvironmentOptions],
-) -> gymnasium.vector.VectorEnv[Any, Any, Any]:
+) -> BatchVectorEnv | Any:
     """Return several environments that step together; see `simkit.gym.make_vec`."""
     if isinstance(num_envs, bool) or not isinstance(num_envs, int) or num_envs < 1:
         raise invalid(f"num_envs: found {num_envs!r}; expected a whole number of at least 1")

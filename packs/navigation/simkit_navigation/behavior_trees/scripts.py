@@ -216,7 +216,7 @@ def _combine(operator: str, left: Any, right: Any) -> Any:
     return _OPERATORS[operator](left, right)
 
 
-_OPERATORS: Final[dict[str, Callable[[Any, Any], Any]]] = {
+_OPERATORS: Final[dict[str, Callable[[Any, Any], object]]] = {
     "+": operators.add,
     "-": operators.sub,
     "*": operators.mul,
@@ -226,7 +226,7 @@ _OPERATORS: Final[dict[str, Callable[[Any, Any], Any]]] = {
     "<=": operators.le,
     ">=": operators.ge,
 }
-_UNARY: Final[dict[str, Callable[[Any], Any]]] = {
+_UNARY: Final[dict[str, Callable[[Any], object]]] = {
     "!": operators.not_,
     "-": operators.neg,
     "+": operators.pos,

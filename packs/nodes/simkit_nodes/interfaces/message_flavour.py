@@ -159,10 +159,10 @@ class _Generator:
         result = self._to_simkit(self._type_name, "m")
         return self._function("to_simkit", result)
 
-    def _function(self, name: str, result: str) -> Callable[[Any], Any]:
+    def _function(self, name: str, result: str) -> Callable[[Any], object]:
         source = "\n ".join([f"def {name}(m):", *self._lines, f"return {result}"])
         exec(source, self._names)  # the names in it are those of fields, which the parser has checked
-        function: Callable[[Any], Any] = self._names[name]  # type: ignore[assignment]
+        function: Callable[[Any], object] = self._names[name]  # type: ignore[assignment]
         return function
 
     def _variable(self, prefix: str, value: object = None) -> str:

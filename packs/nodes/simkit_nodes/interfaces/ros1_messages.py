@@ -280,7 +280,7 @@ def _boolean(value: Any) -> bool:
     return bool(struct.pack("B", value)[0])
 
 
-_NUMBERS: Final[dict[str, Callable[[Any], Any]]] = {"float32": _float32, "float64": _number, "bool": _boolean}
+_NUMBERS: Final[dict[str, Callable[[Any], object]]] = {"float32": _float32, "float64": _number, "bool": _boolean}
 
 
 def _integer(code: str) -> Callable[[Any], int]:
@@ -298,7 +298,7 @@ def _check_count(field: Field, count: int) -> None:
         raise struct.error(f"pack expected {field.size} items for packing (got {count})")
 
 
-def _sized_list(field: Field) -> Callable[[Any], Any]:
+def _sized_list(field: Field) -> Callable[[Any], object]:
     def checked(values: Any) -> Any:
         _check_count(field, len(values))
         return values

@@ -17,7 +17,7 @@ import numpy as np
 from simkit.msgs.definition_parser import INTEGER_RANGES
 from simkit_nodes.interfaces.message_fields import Field, number_type
 
-Check = Callable[[Any], Any]
+Check = Callable[[Any], object]
 """Function that returns the value to store; it raises AssertionError for a value that the field cannot have."""
 
 _LARGEST: Final = {"float32": ("float", 3.402823466e38), "float64": ("double", 1.7976931348623157e308)}

@@ -288,7 +288,7 @@ def _default_code(field: Field, index: int, names: dict[str, object], message_cl
     return f"default_of(F{index})"
 
 
-def _argument_conversion(field: Field) -> Callable[[Any], Any]:
+def _argument_conversion(field: Field) -> Callable[[Any], object]:
     """Return what a constructor does with an argument before it is checked."""
     if field.array_code and field.shape == "sequence":
         return lambda value: array(field.array_code, value)

@@ -65,7 +65,7 @@ def is_pressed(hotkey: str) -> bool:
     return True
 
 
-def on_press(callback: Callable[[KeyboardEvent], Any], suppress: bool = False) -> Task:
+def on_press(callback: Callable[[KeyboardEvent], object], suppress: bool = False) -> Task:
     """Call a function for each key."""
 
     def run() -> None:
@@ -76,6 +76,6 @@ def on_press(callback: Callable[[KeyboardEvent], Any], suppress: bool = False) -
     return task
 
 
-def add_hotkey(hotkey: str, callback: Callable[..., Any], args: tuple[Any, ...] = (), **options: object) -> Task:
+def add_hotkey(hotkey: str, callback: Callable[..., object], args: tuple[Any, ...] = (), **options: object) -> Task:
     """Call a function for a key of a name."""
     return on_press(lambda event: callback(*args) if event.name == hotkey else None)

@@ -79,8 +79,8 @@ def adapt(module: ModuleType, program: NodeProgram) -> None:
 
         def __init__(
             self,
-            on_press: Callable[[Any], Any] | None = None,
-            on_release: Callable[[Any], Any] | None = None,
+            on_press: Callable[[Any], object] | None = None,
+            on_release: Callable[[Any], object] | None = None,
             suppress: bool = False,
             **options: object,
         ) -> None:

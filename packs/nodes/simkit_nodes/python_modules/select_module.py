@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["select"]
 
 
-def _wait(ask: Callable[[], Any], timeout: float | None, stdin: ProgramInput | None = None) -> Any:
+def _wait(ask: Callable[[], object], timeout: float | None, stdin: ProgramInput | None = None) -> Any:
     """Wait until a question to the operating system has an answer that is not empty, and return the answer.
 
     Args:
@@ -97,5 +97,5 @@ def adapt(module: ModuleType, program: NodeProgram) -> None:
             setattr(module, name, unbound(_maker(make, unit)))
 
 
-def _maker(make: Callable[..., Any], unit: float) -> Callable[..., _Poller]:
+def _maker(make: Callable[..., object], unit: float) -> Callable[..., _Poller]:
     return lambda *args, **options: _Poller(make(*args, **options), unit)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal as _python
 from collections.abc import Callable
 from types import FrameType
-from typing import Any, Final, NoReturn
+from typing import Final, NoReturn
 
 from simkit_nodes.host import current_program
 from simkit_nodes.tasks import ProgramEnd, current_task
@@ -23,7 +23,7 @@ __all__ = [
 
 _IGNORED: Final = ("SIGCHLD", "SIGWINCH", "SIGURG", "SIGCONT")  # signals that do nothing without a handler
 
-Handler = Callable[[int, FrameType | None], Any] | int | None
+Handler = Callable[[int, FrameType | None], object] | int | None
 
 
 def signal(number: int, handler: Handler) -> Handler:

@@ -17,7 +17,7 @@ def adapt(module: ModuleType, program: NodeProgram) -> None:
     def is_standard_input(file: object) -> bool:
         return file == 0 or file is stdin
 
-    def except_for_input(name: str, result: object) -> Callable[..., Any]:
+    def except_for_input(name: str, result: object) -> Callable[..., object]:
         function = getattr(module, name)
 
         def call(file: object, *args: object) -> Any:

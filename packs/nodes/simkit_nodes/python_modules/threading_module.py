@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from simkit_nodes.programs import NodeProgram
 
 
-def counted(function: Callable[..., Any]) -> Callable[..., Any]:
+def counted(function: Callable[..., object]) -> Callable[..., object]:
     """Return a function that counts as a question that does not wait: a loop of such questions gets a step.
 
     Questions of the module itself, such as those of `Thread.join`, are not counted.

@@ -35,6 +35,6 @@ def keep_alive(function: Any) -> Any:
     return function
 
 
-def post_shutdown_test() -> Callable[[Any], Any]:
+def post_shutdown_test() -> Callable[[Any], object]:
     """Return a decorator that returns its class."""
     return keep_alive

@@ -28,5 +28,5 @@ class Node(Protocol):
     def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Publisher:
         """Open a publisher; see `Plugin.advertise`."""
 
-    def offer(self, name: str, type_name: str, callback: Callable[[Any], Any]) -> None:
+    def offer(self, name: str, type_name: str, callback: Callable[[Any], object]) -> None:
         """Offer a service; see `Plugin.offer`."""

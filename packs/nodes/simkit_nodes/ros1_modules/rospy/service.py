@@ -53,7 +53,7 @@ class Service:
         self,
         name: str,
         service_class: type[Any],
-        handler: Callable[[Any], Any],
+        handler: Callable[[Any], object],
         buff_size: int = 65536,
         error_handler: Callable[..., object] | None = None,
     ) -> None:

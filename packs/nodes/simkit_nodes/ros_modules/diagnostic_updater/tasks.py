@@ -82,7 +82,7 @@ class FunctionDiagnosticTask(DiagnosticTask):
         fn: function that fills in a status and returns it.
     """
 
-    def __init__(self, name: str, fn: Callable[[Any], Any]) -> None:
+    def __init__(self, name: str, fn: Callable[[Any], object]) -> None:
         super().__init__(name)
         self.fn = fn
 

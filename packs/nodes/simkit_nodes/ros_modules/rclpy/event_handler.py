@@ -190,7 +190,7 @@ class EventHandler(Waitable):
         self,
         *,
         callback_group: CallbackGroup,
-        callback: Callable[[Any], Any],
+        callback: Callable[[Any], object],
         event_type: IntEnum,
         parent_impl: EventSource,
     ) -> None:
@@ -256,7 +256,7 @@ class QoSEventHandler(EventHandler):
 
 
 def _handlers(
-    group: CallbackGroup, source: EventSource, callbacks: list[tuple[IntEnum, Callable[[Any], Any] | None]]
+    group: CallbackGroup, source: EventSource, callbacks: list[tuple[IntEnum, Callable[[Any], object] | None]]
 ) -> list[EventHandler]:
     return [
         EventHandler(callback_group=group, callback=callback, event_type=kind, parent_impl=source)
@@ -281,12 +281,12 @@ class SubscriptionEventCallbacks:
     def __init__(
         self,
         *,
-        deadline: Callable[[Any], Any] | None = None,
-        incompatible_qos: Callable[[Any], Any] | None = None,
-        liveliness: Callable[[Any], Any] | None = None,
-        message_lost: Callable[[Any], Any] | None = None,
-        incompatible_type: Callable[[Any], Any] | None = None,
-        matched: Callable[[Any], Any] | None = None,
+        deadline: Callable[[Any], object] | None = None,
+        incompatible_qos: Callable[[Any], object] | None = None,
+        liveliness: Callable[[Any], object] | None = None,
+        message_lost: Callable[[Any], object] | None = None,
+        incompatible_type: Callable[[Any], object] | None = None,
+        matched: Callable[[Any], object] | None = None,
         use_default_callbacks: bool = True,
     ) -> None:
         self.deadline, self.incompatible_qos, self.liveliness = deadline, incompatible_qos, liveliness
@@ -348,11 +348,11 @@ class PublisherEventCallbacks:
     def __init__(
         self,
         *,
-        deadline: Callable[[Any], Any] | None = None,
-        liveliness: Callable[[Any], Any] | None = None,
-        incompatible_qos: Callable[[Any], Any] | None = None,
-        incompatible_type: Callable[[Any], Any] | None = None,
-        matched: Callable[[Any], Any] | None = None,
+        deadline: Callable[[Any], object] | None = None,
+        liveliness: Callable[[Any], object] | None = None,
+        incompatible_qos: Callable[[Any], object] | None = None,
+        incompatible_type: Callable[[Any], object] | None = None,
+        matched: Callable[[Any], object] | None = None,
         use_default_callbacks: bool = True,
     ) -> None:
         self.deadline, self.liveliness, self.incompatible_qos = deadline, liveliness, incompatible_qos

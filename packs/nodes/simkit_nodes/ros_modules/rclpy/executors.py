@@ -41,7 +41,7 @@ DEFAULT_THREADS: Final = 8
 Work = tuple[Task, "ExecutorEntity | None", "Node | None"]
 
 
-async def await_or_execute(callback: Callable[..., Any], *args: object) -> Any:
+async def await_or_execute(callback: Callable[..., object], *args: object) -> Any:
     """Call a function, or await a coroutine function."""
     if inspect.iscoroutinefunction(callback):
         return await callback(*args)
@@ -101,7 +101,7 @@ class Executor:
         """Context whose end ends the executor."""
         return self._context
 
-    def create_task(self, callback: Callable[..., Any], *args: object, **kwargs: object) -> Task:
+    def create_task(self, callback: Callable[..., object], *args: object, **kwargs: object) -> Task:
         """Have a function or coroutine function called by the executor; return a future for its result."""
         task = Task(callback, args, kwargs, executor=self)
         with self._lock:

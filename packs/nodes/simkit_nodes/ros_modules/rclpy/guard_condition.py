@@ -26,7 +26,7 @@ class GuardCondition(ExecutorEntity):
     """
 
     def __init__(
-        self, callback: Callable[[], Any] | None, callback_group: CallbackGroup, context: Context | None = None
+        self, callback: Callable[[], object] | None, callback_group: CallbackGroup, context: Context | None = None
     ) -> None:
         self.callback, self.callback_group = callback, callback_group
         self._handle = Handle()

@@ -356,7 +356,7 @@ class Node(NodeParameters, NodeServices, NodeQueries):
         self,
         msg_type: object,
         topic: str,
-        callback: Callable[..., Any],
+        callback: Callable[..., object],
         qos_profile: QoSProfile | int,
         *,
         callback_group: CallbackGroup | None = None,
@@ -404,7 +404,7 @@ class Node(NodeParameters, NodeServices, NodeQueries):
     def create_timer(
         self,
         timer_period_sec: float,
-        callback: Callable[[], Any] | None,
+        callback: Callable[[], object] | None,
         callback_group: CallbackGroup | None = None,
         clock: Clock | None = None,
         autostart: bool = True,
@@ -428,7 +428,7 @@ class Node(NodeParameters, NodeServices, NodeQueries):
         return timer
 
     def create_guard_condition(
-        self, callback: Callable[[], Any], callback_group: CallbackGroup | None = None
+        self, callback: Callable[[], object], callback_group: CallbackGroup | None = None
     ) -> GuardCondition:
         """Create a guard condition, whose callback is called after `trigger`."""
         group = callback_group or self.default_callback_group

@@ -68,7 +68,7 @@ class NodeServices:
         self,
         srv_type: object,
         srv_name: str,
-        callback: Callable[[Any, Any], Any],
+        callback: Callable[[Any, Any], object],
         *,
         qos_profile: QoSProfile = qos_profile_services_default,
         callback_group: CallbackGroup | None = None,

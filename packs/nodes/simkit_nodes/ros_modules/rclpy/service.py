@@ -37,7 +37,7 @@ class Service(ExecutorEntity):
         service_impl: GraphService,
         srv_type: Any,
         srv_name: str,
-        callback: Callable[[Any, Any], Any],
+        callback: Callable[[Any, Any], object],
         callback_group: CallbackGroup,
         qos_profile: QoSProfile,
     ) -> None:

@@ -44,7 +44,7 @@ class Subscription(ExecutorEntity):
         subscription_impl: GraphSubscription,
         msg_type: object,
         topic: str,
-        callback: Callable[..., Any],
+        callback: Callable[..., object],
         callback_group: CallbackGroup,
         qos_profile: QoSProfile,
         raw: bool,
@@ -81,12 +81,12 @@ class Subscription(ExecutorEntity):
             return self._graph_subscription.matched
 
     @property
-    def callback(self) -> Callable[..., Any]:
+    def callback(self) -> Callable[..., object]:
         """Function or coroutine function that receives a message, or a message and what is known about it."""
         return self._callback
 
     @callback.setter
-    def callback(self, value: Callable[..., Any]) -> None:
+    def callback(self, value: Callable[..., object]) -> None:
         self._callback, self._callback_type = value, callback_type_of(value)
 
     def destroy(self) -> None:
@@ -129,7 +129,7 @@ class Subscription(ExecutorEntity):
         await await_or_execute(self._callback, *data)
 
 
-def callback_type_of(callback: Callable[..., Any]) -> Subscription.CallbackType:
+def callback_type_of(callback: Callable[..., object]) -> Subscription.CallbackType:
     """Return what a callback receives.
 
     Raises:

@@ -36,7 +36,7 @@ class Future:
         self._state, self._exception_fetched = FutureState.PENDING, False
         self._result: Any = None
         self._exception: Exception | None = None
-        self._callbacks: list[Callable[[Any], Any]] = []
+        self._callbacks: list[Callable[[Any], object]] = []
         self._spinning: list[Executor] = []
         self._lock = threading.Lock()  # threads of a program in its own process run at the same time
         self._executor: Callable[[], Executor | None] = lambda: None
@@ -125,7 +125,7 @@ class Future:
         """Set the executor that calls the callbacks."""
         self._executor = (lambda: None) if executor is None else ref(executor)
 
-    def add_done_callback(self, callback: Callable[[Any], Any]) -> None:
+    def add_done_callback(self, callback: Callable[[Any], object]) -> None:
         """Call a function with the future when it is done; at once, or by the executor, if it is done already."""
         executor = self._executor()
         with self._lock:
@@ -137,7 +137,7 @@ class Future:
         else:
             callback(self)
 
-    def remove_done_callback(self, callback: Callable[[Any], Any]) -> bool:
+    def remove_done_callback(self, callback: Callable[[Any], object]) -> bool:
         """Remove a callback of `add_done_callback`; return False if it is not there any more."""
         with self._lock:
             if callback not in self._callbacks:
@@ -158,7 +158,7 @@ class Task(Future):
 
     def __init__(
         self,
-        handler: Callable[..., Any] | Coroutine[Any, Any, Any],
+        handler: Callable[..., object] | Coroutine[Any, Any, Any],
         args: Sequence[Any] | None = None,
         kwargs: Mapping[str, Any] | None = None,
         executor: Executor | None = None,

@@ -36,7 +36,7 @@ class Timer(ExecutorEntity):
 
     def __init__(
         self,
-        callback: Callable[[], Any] | None,
+        callback: Callable[[], object] | None,
         callback_group: CallbackGroup,
         timer_period_ns: int,
         clock: Clock,

@@ -139,7 +139,7 @@ class Buffer(BufferCore, TransformAvailability, BufferInterface):
             lambda: self.can_transform_full_core(*arguments)[0], lambda: self.lookup_transform_full_core(*arguments)
         )
 
-    def _future(self, is_known: Callable[[], bool], lookup: Callable[[], Any]) -> Future:
+    def _future(self, is_known: Callable[[], bool], lookup: Callable[[], object]) -> Future:
         future = Future()
 
         def look() -> None:

@@ -135,13 +135,13 @@ def Stamped(obj: Any, stamp: Any, frame_id: str) -> Any:
     return obj
 
 
-def _registered(table: str) -> dict[Any, Callable[..., Any]]:
+def _registered(table: str) -> dict[Any, Callable[..., object]]:
     """Return what the present program has registered."""
-    tables: dict[str, dict[Any, Callable[..., Any]]] = current_program().data.setdefault("tf2_ros", {})
+    tables: dict[str, dict[Any, Callable[..., object]]] = current_program().data.setdefault("tf2_ros", {})
     return tables.setdefault(table, {})
 
 
-def _of_packages(table: str, kind: object) -> Callable[..., Any] | None:
+def _of_packages(table: str, kind: object) -> Callable[..., object] | None:
     """Return the function for a type in a table of an imported package."""
     for package in _PACKAGES:
         if package in sys.modules:
@@ -153,7 +153,7 @@ def _of_packages(table: str, kind: object) -> Callable[..., Any] | None:
     return None
 
 
-def _required(function: Callable[..., Any] | None, key: object) -> Callable[..., Any]:
+def _required(function: Callable[..., object] | None, key: object) -> Callable[..., object]:
     if function is None:
         raise TypeException(f"Type {key} is not loaded or supported")
     return function
@@ -166,11 +166,11 @@ class TransformRegistration:
         """Print all functions that the program has added."""
         print(_registered("transform"))  # noqa: T201 - what the function is for
 
-    def add(self, key: object, callback: Callable[[Any, Any], Any]) -> None:
+    def add(self, key: object, callback: Callable[[Any, Any], object]) -> None:
         """Add a function of an object and a `TransformStamped` for a type."""
         _registered("transform")[key] = callback
 
-    def get(self, key: object) -> Callable[[Any, Any], Any]:
+    def get(self, key: object) -> Callable[[Any, Any], object]:
         """Return the function for a type.
 
         Raises:
@@ -182,32 +182,32 @@ class TransformRegistration:
 class ConvertRegistration:
     """Functions that convert objects to messages and back, by type of the objects; each program has its own."""
 
-    def add_from_msg(self, key: object, callback: Callable[[Any], Any]) -> None:
+    def add_from_msg(self, key: object, callback: Callable[[Any], object]) -> None:
         """Add a function from a message to an object of a type."""
         _registered("from_msg")[key] = callback
 
-    def add_to_msg(self, key: object, callback: Callable[[Any], Any]) -> None:
+    def add_to_msg(self, key: object, callback: Callable[[Any], object]) -> None:
         """Add a function from an object of a type to a message."""
         _registered("to_msg")[key] = callback
 
-    def add_convert(self, key: tuple[Any, Any], callback: Callable[[Any], Any]) -> None:
+    def add_convert(self, key: tuple[Any, Any], callback: Callable[[Any], object]) -> None:
         """Add a function from one type to another."""
         _registered("convert")[key] = callback
 
-    def get_from_msg(self, key: object) -> Callable[[Any], Any]:
+    def get_from_msg(self, key: object) -> Callable[[Any], object]:
         """Return the function from a message to an object of a type; TypeException if there is none."""
         return _required(_registered("from_msg").get(key) or _message_function("FROM_MESSAGE", key), key)
 
-    def get_to_msg(self, key: object) -> Callable[[Any], Any]:
+    def get_to_msg(self, key: object) -> Callable[[Any], object]:
         """Return the function from an object of a type to a message; TypeException if there is none."""
         return _required(_registered("to_msg").get(key) or _message_function("TO_MESSAGE", key), key)
 
-    def get_convert(self, key: tuple[Any, Any]) -> Callable[[Any], Any]:
+    def get_convert(self, key: tuple[Any, Any]) -> Callable[[Any], object]:
         """Return the function from one type to another; TypeException if there is none."""
         return _required(_registered("convert").get(key), key)
 
 
-def _message_function(table: str, kind: object) -> Callable[[Any], Any] | None:
+def _message_function(table: str, kind: object) -> Callable[[Any], object] | None:
     """Return the function from a message, or to one; messages that can be transformed stay as they are."""
     is_message = hasattr(kind, "_ros_type") and _of_packages("TRANSFORMS", kind) is not None
     return (lambda message: message) if is_message else _of_packages(table, kind)

@@ -274,7 +274,7 @@ class OpaqueCoroutine(Action):
     def __init__(
         self,
         *,
-        coroutine: Callable[..., Any],
+        coroutine: Callable[..., object],
         args: Iterable[Any] | None = None,
         kwargs: Mapping[str, Any] | None = None,
         ignore_context: bool = False,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import TypeVar
 
 __all__ = ["Entity", "Parser", "expose_action", "expose_substitution"]
 
@@ -24,7 +24,7 @@ def expose_action(name: str) -> Callable[[_Class], _Class]:
     return lambda cls: cls
 
 
-def expose_substitution(name: str) -> Callable[[_Class], Any]:
+def expose_substitution(name: str) -> Callable[[_Class], object]:
     """Return a decorator that returns its class."""
     del name
     return lambda cls: cls

@@ -141,7 +141,7 @@ class ActionClient(Waitable):
         self._goal_to_simkit = ROS2.to_simkit(f"{type_name}_Goal")
         self._feedback_to_program = ROS2.to_program(f"{type_name}_Feedback")
         self._result_to_program = ROS2.to_program(f"{type_name}_Result")
-        self._arrivals: deque[Callable[[], Any]] = deque()
+        self._arrivals: deque[Callable[[], object]] = deque()
         self._client = node._open_action_client(action_name, type_name)
         node.add_waitable(self)
 
@@ -151,17 +151,17 @@ class ActionClient(Waitable):
         """Check whether a response, feedback or a result has arrived."""
         return bool(self._arrivals)
 
-    def take_data(self) -> Callable[[], Any] | None:
+    def take_data(self) -> Callable[[], object] | None:
         """Return the oldest arrival."""
         return self._arrivals.popleft() if self._arrivals else None
 
-    async def execute(self, taken_data: Callable[[], Any] | None) -> None:
+    async def execute(self, taken_data: Callable[[], object] | None) -> None:
         """Pass on an arrival: acceptance, feedback and result come in this order."""
         result = None if taken_data is None else taken_data()
         if inspect.isawaitable(result):  # a callback for feedback may be a coroutine function
             await result
 
-    def _arrive(self, function: Callable[[], Any]) -> None:
+    def _arrive(self, function: Callable[[], object]) -> None:
         self._arrivals.append(function)
         self._node._wake_executor()
 
@@ -177,7 +177,7 @@ class ActionClient(Waitable):
         return self._wait_for(self._get_result_async(goal_handle), "send_goal()")
 
     def send_goal_async(
-        self, goal: ProgramMessage, feedback_callback: Callable[[Any], Any] | None = None, goal_uuid: Any = None
+        self, goal: ProgramMessage, feedback_callback: Callable[[Any], object] | None = None, goal_uuid: Any = None
     ) -> Future:
         """Send a goal and return a future for a `ClientGoalHandle`.
 
@@ -212,7 +212,7 @@ class ActionClient(Waitable):
         response.stamp = _times.Time(sec=time_ns // 10**9, nanosec=time_ns % 10**9)
         self._finish(future, ClientGoalHandle(self, uuid, response, sent))
 
-    def _call_back(self, feedback_callback: Callable[[Any], Any], uuid: Any, message: ProgramMessage) -> Any:
+    def _call_back(self, feedback_callback: Callable[[Any], object], uuid: Any, message: ProgramMessage) -> Any:
         feedback = self._action_type.Impl.FeedbackMessage(goal_id=uuid)
         feedback.feedback = self._feedback_to_program(message)
         return feedback_callback(feedback)

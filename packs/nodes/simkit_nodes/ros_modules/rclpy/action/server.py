@@ -143,7 +143,7 @@ class ServerGoalHandle:
             )
         self._status = after
 
-    def execute(self, execute_callback: Callable[[Any], Any] | None = None) -> None:
+    def execute(self, execute_callback: Callable[[Any], object] | None = None) -> None:
         """Begin the execution with a callback, or with that of the action server."""
         if self._status != GoalStatus.STATUS_CANCELING:  # then the callback itself cancels the goal
             self._update_state(GoalEvent.EXECUTE)
@@ -213,12 +213,12 @@ class ActionServer(Waitable):
         node: Any,
         action_type: Any,
         action_name: str,
-        execute_callback: Callable[[ServerGoalHandle], Any],
+        execute_callback: Callable[[ServerGoalHandle], object],
         *,
         callback_group: CallbackGroup | None = None,
-        goal_callback: Callable[[Any], Any] | None = default_goal_callback,
-        handle_accepted_callback: Callable[[ServerGoalHandle], Any] | None = default_handle_accepted_callback,
-        cancel_callback: Callable[[Any], Any] | None = default_cancel_callback,
+        goal_callback: Callable[[Any], object] | None = default_goal_callback,
+        handle_accepted_callback: Callable[[ServerGoalHandle], object] | None = default_handle_accepted_callback,
+        cancel_callback: Callable[[Any], object] | None = default_cancel_callback,
         goal_service_qos_profile: QoSProfile = qos_profile_services_default,
         result_service_qos_profile: QoSProfile = qos_profile_services_default,
         cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
@@ -297,7 +297,7 @@ class ActionServer(Waitable):
         else:
             cancel.reject()
 
-    async def _execute_goal(self, execute_callback: Callable[[Any], Any], goal_handle: ServerGoalHandle) -> None:
+    async def _execute_goal(self, execute_callback: Callable[[Any], object], goal_handle: ServerGoalHandle) -> None:
         uuid = goal_handle.goal_id.uuid
         try:
             result = await await_or_execute(execute_callback, goal_handle)
@@ -315,7 +315,7 @@ class ActionServer(Waitable):
 
     # ------------------------------------------------------------------ for the program
 
-    def notify_execute(self, goal_handle: ServerGoalHandle, execute_callback: Callable[[Any], Any] | None) -> None:
+    def notify_execute(self, goal_handle: ServerGoalHandle, execute_callback: Callable[[Any], object] | None) -> None:
         """Have the executor of the node call the callback."""
         callback = self._execute_callback if execute_callback is None else execute_callback
         self._node.executor.create_task(self._execute_goal, callback, goal_handle)
@@ -323,19 +323,19 @@ class ActionServer(Waitable):
     def notify_goal_done(self) -> None:
         """Do nothing: the end of a goal is known."""
 
-    def register_handle_accepted_callback(self, handle_accepted_callback: Callable[[Any], Any] | None) -> None:
+    def register_handle_accepted_callback(self, handle_accepted_callback: Callable[[Any], object] | None) -> None:
         """Replace the callback for accepted goals; None for the default, which executes them."""
         self._handle_accepted_callback = handle_accepted_callback or default_handle_accepted_callback
 
-    def register_goal_callback(self, goal_callback: Callable[[Any], Any] | None) -> None:
+    def register_goal_callback(self, goal_callback: Callable[[Any], object] | None) -> None:
         """Replace the callback that decides about goals; None for the default, which accepts them."""
         self._goal_callback = goal_callback or default_goal_callback
 
-    def register_cancel_callback(self, cancel_callback: Callable[[Any], Any] | None) -> None:
+    def register_cancel_callback(self, cancel_callback: Callable[[Any], object] | None) -> None:
         """Replace the callback that decides about cancel requests; None for the default, which rejects them."""
         self._cancel_callback = cancel_callback or default_cancel_callback
 
-    def register_execute_callback(self, execute_callback: Callable[[Any], Any]) -> None:
+    def register_execute_callback(self, execute_callback: Callable[[Any], object]) -> None:
         """Replace the callback that executes goals.
 
         Raises:

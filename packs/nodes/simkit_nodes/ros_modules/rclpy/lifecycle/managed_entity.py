@@ -76,7 +76,7 @@ class SimpleManagedEntity(ManagedEntity):
 
     @staticmethod
     def when_enabled(
-        wrapped: Callable[..., Any] | None = None, *, when_not_enabled: Callable[[], object] | None = None
+        wrapped: Callable[..., object] | None = None, *, when_not_enabled: Callable[[], object] | None = None
     ) -> Any:
         """Decorate a method that does nothing while the object is disabled.
 
@@ -85,7 +85,7 @@ class SimpleManagedEntity(ManagedEntity):
             when_not_enabled: function that is called instead.
         """
 
-        def decorator(method: Callable[..., Any]) -> Callable[..., None]:
+        def decorator(method: Callable[..., object]) -> Callable[..., None]:
             @wraps(method)
             def call(self: SimpleManagedEntity, *args: Any, **kwargs: Any) -> None:
                 if self._enabled:
