@@ -64,7 +64,7 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
     path = page.file.src_uri
     if path == "CHANGELOG.md":
         page.meta["search"] = {"exclude": True}  # it names everything once more
-    if path.endswith(".fr.md") or path == "docs/cours.md":
+    if _is_french(page):
         page.meta["search"] = {"boost": 0.5}  # most queries are English
     if path == "docs/troubleshooting.md":
         page.meta["search"] = {"boost": 2}  # who searches for a symptom wants its remedy
@@ -77,6 +77,16 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
         markdown = with_options_link(markdown, path, _pages())
         markdown = with_plugin_links(markdown, path, _anchors())
     return markdown
+
+
+def _is_french(page: Page) -> bool:
+    path = page.file.src_uri
+    return path.endswith(".fr.md") or path in ("docs/cours.md", "docs/start/etudiant.md")
+
+
+def on_post_page(output: str, page: Page, config: MkDocsConfig) -> str:  # noqa: ARG001 - MkDocs passes it
+    """Declare the language of a French page, for screen readers and for translations by the browser."""
+    return output.replace('<html lang="en"', '<html lang="fr"', 1) if _is_french(page) else output
 
 
 def on_page_content(html: str, page: Page, config: MkDocsConfig, files: Files) -> str:  # noqa: ARG001 - MkDocs passes it

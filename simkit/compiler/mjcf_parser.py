@@ -36,6 +36,8 @@ _HINTS: Final = {
     "free joint can only be used on top level": "move its body into <worldbody>, or give it other joints",
     "larger than mjMINVAL": "give the body an <inertial>, or a geom with mass, or remove its joints",
     "positive eigenvalues": "check the signs and units of the <inertial>",
+    "must be positive in geom": "give each number of size a value above 0",
+    "repeated name": "rename one of them",
     "A + B >= C": "correct the <inertial>, or set <compiler balanceinertia='true'/>",
 }
 """Remedies for messages of the engine, by a part of the message."""

@@ -19,6 +19,7 @@ from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.loaders.resources.bundled_models import (
     builtin_model,
     builtin_model_uri,
+    bundled_models,
     bundled_names,
     bundled_worlds,
     find_bundled_model,
@@ -83,7 +84,7 @@ def load_scene(
         Everything that could be read; an empty scene if nothing could be read.
     """
     resolver.begin_load()
-    document, _ = find_document(source, resolver, diagnostics, xacro_args)
+    document, _ = find_document(source, resolver, diagnostics, xacro_args, as_model=as_model)
     if document is None:
         return Scene()
     root = document.root
@@ -115,16 +116,27 @@ def find_document(
     resolver: Resolver,
     diagnostics: Diagnostics,
     xacro_args: NamedValues | None = None,
+    *,
+    as_model: bool = False,
 ) -> tuple[Document | None, bool]:
     """Parse the file that a source refers to, and expand it if it is xacro.
+
+    Args:
+        source: see `load_scene`.
+        resolver: see `load_scene`.
+        diagnostics: see `load_scene`.
+        xacro_args: see `load_scene`.
+        as_model: true if the remedy for an unknown name lists models instead of worlds.
 
     Returns:
         The document, and true if it was expanded from xacro. The document is None, with an error recorded, if the
         source cannot be read.
     """
     is_uri = isinstance(source, str) and "://" in source and "<" not in source
-    read = _document_of_uri if is_uri else _document
-    document = read(source, resolver, diagnostics)
+    if is_uri:
+        document = _document_of_uri(source, resolver, diagnostics)
+    else:
+        document = _document(source, resolver, diagnostics, as_model)
     if document is None:
         return None, False
     if not needs_expansion(document):
@@ -146,7 +158,9 @@ def _document_of_uri(source: str | os.PathLike[str], resolver: Resolver, diagnos
     return None if path is None else _document(path, resolver, diagnostics)
 
 
-def _document(source: str | os.PathLike[str], resolver: Resolver, diagnostics: Diagnostics) -> Document | None:
+def _document(
+    source: str | os.PathLike[str], resolver: Resolver, diagnostics: Diagnostics, as_model: bool = False
+) -> Document | None:
     if isinstance(source, str) and "<" in source:
         root = parse_text(source, diagnostics, builtin_model_uri(source))
         return None if root is None else Document(root, None, source.encode())
@@ -175,7 +189,10 @@ def _document(source: str | os.PathLike[str], resolver: Resolver, diagnostics: D
             near += bundled_names()
             hint = did_you_mean(path.name, near)
             if not hint and len(path.parts) == 1:
-                hint = f"give a file, or a world of simkit: {', '.join(bundled_worlds())}"
+                kind, names = ("world", bundled_worlds())
+                if as_model:
+                    kind, names = ("model", sorted(filter(find_bundled_model, bundled_models())))
+                hint = f"give a file, or a {kind} of simkit: {', '.join(names)}"
             diagnostics.error("SK-LOAD-002", "no such file", Where(str(path)), hint)
             return None
         path = bundled

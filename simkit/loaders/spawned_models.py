@@ -21,7 +21,7 @@ from simkit.scene.model_namespace import NAMESPACE, model_in_namespace
 
 __all__ = ["SpawnEntry", "SpawnedModel", "add_spawned_models", "client_models", "parse_spawn", "spawned_model"]
 
-_POSED: Final = re.compile(r":\s*[^:/]*,[^:/]*(:[^:/]*(:[^:]*)?)?$")
+_POSED: Final = re.compile(r":\s*[^:/]*,[^:/]*(:[^:/]*(:[^:]*)?)?$|:[-+.\d\s]+,[-+.,\d\s]+:")
 _FORM: Final = "MODEL:x,y,yaw[:name[:namespace]], as in tiago:1,0,1.57 or robot.urdf:0,2,0:tb1:tb1; or MODEL alone"
 _FARTHEST: Final = 1e15  # [m, rad]; sums of larger numbers lose their precision or overflow
 _COUNTS: Final = {3: "x,y,yaw", 4: "x,y,z,yaw", 6: "x,y,z,roll,pitch,yaw"}
@@ -143,6 +143,10 @@ def add_spawned_models(
         if not all(abs(number) <= _FARTHEST for number in spawn.place or ()):  # false for NaN, too
             text = f"--spawn: {spawn.source!s:.80} at {spawn.place}"
             diagnostics.error("SK-SPAWN-001", text, hint=f"give numbers between -{_FARTHEST:g} and {_FARTHEST:g}")
+            continue
+        if spawn.name is not None and (not isinstance(spawn.name, str) or "::" in spawn.name or not spawn.name.strip()):
+            text = f"--spawn: {spawn.source!s:.80} has the name {spawn.name!r:.80}"
+            diagnostics.error("SK-SPAWN-001", text, hint="give a text without ::, as in tb1")
             continue
         namespace = spawn.namespace
         if namespace is not None and not (isinstance(namespace, str) and NAMESPACE.fullmatch(namespace)):

@@ -72,6 +72,13 @@ def test_no_number_of_an_option_is_nan(name: str, option: str, simkit_line: Call
     assert "found nan; expected" in result.stdout + result.stderr or "'nan' is not a" in result.stdout + result.stderr
 
 
+@pytest.mark.parametrize("line", ["golden record empty -o out", "plot empty /clock.clock"])
+def test_a_run_that_must_end_has_a_finite_duration(line: str, simkit_line: Callable[..., Any]) -> None:
+    result = simkit_line(*line.split(), "--duration", "inf")
+    assert result.exit_code == 2
+    assert "SK-INPUT-003 duration must be a finite number [s]" in result.stderr
+
+
 LINES = """
 check w.sdf
 check w.sdf --score

@@ -230,6 +230,21 @@ ROWS = [
         printed=("a.urdf:2: warning SK-URDF-028: collision 'base_collision' of link 'base': <box> has size 0 1 1",),
     ),
     Row(
+        10,
+        "Error: size 0 must be positive in geom Element name ''",
+        urdf(link("base", "", collision("<sphere radius='nan'/>"))),
+        exit_code=2,
+        printed=('a.urdf:2: error SK-URDF-013: <sphere radius="nan">: expected a number', "radius"),
+    ),
+    Row(
+        10,
+        "Error: size 0 must be positive in geom Element name ''",
+        mjcf("<geom size='0'/>"),
+        "check a.xml",
+        2,
+        ("size 0 must be positive in geom (element 'b_geom0')", "help: give each number of size a value above 0"),
+    ),
+    Row(
         11,
         "mesh volume is too small. Try setting inertia to shell",
         urdf(link("base", shape=collision("<mesh filename='plate.obj'/>"))) | {"plate.obj": FLAT},
@@ -248,6 +263,17 @@ ROWS = [
         "free joint can only be used on top level",
         urdf(link("base"), link("c"), joint("c", "floating")),
         printed=("0 errors, 0 warnings, 1 note",),
+    ),
+    Row(
+        12,
+        "free joint can only be used on top level",
+        sdf(
+            "<model name='m'><link name='base'/><link name='c'/>",
+            "<joint name='j' type='floating'><parent>base</parent><child>c</child></joint></model>",
+        ),
+        "check a.sdf",
+        2,
+        ("a.sdf:3: error SK-SDF-008: joint 'j' has unknown type 'floating'", "help: remove the joint: a link without"),
     ),
     Row(
         13,

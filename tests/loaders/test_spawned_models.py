@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 from typer.testing import CliRunner
@@ -94,6 +95,27 @@ def test_the_command_line_accepts_several_spawn_options() -> None:
     bad = CliRunner().invoke(app, [*line, "turtlebot3_burger:1,0"])
     assert bad.exit_code != 0
     assert "SK-SPAWN-001" in bad.output
+
+
+@pytest.mark.parametrize("name", [5, "", "a::b"])
+def test_the_name_of_a_spawned_model_is_a_text_without_scopes(name: Any) -> None:
+    with pytest.raises(LoadError, match="SK-SPAWN-001: --spawn: turtlebot3_burger has the name"):
+        simkit.load("empty", spawn=[{"model": "turtlebot3_burger", "name": name}])
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "help_"),
+    [
+        ("turtlebot3_burger:0,0,0:a/b", "SK-SPAWN-001", "write MODEL:x,y,yaw"),
+        ("turtlebot3_burger:0,0,0:a:b:c", "SK-SPAWN-001", "write MODEL:x,y,yaw"),
+        ("robot:0,0,0", "SK-LOAD-002", "give a file, or a model of simkit: aruco_box, "),
+    ],
+)
+def test_a_spawn_text_that_names_no_model_is_an_error_with_the_allowed_ones(text: str, code: str, help_: str) -> None:
+    with pytest.raises(LoadError) as caught:
+        simkit.load("empty", spawn=[text])
+    error = next(d for d in caught.value.diagnostics if d.severity == "error")
+    assert error.code == code and error.hint.startswith(help_)
 
 
 @pytest.mark.parametrize("number", [1e308, -1e16, float("nan")])

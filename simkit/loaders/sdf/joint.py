@@ -53,7 +53,8 @@ def _joint(part: NamedElement, model: str) -> SceneJoint | None:
     parent, child = _joint_link(part, "parent"), _joint_link(part, "child")
     if kind not in AXES:
         message = f"joint {part.name!r} has unknown type {kind!r}; known are {', '.join(AXES)}"
-        element.error("SK-SDF-008", message, did_you_mean(kind, AXES))
+        hint = "remove the joint: a link without a joint is free" if kind == "floating" else did_you_mean(kind, AXES)
+        element.error("SK-SDF-008", message, hint)
     elif parent is None and child is not None:
         _axes(part, kind, IDENTITY)  # only to report problems of the axes
     elif parent is not None and parent is child:

@@ -56,7 +56,10 @@ def read_geometry(owner: Params, draft: RobotDraft, what: str) -> Geometry | Non
 
 
 def _positive(element: Params, attribute: str, what: str) -> float:
-    return _sizes(element, attribute, what, (number_attribute(element, attribute, owner=what),))[0]
+    value = number_attribute(element, attribute, owner=what)
+    if value == 0.0 and parse_number(element.attributes.get(attribute, "")) != 0.0:
+        return 1.0  # no number, which is reported
+    return _sizes(element, attribute, what, (value,))[0]
 
 
 def _sizes(element: Params, attribute: str, what: str, sizes: tuple[float, ...]) -> tuple[float, ...]:

@@ -171,7 +171,7 @@ class RunRecorder:
         self._diagnostics = Counter(d.code for d in sim.diagnostics)
         self._taps = TopicTaps(sim, self._receiver_of)
         self._taps.open()
-        self._marks = StateRecorder(sim, sim.engine.clock.ticks(longest))
+        self._marks = StateRecorder(sim, sim.engine.clock.checked_ticks(longest, "duration"))
 
     def __enter__(self) -> RunRecorder:
         return self

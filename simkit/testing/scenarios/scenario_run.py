@@ -165,7 +165,7 @@ def run_scenario(
         progress.task(f"running {scenario.title}", scenario.longest, unit="s") as task,
     ):
         begun = sim.engine.steps
-        end = sim.engine.steps + sim.engine.clock.ticks(scenario.longest)
+        end = sim.engine.steps + sim.engine.clock.checked_ticks(scenario.longest, "duration")
         slice_ = max(1, sim.engine.clock.ticks(slice_seconds))
         reason = "timeout" if scenario.until else "duration"
         while sim.engine.steps < end and not watch.ended and not sim.ended_by:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -106,5 +107,5 @@ def _opened_at(run: str, time: float | None, given: GivenOptions, *, allow_code:
 
 
 def _check_time(sim: Simulation, run: str, time: float | None) -> None:
-    if time is not None and sim.tick < sim.engine.clock.ticks(time):
+    if time is not None and (math.isinf(time) or sim.tick < sim.engine.clock.ticks(time)):
         raise InputError("SK-CLI-064", f"{Path(run).name}: the run ends at t = {sim.time:g} s, before --time {time:g}")

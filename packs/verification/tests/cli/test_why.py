@@ -101,6 +101,8 @@ def test_a_time_after_the_end_of_the_run_is_an_error(folder: Path) -> None:
     found = simkit("why", "push.yaml", "-t", "2")
     assert found.exit_code == 2
     assert "SK-CLI-064 push.yaml: the run ends at t = 0.5 s, before --time 2" in found.output
+    found = simkit("why", "push.yaml", "-t", "inf")
+    assert "SK-CLI-064 push.yaml: the run ends at t = 0.5 s, before --time inf" in found.output
 
 
 def test_a_bundle_takes_no_options_of_a_run(folder: Path) -> None:

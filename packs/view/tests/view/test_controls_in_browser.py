@@ -117,6 +117,19 @@ def test_a_reset_ends_what_the_keys_began(session: Callable[..., Session]) -> No
     assert found.do(lambda: sent.latest) is None
 
 
+def test_keys_drive_after_a_box_is_checked_or_a_speed_is_chosen(session: Callable[..., Session]) -> None:
+    found = session()
+    found.until("app.stage.draws > 1 && document.getElementById('drive').hidden === false")
+    page, speeds = found.page, found.page.locator("#speeds")
+    for use in (page.locator("#layers .check input").first.click, lambda: page.locator("#speed").select_option("2 ×")):
+        use()
+        page.keyboard.press("ArrowUp")
+        speeds.filter(has_text="0.05 m/s").wait_for(timeout=TIMEOUT)
+        page.keyboard.press("s")
+        speeds.filter(has_text="0.00 m/s").wait_for(timeout=TIMEOUT)
+    assert found.get("document.getElementById('speed').value") == "2 ×"
+
+
 def test_the_chosen_robot_stays_chosen_when_a_model_is_spawned(session: Callable[..., Session]) -> None:
     second = YARD[YARD.index('<model name="rover">') : YARD.index("</world>")].replace("rover", "second")
     found = session(YARD.replace("</world>", f"{second.replace('/cmd_vel', '/second/cmd_vel')}</world>"))

@@ -37,6 +37,12 @@ export function checkbox(id, text, checked, change) {
   return element('label', { class: 'check' }, box, text);
 }
 
+/** Returns true if a key is one of the page: not of the browser, and not of the field that has the focus. */
+export function isPageKey(event) {
+  const field = event.target.closest('input, select, textarea');
+  return !(event.ctrlKey || event.metaKey || event.altKey) && (!field || (field.type === 'checkbox' && event.key !== ' '));
+}
+
 /** Stores a choice of the user in a cookie, which holds on every port: each run has its own. */
 export function keepChoice(name, value) {
   try { document.cookie = `simkit-${name}=${value}; max-age=31536000; samesite=strict; path=/`; } catch { /* a page in a notebook may have no cookies */ }

@@ -192,6 +192,8 @@ try {
   arrange();
   makeTour(app);
   pickOnClick(app.stage.canvas);
+  // A list that was used with the mouse gives the keys back to the page: with its focus, they would change the choice.
+  addEventListener('change', ({ target }) => { if (target.matches('select:not(:focus-visible)')) target.blur(); });
   await loadScene();
   app.connection.open();
 } catch (error) {

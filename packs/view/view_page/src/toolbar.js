@@ -1,5 +1,5 @@
 // Bar at the top: run control, time, viewpoints, and the state of the connection.
-import { element } from './dom.js';
+import { element, isPageKey } from './dom.js';
 import { isCamera } from './sensors.js';
 
 const SPEEDS = [['0.1', 0.1], ['0.25', 0.25], ['0.5', 0.5], ['1', 1], ['2', 2], ['5', 5], ['no limit', null]];
@@ -54,7 +54,7 @@ export function makeToolbar(app, bar) {
     [draws, states, bytes] = [app.stage.draws, app.stats.states, app.connection.bytes];
   }, 1000);
   addEventListener('keydown', event => {
-    if (event.target.closest('input, select, textarea') || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (!isPageKey(event)) return;
     if (event.key === ' ') { event.preventDefault(); togglePause(app); }
     else if (event.key === 'n') makeSteps(app, 1);
     else if (event.key === 'f') toggleFollow(app);

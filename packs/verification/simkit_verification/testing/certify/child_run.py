@@ -99,7 +99,10 @@ class _ChildRun:
         self._call_recorder = PluginCallRecorder(sim) if request.is_watched else None
         self._topic_hashes: TopicHashes | None = None
         self._marks = TickHashes(sim)
-        self._end = sim.engine.clock.ticks(self._scenario.longest) if request.ticks is None else request.ticks
+        ticks = request.ticks
+        if ticks is None:
+            ticks = sim.engine.clock.checked_ticks(self._scenario.longest, "duration")
+        self._end = ticks
         self._half = self._end // 2 if request.half is None else request.half
 
     def run(self) -> None:

@@ -1,6 +1,6 @@
 // Driving: pad for mouse and touch, keys as `--teleop` has them, goals and initial poses by a click on the ground.
 import * as T from 'three';
-import { element, panel } from '../dom.js';
+import { element, isPageKey, panel } from '../dom.js';
 
 const KEYS = { w: 'w', x: 'x', a: 'a', d: 'd', s: 's', j: 'j', l: 'l', q: 'q', z: 'z', ArrowUp: 'up', ArrowDown: 'down', ArrowLeft: 'left', ArrowRight: 'right' };
 const RESEND = 200; // [ms] while the pad is held, so that the time-out of the commands does not stop the robot
@@ -68,7 +68,7 @@ export function makeDrivePanel(app) {
   for (const end of ['pointerup', 'pointercancel', 'lostpointercapture']) pad.addEventListener(end, endPad);
   addEventListener('blur', endPad);
   addEventListener('keydown', event => {
-    if (event.target.closest('input, select, textarea') || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (!isPageKey(event)) return;
     const name = KEYS[event.key] ?? KEYS[event.key.toLowerCase()];
     if (name && targets.length) { event.preventDefault(); key(name); }
   });
@@ -86,7 +86,7 @@ export function makeDrivePanel(app) {
     button.classList.add('on');
     app.stage.controls.enabled = false;
     app.stage.canvas.style.cursor = 'crosshair';
-    answer.textContent = 'click on the ground and drag for the direction; Esc ends';
+    answer.textContent = 'click on the ground and drag for the direction';
     answer.className = 'dim';
   };
   const endAim = () => {

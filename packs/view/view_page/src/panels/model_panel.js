@@ -23,7 +23,7 @@ export function makeModelPanel(app) {
   const model = () => app.selected?.split('::', 1)[0] ?? null;
   const show = () => {
     const isPlacing = app.clickMode === spawnAt;
-    name.textContent = isPlacing ? 'click on the ground; Esc ends' : model() ?? 'select a model to move, turn or delete it';
+    name.textContent = isPlacing ? 'click on the ground' : model() ?? 'select a model to move, turn or delete it';
     for (const tool of tools.children) tool.disabled = model() === null;
     tools.children[0].classList.toggle('on', edited !== null && gizmo.mode === 'translate');
     tools.children[1].classList.toggle('on', edited !== null && gizmo.mode === 'rotate');
