@@ -26,6 +26,7 @@ from simkit.plugins.endpoints import Endpoint
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.options import Options
 from simkit.plugins.ros_names import RosNames
+from simkit.plugins.uncalled_methods import uncalled_methods
 from simkit.plugins.unread_parameters import report_unread
 from simkit.topic_logger import TopicLogger
 
@@ -416,10 +417,15 @@ class Plugin(Completed, abc.ABC):
         return (f"{self.ros.namespace}/{self.ros.node}",)
 
     def report_unread(self) -> None:
-        """Warn about elements of the file that the plugin did not read; done after `load`."""
+        """Warn about elements of the file that the plugin did not read and look-alikes of hooks; done after `load`."""
         report_unread(self.params, f"plugin {self.name!r}", self.code_objects()[0])
         if not self.reads_parameter_files:
             self.ros.arguments.report_unused(f"plugin {self.name!r}", self.params.diagnostics)
+        for method, hook in uncalled_methods(type(self)):
+            if not self.has_hook(hook):
+                message = f"plugin {self.name!r}: simkit does not call {method}"
+                help_text = f"rename it to {hook}, if it shall run at each step"
+                self.params.diagnostics.warning("SK-PLUGIN-013", message, self.where, help_text)
 
     def join_simulation(self, sim: Simulation) -> None:
         """Connect the instance to its simulation; done before `load`."""

@@ -192,3 +192,43 @@ def test_a_driving_plugin_on_a_static_model_is_ignored(outer: bool) -> None:
     with simkit.load(world(model)) as sim:
         sim.step(10)
         assert [d.code for d in sim.diagnostics if d.severity != "note"] == ["SK-PLUGIN-010"] * len(plugins)
+
+
+class Pusher(WorldPlugin):
+    """Has the names of hooks of other simulators, a misspelled one, and a callback with such a name."""
+
+    def load(self, parent: Any, params: Params) -> None:
+        self.listen("/push", "std_msgs/msg/Empty", self.on_update)
+
+    def pre_step(self) -> None: ...
+
+    def PostUpdate(self) -> None: ...
+
+    def after_stp(self) -> None: ...
+
+    def on_update(self, message: object) -> None: ...
+
+
+class Puller(Pusher):
+    """Has the hooks, so that the others may be helpers."""
+
+    def before_step(self) -> None: ...
+
+    def after_step(self) -> None: ...
+
+
+def test_a_method_that_looks_like_a_hook_and_is_never_called_is_reported() -> None:
+    with opened(Pusher()) as sim:
+        found = [(d.message, d.hint) for d in sim.diagnostics if d.code == "SK-PLUGIN-013"]
+    assert [message.rpartition(" ")[2] for message, _ in found] == [
+        "Pusher.pre_step",
+        "Pusher.PostUpdate",
+        "Pusher.after_stp",
+    ]
+    assert [text.partition(",")[0] for _, text in found] == [
+        "rename it to before_step",
+        "rename it to after_step",
+        "rename it to after_step",
+    ]
+    with opened(Puller()) as sim:
+        assert not [d for d in sim.diagnostics if d.code == "SK-PLUGIN-013"]
