@@ -27,6 +27,7 @@ from simkit.sensors.noise import NoiseModel
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = {
     **dict.fromkeys(("ray", "gpu_ray", "gpu_lidar"), "lidar"),
+    "anemometer": "air",
     "depth": "depth_camera",
     "dsros_dvl": "dvl",
     "gps": "navsat",

@@ -41,6 +41,8 @@ def describe_run(sim: Simulation, folder: Path, is_recorded: Callable[[str], boo
     run: dict[str, Any] = {"world": spec.world if spec.beside is None else relative_path(spec.beside, folder)}
     options = {}
     for name, described in run_fields().items():
+        if name == "render_thread":
+            continue  # it changes no message, and so no byte of a bag
         value = moved.value_of(described)
         if described.is_load_option and value not in (described.default, (), {}):
             options[name] = described.kind.plain(value)
