@@ -84,6 +84,8 @@ class Session:
         self.page.goto(self.view.address + more)
         self.has_drawn = self.page.locator("#link.on")
         self.has_drawn.wait_for(timeout=TIMEOUT)
+        if not checks_policy:
+            self.until("app.stage.fitted !== undefined")  # the camera then stays where it is
 
     def _note(self, url: str) -> None:
         if not url.startswith((f"http://127.0.0.1:{self.view.server.port}/", "blob:", "data:")):
