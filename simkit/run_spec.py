@@ -31,7 +31,7 @@ from simkit.run_fields import (
     described_fields,
     run_field,
 )
-from simkit.run_files import ChangeFile, FileName, FilePath, PackagePaths
+from simkit.run_files import ChangeFile, FileName, FilePath, PackagePaths, relative_path
 from simkit.run_nodes import Node
 from simkit.run_values import (
     BagText,
@@ -387,6 +387,15 @@ class RunSpec:
                 values[name] = described.kind.move(value, name, change)
         return self.with_values(values)
 
+    def with_relative_files(self, folder: Path) -> RunSpec:
+        """Return a specification in which the names of files are relative to a folder, except that of the world."""
+
+        def place(name: FileName) -> str:
+            path = name.used_path(self.folder)
+            return name.text if path is None else relative_path(path, folder)
+
+        return self.with_files(place)
+
     def files(self) -> Iterator[FileName]:
         """Iterate over the names of files in all fields, except the world itself."""
         names: list[FileName] = []
@@ -462,6 +471,10 @@ class RunSpec:
         if os.path.isdir(path):  # noqa: PTH112 (a long name is no error); the folder of a golden run may have the name of its world
             return path if any(entry.suffix in _MODEL_FILE_SUFFIXES for entry in path.iterdir()) else None
         return path if os.path.isfile(path) else None  # noqa: PTH113
+
+    def relative_world(self, folder: Path) -> str:
+        """Return the world's name: a file relative to a folder; a bare name or XML text unchanged."""
+        return self.world if self.beside is None else relative_path(self.beside, folder)
 
     def tolerance(self, topic: str, field_: str = "") -> Sequence[Tolerance]:
         """Return the tolerances that match a field of a topic, the most specific first."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import inspect
+import re
 import sys
 from collections.abc import Iterator
 from typing import Final, Literal
@@ -13,6 +14,7 @@ from simkit.diagnostics import closest
 StepHook = Literal["before_step", "after_step"]
 
 _STEP_HOOKS: Final[tuple[StepHook, StepHook]] = ("before_step", "after_step")
+_MAYBE: Final = re.compile("(?!_)(before|after|.*(step|update))", re.IGNORECASE)  # the closest name takes longer
 # Names of Gazebo Sim's systems, Gazebo Classic's event and usual others, in lower case without `_`.
 _OTHER_NAMES: Final[dict[str, StepHook]] = {
     "beforestep": "before_step",
@@ -29,17 +31,17 @@ _OTHER_NAMES: Final[dict[str, StepHook]] = {
 
 
 def uncalled_methods(plugin_class: type) -> Iterator[tuple[str, StepHook]]:
-    """Yield each method of a user's class that looks like a step hook, if nothing in its module uses it.
+    """Yield each public method that looks like a step hook, if nothing in its module uses it.
 
     Args:
-        plugin_class: class of a plugin; its base classes in simkit and in packs of simkit are not searched.
+        plugin_class: class of a plugin; its base classes in simkit are not searched.
 
     Yields:
         Class and name of the method, such as `Push.pre_step`, and the hook that has its purpose.
     """
     for cls in plugin_class.__mro__:
-        if cls.__module__.partition(".")[0].startswith("simkit"):
-            return  # simkit's own classes follow
+        if cls.__module__.partition(".")[0] == "simkit":
+            return
         for name, method in vars(cls).items():
             hook = _intended_hook(name) if inspect.isfunction(method) else None
             if hook is not None and not _is_used(name, cls.__module__):
@@ -47,7 +49,7 @@ def uncalled_methods(plugin_class: type) -> Iterator[tuple[str, StepHook]]:
 
 
 def _intended_hook(name: str) -> StepHook | None:
-    if name in _STEP_HOOKS:
+    if name in _STEP_HOOKS or not _MAYBE.match(name):
         return None
     near = closest(name, _STEP_HOOKS, 0.85)
     return _OTHER_NAMES.get(name.replace("_", "").lower()) or next((hook for hook in _STEP_HOOKS if hook == near), None)

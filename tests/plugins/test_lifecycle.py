@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -232,3 +233,21 @@ def test_a_method_that_looks_like_a_hook_and_is_never_called_is_reported() -> No
     ]
     with opened(Puller()) as sim:
         assert not [d for d in sim.diagnostics if d.code == "SK-PLUGIN-013"]
+
+
+def test_so_is_a_method_of_a_plugin_in_a_file(tmp_path: Path) -> None:
+    code = """from simkit import WorldPlugin
+
+
+class Push(WorldPlugin):
+    def load(self, sim, params):
+        self.listen("/push", "std_msgs/msg/Empty", self.on_update)
+
+    def on_update(self, message): ...
+
+    def pre_step(self): ...
+"""
+    (tmp_path / "push.py").write_text(code, encoding="utf-8")
+    with simkit.load(world(GROUND, '<plugin filename="push.py" name="Push"/>'), plugin_paths=[tmp_path]) as sim:
+        found = [d.message for d in sim.diagnostics if d.code == "SK-PLUGIN-013"]
+    assert found == ["plugin 'Push': simkit does not call Push.pre_step"]

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from simkit.input_file import open_input
-from simkit.run_files import FileName, relative_path
 from simkit.run_spec import run_fields
 
 if TYPE_CHECKING:
@@ -33,12 +32,8 @@ def describe_run(sim: Simulation, folder: Path, is_recorded: Callable[[str], boo
     if spec is None or spec.plugins or spec.change_world is not None or sim.tick:
         return {}
 
-    def place(name: FileName) -> str:
-        path = name.used_path(spec.folder)
-        return name.text if path is None else relative_path(path, folder)
-
-    moved = spec.with_files(place)
-    run: dict[str, Any] = {"world": spec.world if spec.beside is None else relative_path(spec.beside, folder)}
+    moved = spec.with_relative_files(folder)
+    run: dict[str, Any] = {"world": spec.relative_world(folder)}
     options = {}
     for name, described in run_fields().items():
         if name == "render_thread":

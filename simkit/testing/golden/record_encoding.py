@@ -42,16 +42,11 @@ def encode_scenario(scenario: RunSpec, folder: Path) -> dict[str, object]:
         scenario: Scenario.
         folder: Folder to which file names are made relative, so that the result is the same in every checkout.
     """
-
-    def place(name: FileName) -> str:
-        path = name.used_path(scenario.folder)
-        return name.text if path is None else relative_path(path, folder)
-
-    encoded: dict[str, object] = {"world": relative_world(scenario, folder)}
+    encoded: dict[str, object] = {"world": scenario.relative_world(folder)}
     if is_long_text(scenario.world):
         text = scenario.world.encode("utf-8", "surrogatepass")
         encoded["world"] = {"sha256": hashlib.sha256(text).hexdigest(), "bytes": len(text)}
-    moved, options = scenario.with_files(place), {}
+    moved, options = scenario.with_relative_files(folder), {}
     for name, described in sorted(run_fields().items(), key=lambda named: named[1].kind.has_files):
         value = moved.value_of(described)
         if described.is_load_option and name in moved.options:
@@ -123,13 +118,6 @@ def decode_scenario(plain: JsonMapping, folder: Path, where: Callable[[str], Whe
 def is_long_text(world: str) -> bool:
     """Check whether a world is XML text that is too long for `golden.json`."""
     return "<" in world and len(world) > _LONG_TEXT
-
-
-def relative_world(scenario: RunSpec, folder: Path) -> str:
-    """Return the world's name: a file relative to `folder`; a bare name or XML text unchanged."""
-    if "<" in scenario.world:
-        return scenario.world
-    return scenario.world if scenario.beside is None else relative_path(scenario.beside, folder)
 
 
 T = TypeVar("T")

@@ -7,7 +7,7 @@ import pickle
 from array import array
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final, NoReturn, SupportsFloat, cast
+from typing import Any, Final, NoReturn, SupportsFloat, cast
 
 import gymnasium
 import numpy as np
@@ -42,9 +42,6 @@ from simkit_learning.sweeps.parameter_space import (
     parameter_space,
 )
 from simkit_learning.sweeps.sweep_spec import fill_template, split_values
-
-if TYPE_CHECKING:
-    pass
 
 IMAGE_SIZE: Final = (480, 360)
 """Width and height of the images of `render` [px]."""

@@ -24,7 +24,7 @@ def expose_action(name: str) -> Callable[[_Class], _Class]:
     return lambda cls: cls
 
 
-def expose_substitution(name: str) -> Callable[[_Class], object]:
+def expose_substitution(name: str) -> Callable[[_Class], _Class]:
     """Return a decorator that returns its class."""
     del name
     return lambda cls: cls
